@@ -1,0 +1,14 @@
+!> Mathematical constants
+module vcor_constants
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: pi, sqrt_pi
+
+   !> Ratio of a circle's circumference to its diameter
+   real(wp), parameter :: pi = 3.1415926535897932384626433832795_wp
+   !> Square root of pi
+   real(wp), parameter :: sqrt_pi = 1.7724538509055160272981674833411_wp
+
+end module vcor_constants

@@ -1,0 +1,46 @@
+!> Errors as values: a procedure that can fail has a last argument
+!> `type(error_t), allocatable, intent(out) :: error`; unallocated means success
+module vcor_error
+   implicit none
+   private
+
+   public :: error_t, raise
+   public :: error_internal, error_usage, error_input, error_file, error_numerical
+
+   !> Exit codes of the program; 0 is success
+   integer, parameter :: error_internal = 1
+   !> The command line is wrong
+   integer, parameter :: error_usage = 2
+   !> The case is wrong
+   integer, parameter :: error_input = 3
+   !> A file cannot be read or written
+   integer, parameter :: error_file = 4
+   !> The numerical solution failed
+   integer, parameter :: error_numerical = 5
+
+   !> One failure
+   type :: error_t
+      !> What kind of failure: one of the `error_*` constants, the program's exit code
+      integer :: code = error_internal
+      !> One line: what was found and what is expected
+      character(len=:), allocatable :: message
+   end type error_t
+
+contains
+
+   !> Set an error
+   pure subroutine raise(error, code, message)
+      !> The error, allocated on return
+      type(error_t), allocatable, intent(inout) :: error
+      !> One of the `error_*` constants
+      integer, intent(in) :: code
+      !> One line: what was found and what is expected
+      character(len=*), intent(in) :: message
+
+      if (allocated(error)) deallocate(error)
+      allocate(error)
+      error%code = code
+      error%message = message
+   end subroutine raise
+
+end module vcor_error

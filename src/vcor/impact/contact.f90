@@ -1,0 +1,267 @@
+!> Contact modulus E'(t) of the two bodies, Eq. (1) of Green's paper
+module vcor_impact_contact
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_prony, only : new_elastic, prony_t
+   use vcor_material_type, only : material_t
+   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
+   implicit none
+   private
+
+   public :: contact_modulus_t, new_contact_modulus
+
+   !> E'(t) = E'_a E'_b/(E'_a + E'_b) with E'_i = E_i/(1 - nu_i^2), in time as the paper has it.
+   !> Where one body is rigid, or both are of one material or elastic, it is a multiple of one
+   !> modulus and inherits all closed forms (Cases 1 to 4 of the paper's Section III); otherwise it
+   !> is the pair
+   type :: contact_modulus_t
+      private
+      !> The material, or the first of the pair
+      class(material_t), allocatable :: first
+      !> The second material of a pair, otherwise not allocated
+      class(material_t), allocatable :: second
+      !> Factor of the first modulus [-]
+      real(wp) :: first_factor = 1.0_wp
+      !> Factor of the second modulus [-]
+      real(wp) :: second_factor = 1.0_wp
+   contains
+      !> E'(t)
+      procedure :: relaxation
+      !> dE'/dt
+      procedure :: rate
+      !> Integrals of E' over equal steps
+      procedure :: step_integrals
+      !> Storage and loss modulus
+      procedure :: dynamic_modulus
+      !> E'(0)
+      procedure :: glassy
+      !> E'(infinity)
+      procedure :: rubbery
+      !> Viscosity of the dashpot in parallel
+      procedure :: viscosity
+      !> E' as a sum of exponentials
+      procedure :: exponentials
+   end type contact_modulus_t
+
+contains
+
+   !> Combine the materials of sphere and plate
+   pure subroutine new_contact_modulus(self, sphere, plate, same, error)
+      !> Contact modulus
+      type(contact_modulus_t), intent(out) :: self
+      !> Material of the sphere
+      class(material_t), intent(in) :: sphere
+      !> Material of the plate
+      class(material_t), intent(in) :: plate
+      !> Whether both are one and the same material
+      logical, intent(in) :: same
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(prony_t) :: elastic
+      real(wp) :: a, b
+
+      if (sphere%rigid .and. plate%rigid) then
+         call raise(error, error_input, &
+            'sphere and plate are both rigid: one of them must be able to deform')
+      else if (sphere%rigid) then
+         allocate (self%first, source=plate)
+         self%first_factor = plate%plane_strain_factor()
+      else if (plate%rigid) then
+         allocate (self%first, source=sphere)
+         self%first_factor = sphere%plane_strain_factor()
+      else if (same) then
+         allocate (self%first, source=sphere)
+         self%first_factor = 0.5_wp*sphere%plane_strain_factor()
+      else if (is_elastic(sphere) .and. is_elastic(plate)) then
+         a = sphere%glassy()*sphere%plane_strain_factor()
+         b = plate%glassy()*plate%plane_strain_factor()
+         call new_elastic(elastic, a*(b/(a + b)), error)
+         if (allocated(error)) return
+         allocate (self%first, source=elastic)
+      else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
+         call raise(error, error_input, 'a material with a viscosity has no meaning in Eq. (1) ' &
+            //'beside another deformable material: make one body rigid or both of one material')
+      else
+         allocate (self%first, source=sphere)
+         allocate (self%second, source=plate)
+         self%first_factor = sphere%plane_strain_factor()
+         self%second_factor = plate%plane_strain_factor()
+      end if
+   end subroutine new_contact_modulus
+
+   !> Whether a material neither relaxes nor flows
+   pure function is_elastic(material)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> Whether its modulus is constant
+      logical :: is_elastic
+
+      type(exponential_sum_t) :: terms
+
+      call material%exponentials(terms, is_elastic)
+      if (is_elastic) is_elastic = size(terms%moduli) == 0 .and. .not. terms%viscosity > 0.0_wp
+   end function is_elastic
+
+   !> Contact modulus E'(t) at t > 0, Eq. (1)
+   elemental function relaxation(self, t) result(value)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Time [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      real(wp) :: other
+
+      value = self%first_factor*self%first%relaxation(t)
+      if (allocated(self%second)) then
+         other = self%second_factor*self%second%relaxation(t)
+         ! written so that one of the moduli may be infinite
+         value = 1.0_wp/(1.0_wp/value + 1.0_wp/other)
+      end if
+   end function relaxation
+
+   !> Rate of the contact modulus at t > 0: E'^2 (E_a'/E_a^2 + E_b'/E_b^2)
+   elemental function rate(self, t) result(value)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Time [s], t > 0
+      real(wp), intent(in) :: t
+      !> Rate [Pa/s], <= 0
+      real(wp) :: value
+
+      real(wp) :: a, b
+
+      if (allocated(self%second)) then
+         a = self%first_factor*self%first%relaxation(t)
+         b = self%second_factor*self%second%relaxation(t)
+         value = (self%first_factor*self%first%rate(t)*(b/(a + b))**2 &
+            + self%second_factor*self%second%rate(t)*(a/(a + b))**2)
+      else
+         value = self%first_factor*self%first%rate(t)
+      end if
+   end function rate
+
+   !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, the dashpot left out
+   pure function step_integrals(self, dt, n) result(value)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Length of the steps [s], > 0
+      real(wp), intent(in) :: dt
+      !> Number of steps
+      integer, intent(in) :: n
+      !> Integrals [Pa s], shape (0:n-1)
+      real(wp) :: value(0:n - 1)
+
+      ! The kernel's branch point lies a step or more away from all steps but the first: eight
+      ! Gauss nodes converge there as 5.8^-16
+      integer, parameter :: order = 8
+      real(wp) :: node(order), weight(order), upper, lower
+      real(wp), allocatable :: end_node(:), end_weight(:)
+      integer :: i
+
+      if (allocated(self%second)) then
+         call endpoint_rule(end_node, end_weight)
+         value(0) = dt*sum(end_weight*self%relaxation(dt*end_node))
+         call gauss_nodes(node, weight)
+         do i = 1, n - 1
+            value(i) = dt*sum(weight*self%relaxation(dt*(real(i, wp) + node)))
+         end do
+      else
+         lower = 0.0_wp
+         do i = 0, n - 1
+            upper = self%first%integral(dt*real(i + 1, wp))
+            value(i) = self%first_factor*(upper - lower)
+            lower = upper
+         end do
+      end if
+   end function step_integrals
+
+   !> Storage and loss modulus of the contact, Eq. (7): for a pair from the transform of E'(t),
+   !> E*(omega) = E_r + omega int_0^inf (E'(t) - E_r) (sin(omega t) + i cos(omega t)) dt
+   pure function dynamic_modulus(self, omega) result(modulus)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Frequency [rad/s], > 0
+      real(wp), intent(in) :: omega
+      !> Storage + i loss [Pa]
+      complex(wp) :: modulus
+
+      real(wp), allocatable :: sine_node(:), sine_weight(:), cosine_node(:), cosine_weight(:)
+      real(wp) :: rubbery_modulus, storage, loss
+
+      if (allocated(self%second)) then
+         rubbery_modulus = self%rubbery()
+         call fourier_rule(sine_node, sine_weight, cosine_node, cosine_weight)
+         storage = rubbery_modulus &
+            + sum(sine_weight*(self%relaxation(sine_node/omega) - rubbery_modulus))
+         loss = sum(cosine_weight*(self%relaxation(cosine_node/omega) - rubbery_modulus))
+         modulus = cmplx(storage, loss, wp)
+      else
+         modulus = self%first_factor*self%first%complex_modulus(cmplx(0.0_wp, omega, wp))
+      end if
+   end function dynamic_modulus
+
+   !> Glassy contact modulus E'(0), infinite for a singular kernel
+   pure function glassy(self) result(modulus)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%first_factor*self%first%glassy()
+      if (allocated(self%second)) &
+         modulus = 1.0_wp/(1.0_wp/modulus + 1.0_wp/(self%second_factor*self%second%glassy()))
+   end function glassy
+
+   !> Rubbery contact modulus E'(infinity)
+   pure function rubbery(self) result(modulus)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      real(wp) :: other
+
+      modulus = self%first_factor*self%first%rubbery()
+      if (allocated(self%second)) then
+         other = self%second_factor*self%second%rubbery()
+         if (min(modulus, other) > 0.0_wp) then
+            modulus = 1.0_wp/(1.0_wp/modulus + 1.0_wp/other)
+         else
+            modulus = 0.0_wp
+         end if
+      end if
+   end function rubbery
+
+   !> Viscosity of the dashpot in parallel with the contact modulus
+   pure function viscosity(self)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Viscosity [Pa s]
+      real(wp) :: viscosity
+
+      viscosity = 0.0_wp
+      if (.not. allocated(self%second)) viscosity = self%first_factor*self%first%viscosity
+   end function viscosity
+
+   !> The contact modulus as a sum of exponentials
+   pure subroutine exponentials(self, terms, exact)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> The sum; defined if `exact`
+      type(exponential_sum_t), intent(out) :: terms
+      !> Whether the contact modulus is a finite sum of exponentials
+      logical, intent(out) :: exact
+
+      type(exponential_sum_t) :: one
+
+      exact = .not. allocated(self%second)
+      if (exact) call self%first%exponentials(one, exact)
+      if (exact) terms = one%scaled(self%first_factor)
+   end subroutine exponentials
+
+end module vcor_impact_contact

@@ -1,0 +1,106 @@
+!> Outcome of an impact: the numbers that users ask for
+module vcor_impact_outcome
+   use vcor_constants, only : pi
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
+      col_plate_velocity, col_time, col_velocity, contact_separated, trajectory_t
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: outcome_t, evaluate
+
+   !> Outcome; of an impact that did not end in separation only `status`, `steps` and
+   !> `initial_energy` mean anything
+   type :: outcome_t
+      !> One of the `contact_*` constants of the trajectory
+      integer :: status = contact_separated
+      !> Number of time steps
+      integer :: steps = 0
+      !> Coefficient of restitution by the relative velocity, -s'(t0)/v0 [-]
+      real(wp) :: cor = 0.0_wp
+      !> Coefficient of restitution by the sphere's own velocity, -z'(t0)/v0 [-]
+      real(wp) :: cor_sphere = 0.0_wp
+      !> Contact time t0 [s]
+      real(wp) :: contact_time = 0.0_wp
+      !> Largest indentation [m]
+      real(wp) :: max_indentation = 0.0_wp
+      !> Its time [s]
+      real(wp) :: time_of_max_indentation = 0.0_wp
+      !> Largest force [N]
+      real(wp) :: max_force = 0.0_wp
+      !> Its time [s]
+      real(wp) :: time_of_max_force = 0.0_wp
+      !> Indentation left at t0 [m]
+      real(wp) :: residual_indentation = 0.0_wp
+      !> Residual over largest indentation [-]
+      real(wp) :: residual_ratio = 0.0_wp
+      !> Hysteresis W_h = int F ds [J]
+      real(wp) :: hysteresis_energy = 0.0_wp
+      !> Energy radiated into the plate W_wave = int F dU [J]
+      real(wp) :: wave_energy = 0.0_wp
+      !> Kinetic energy before the impact m v0^2/2 [J]
+      real(wp) :: initial_energy = 0.0_wp
+      !> Kinetic energy of the sphere after the impact m z'(t0)^2/2 [J]
+      real(wp) :: final_energy = 0.0_wp
+      !> What the budget misses: initial - final - hysteresis - wave energy [J]
+      real(wp) :: energy_imbalance = 0.0_wp
+      !> Lowest frequency that matters, 2 pi/t0 [rad/s]
+      real(wp) :: min_frequency = 0.0_wp
+      !> Zener's inelasticity parameter lambda [-]
+      real(wp) :: inelasticity = 0.0_wp
+      !> Loss tangent of the contact modulus at `min_frequency` [-]
+      real(wp) :: loss_tangent = 0.0_wp
+      !> Estimate of the error of `cor` [-]
+      real(wp) :: cor_error = 0.0_wp
+   end type outcome_t
+
+contains
+
+   !> Evaluate a trajectory
+   pure function evaluate(impact, trajectory) result(outcome)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Outcome
+      type(outcome_t) :: outcome
+
+      complex(wp) :: modulus
+      real(wp) :: impulse
+      integer :: n
+
+      n = trajectory%last
+      outcome%status = trajectory%status
+      outcome%steps = trajectory%steps
+      outcome%initial_energy = impact%initial_energy()
+      if (outcome%status /= contact_separated) return
+
+      impulse = trajectory%state(col_impulse, n)
+      outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
+      outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
+      outcome%contact_time = trajectory%state(col_time, n)
+      outcome%max_indentation = trajectory%max_indentation
+      outcome%time_of_max_indentation = trajectory%time_of_max_indentation
+      outcome%max_force = trajectory%max_force
+      outcome%time_of_max_force = trajectory%time_of_max_force
+      outcome%residual_indentation = trajectory%state(col_indentation, n)
+      outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
+
+      outcome%hysteresis_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
+         *trajectory%state(col_velocity, 0:n))
+      outcome%wave_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
+         *trajectory%state(col_plate_velocity, 0:n))
+      outcome%final_energy = outcome%initial_energy*outcome%cor_sphere**2
+      ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse
+      outcome%energy_imbalance = impulse*(impact%velocity - 0.5_wp*impulse/impact%mass) &
+         - outcome%hysteresis_energy - outcome%wave_energy
+
+      outcome%min_frequency = 2.0_wp*pi/outcome%contact_time
+      outcome%inelasticity = impact%inelasticity()
+      modulus = impact%modulus%dynamic_modulus(outcome%min_frequency)
+      outcome%loss_tangent = aimag(modulus)/real(modulus, wp)
+      outcome%cor_error = trajectory%cor_error
+   end function evaluate
+
+end module vcor_impact_outcome

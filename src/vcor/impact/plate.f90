@@ -1,0 +1,106 @@
+!> Plate that carries the impact's energy away in bending waves
+module vcor_impact_plate
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
+   implicit none
+   private
+
+   public :: plate_t, new_plate
+   public :: waves_none, waves_constant, waves_relaxing
+
+   !> Plate models: the plate does not move, U = 0
+   integer, parameter :: waves_none = 0
+   !> U = alpha(0) I, Zener 1941
+   integer, parameter :: waves_constant = 1
+   !> U = alpha(t) I, Eqs. (2) and (3)
+   integer, parameter :: waves_relaxing = 2
+
+   !> Deflection U of the plate's mid-plane under the impulse I of the contact force
+   type :: plate_t
+      private
+      !> One of the `waves_*` constants
+      integer :: waves = waves_none
+      !> sqrt(3 rho)/(16 rho h^2), so that alpha = coefficient/sqrt(E'_b) [m^2.5 s/kg^1.5 ..]
+      real(wp) :: coefficient = 0.0_wp
+      !> alpha(0) [m/(N s)]
+      real(wp) :: initial = 0.0_wp
+      !> Factor from E_b to E'_b [-]
+      real(wp) :: factor = 1.0_wp
+      !> Material of a plate whose alpha varies, otherwise not allocated
+      class(material_t), allocatable :: material
+   contains
+      !> Plate parameter alpha(t)
+      procedure :: alpha
+      !> d alpha/dt
+      procedure :: alpha_rate
+   end type plate_t
+
+contains
+
+   !> Build a plate
+   pure subroutine new_plate(self, material, half_thickness, waves, error)
+      !> The plate
+      type(plate_t), intent(out) :: self
+      !> Its material; a rigid one never moves
+      class(material_t), intent(in) :: material
+      !> Half thickness h [m], > 0 if the plate moves
+      real(wp), intent(in) :: half_thickness
+      !> One of the `waves_*` constants
+      integer, intent(in) :: waves
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (waves == waves_none .or. material%rigid) return
+      if (.not. half_thickness > 0.0_wp) then
+         call raise(error, error_input, 'a plate with waves needs a positive half_thickness')
+      else if (.not. material%density > 0.0_wp) then
+         call raise(error, error_input, 'a plate with waves needs the density of its material')
+      else if (.not. material%glassy() > 0.0_wp) then
+         call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
+            //'a dashpot: its modulus is 0 and its deflection infinite')
+      end if
+      if (allocated(error)) return
+
+      self%coefficient = sqrt(3.0_wp*material%density)/(16.0_wp*material%density*half_thickness**2)
+      self%factor = material%plane_strain_factor()
+      self%initial = self%coefficient/sqrt(self%factor*material%glassy())
+      self%waves = waves
+      ! an elastic plate is a constant one
+      if (waves == waves_relaxing .and. material%glassy() > material%rubbery()) &
+         allocate (self%material, source=material)
+   end subroutine new_plate
+
+   !> Zener's plate parameter alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3)
+   elemental function alpha(self, t) result(value)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Time since first contact [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Deflection per impulse [m/(N s)]
+      real(wp) :: value
+
+      if (allocated(self%material)) then
+         ! a modulus that has decayed to nothing is kept off zero: the plate then gives way at once
+         value = self%coefficient &
+            /sqrt(max(self%factor*self%material%relaxation(t), tiny(1.0_wp)))
+      else
+         value = self%initial
+      end if
+   end function alpha
+
+   !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
+   elemental function alpha_rate(self, t) result(value)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Time since first contact [s], t > 0
+      real(wp), intent(in) :: t
+      !> Rate [m/(N s^2)], >= 0
+      real(wp) :: value
+
+      value = 0.0_wp
+      if (allocated(self%material)) value = -0.5_wp*self%alpha(t)*self%material%rate(t) &
+         /max(self%material%relaxation(t), tiny(1.0_wp))
+   end function alpha_rate
+
+end module vcor_impact_plate

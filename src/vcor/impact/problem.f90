@@ -1,0 +1,213 @@
+!> The impact of a sphere on a plate: what a solver solves
+!>
+!> With z the sphere's displacement, U the plate's and s = z - U the indentation, Eq. (2) of Green's
+!> paper integrated twice from s(0) = 0, s'(0) = v0 is
+!>
+!>     s(t) = v0 t - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
+!>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^(3/2),    k(t) = (4/3) sqrt(R) E'(t)
+module vcor_impact_problem
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_contact, only : contact_modulus_t
+   use vcor_impact_plate, only : plate_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   implicit none
+   private
+
+   public :: impact_t, new_impact
+   public :: hertz_contact_time
+
+   !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
+   !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
+   real(wp), parameter :: hertz_contact_time = 3.2180654603_wp
+
+   !> An impact; immutable once built
+   type :: impact_t
+      !> Velocity of approach v0 [m/s], > 0
+      real(wp) :: velocity = 0.0_wp
+      !> Mass of the sphere m [kg], > 0
+      real(wp) :: mass = 0.0_wp
+      !> Firmness of a contact of unit modulus, (4/3) sqrt(R), R the Hertz radius [m^0.5]
+      real(wp) :: hertz_factor = 0.0_wp
+      !> Contact modulus E'(t)
+      type(contact_modulus_t) :: modulus
+      !> The plate
+      type(plate_t) :: plate
+   contains
+      !> Kernel k(t)
+      procedure :: kernel
+      !> Weights of the product integration
+      procedure :: kernel_step_integrals
+      !> The kernel as a sum of exponentials
+      procedure :: kernel_exponentials
+      !> Viscosity of the kernel's dashpot
+      procedure :: kernel_viscosity
+      !> Time scale of the contact
+      procedure :: time_scale
+      !> Time after which a contact counts as lasting
+      procedure :: patience
+      !> Zener's parameter lambda
+      procedure :: inelasticity
+      !> Kinetic energy of the sphere before the impact
+      procedure :: initial_energy
+   end type impact_t
+
+contains
+
+   !> Build an impact
+   pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, error)
+      !> The impact
+      type(impact_t), intent(out) :: self
+      !> Velocity of approach [m/s], > 0
+      real(wp), intent(in) :: velocity
+      !> Mass of the sphere [kg], > 0
+      real(wp), intent(in) :: mass
+      !> Radius of the sphere [m], > 0
+      real(wp), intent(in) :: radius
+      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
+      real(wp), intent(in) :: surface_radius
+      !> Contact modulus
+      type(contact_modulus_t), intent(in) :: modulus
+      !> Plate
+      type(plate_t), intent(in) :: plate
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: hertz_radius
+
+      if (.not. (velocity > 0.0_wp .and. mass > 0.0_wp .and. radius > 0.0_wp)) then
+         call raise(error, error_input, 'velocity, mass and radius of the sphere must be positive')
+      else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
+         call raise(error, error_input, &
+            'a concave surface must have a larger radius than the sphere, or Hertz does not apply')
+      end if
+      if (allocated(error)) return
+
+      ! footnote 2 of the paper: 1/R = 1/r + 1/r_surface
+      hertz_radius = radius
+      if (abs(surface_radius) > 0.0_wp) hertz_radius = radius/(1.0_wp + radius/surface_radius)
+      self%velocity = velocity
+      self%mass = mass
+      self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
+      self%modulus = modulus
+      self%plate = plate
+   end subroutine new_impact
+
+   !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)
+   elemental function kernel(self, t) result(k)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Kernel [N/m^1.5]
+      real(wp) :: k
+
+      k = self%hertz_factor*self%modulus%relaxation(t)
+   end function kernel
+
+   !> Integrals of the kernel over the steps from i dt to (i + 1) dt, i = 0 .. n - 1
+   pure function kernel_step_integrals(self, dt, n) result(value)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Length of the steps [s], > 0
+      real(wp), intent(in) :: dt
+      !> Number of steps
+      integer, intent(in) :: n
+      !> Integrals [N s/m^1.5], shape (0:n-1)
+      real(wp) :: value(0:n - 1)
+
+      value = self%hertz_factor*self%modulus%step_integrals(dt, n)
+   end function kernel_step_integrals
+
+   !> The kernel as a sum of exponentials, Eq. (17)
+   pure subroutine kernel_exponentials(self, terms, exact)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> The sum, in [N/m^1.5]; defined if `exact`
+      type(exponential_sum_t), intent(out) :: terms
+      !> Whether the kernel is a finite sum of exponentials
+      logical, intent(out) :: exact
+
+      type(exponential_sum_t) :: modulus
+
+      call self%modulus%exponentials(modulus, exact)
+      if (exact) terms = modulus%scaled(self%hertz_factor)
+   end subroutine kernel_exponentials
+
+   !> Viscosity of the kernel's dashpot
+   pure function kernel_viscosity(self) result(viscosity)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Viscosity [N s/m^1.5]
+      real(wp) :: viscosity
+
+      viscosity = self%hertz_factor*self%modulus%viscosity()
+   end function kernel_viscosity
+
+   !> Time scale of the contact: T = (m/(k sqrt(v0)))^(2/5) with the mean kernel over (0, T), so
+   !> that it is that of Hertz's elastic impact where the kernel is constant
+   pure function time_scale(self) result(scale)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time scale [s]
+      real(wp) :: scale
+
+      real(wp) :: firmness, integral(0:0), guess
+      integer :: iteration
+
+      ! start from T = 1 s and iterate; with a kernel t^-a the map contracts by 2a/5
+      scale = 1.0_wp
+      do iteration = 1, 60
+         integral = self%kernel_step_integrals(scale, 1)
+         firmness = (integral(0) + self%kernel_viscosity())/scale
+         guess = (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp
+         if (abs(guess - scale) <= 1.0e-3_wp*guess) exit
+         scale = guess
+      end do
+      scale = guess
+   end function time_scale
+
+   !> Time after which a contact counts as lasting where the user gives none: a thousand time scales,
+   !> those of the rubbery modulus if there is one
+   pure function patience(self) result(time)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time [s]
+      real(wp) :: time
+
+      real(wp) :: firmness
+
+      time = self%time_scale()
+      firmness = self%hertz_factor*self%modulus%rubbery()
+      if (firmness > 0.0_wp) &
+         time = max(time, (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp)
+      time = 1000.0_wp*time
+   end function patience
+
+   !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
+   !> that is infinite at t = 0, the limit of k(0) going there
+   pure function inelasticity(self) result(lambda)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Parameter [-]
+      real(wp) :: lambda
+
+      real(wp) :: firmness
+
+      lambda = 0.0_wp
+      firmness = self%hertz_factor*self%modulus%glassy()
+      if (firmness <= huge(1.0_wp)) lambda = self%plate%alpha(0.0_wp)*self%mass &
+         *(firmness*sqrt(self%velocity)/self%mass)**0.4_wp
+   end function inelasticity
+
+   !> Kinetic energy of the sphere before the impact, m v0^2/2
+   pure function initial_energy(self) result(energy)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Energy [J]
+      real(wp) :: energy
+
+      energy = 0.5_wp*self%mass*self%velocity**2
+   end function initial_energy
+
+end module vcor_impact_problem

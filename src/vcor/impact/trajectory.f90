@@ -1,0 +1,210 @@
+!> Course of an impact, as every solver returns it
+module vcor_impact_trajectory
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: trajectory_t
+   public :: columns, col_time, col_indentation, col_velocity, col_force, col_impulse
+   public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
+   public :: contact_separated, contact_lasting, contact_sticking
+
+   !> Rows of `state`: time [s]
+   integer, parameter :: col_time = 1
+   !> Indentation s [m]
+   integer, parameter :: col_indentation = 2
+   !> Relative velocity s' [m/s]
+   integer, parameter :: col_velocity = 3
+   !> Contact force F [N]
+   integer, parameter :: col_force = 4
+   !> Impulse I [N s]
+   integer, parameter :: col_impulse = 5
+   !> Displacement of the sphere z [m]
+   integer, parameter :: col_sphere = 6
+   !> Velocity of the sphere z' [m/s]
+   integer, parameter :: col_sphere_velocity = 7
+   !> Displacement of the plate U [m]
+   integer, parameter :: col_plate = 8
+   !> Velocity of the plate U' [m/s]
+   integer, parameter :: col_plate_velocity = 9
+   !> Number of rows of `state`
+   integer, parameter :: columns = 9
+
+   !> The force returned to zero: the bodies separated
+   integer, parameter :: contact_separated = 0
+   !> The time ran out in contact
+   integer, parameter :: contact_lasting = 1
+   !> All motion died out in contact
+   integer, parameter :: contact_sticking = 2
+
+   !> Course of an impact from first contact (node 0) on
+   type :: trajectory_t
+      !> One of the `contact_*` constants
+      integer :: status = contact_lasting
+      !> Number of time steps taken
+      integer :: steps = 0
+      !> Node at which contact ended or the computation stopped
+      integer :: last = 0
+      !> State at the nodes, shape (columns, 0:), used up to `last`
+      real(wp), allocatable :: state(:, :)
+      !> Weights of the nodes in integrals over the time of contact [s], shape (0:)
+      real(wp), allocatable :: weight(:)
+      !> Largest indentation [m]
+      real(wp) :: max_indentation = 0.0_wp
+      !> Its time [s]
+      real(wp) :: time_of_max_indentation = 0.0_wp
+      !> Largest force [N]
+      real(wp) :: max_force = 0.0_wp
+      !> Its time [s]
+      real(wp) :: time_of_max_force = 0.0_wp
+      !> Estimate of the error of the coefficient of restitution [-]
+      real(wp) :: cor_error = 0.0_wp
+      !> Stages of a collocation panel; 0: the nodes are a plain time series
+      integer :: stages = 0
+      !> Points of a panel in theta, its start first, shape (0:stages)
+      real(wp), allocatable :: point(:)
+      !> Their barycentric weights, shape (0:stages)
+      real(wp), allocatable :: barycentric(:)
+      !> Time in panel p: t = state(col_time, start) + map(1, p) theta + map(2, p) theta^2 [s],
+      !> shape (2, panels)
+      real(wp), allocatable :: map(:, :)
+   contains
+      !> Make room for nodes
+      procedure :: reserve
+      !> Note the map of a panel
+      procedure :: add_map
+      !> Whether all motion has died out
+      procedure :: is_stuck
+      !> State at equal steps of time
+      procedure :: sample
+   end type trajectory_t
+
+contains
+
+   !> Make room for at least `nodes` nodes after node 0; what is there stays
+   pure subroutine reserve(self, nodes)
+      !> The trajectory
+      class(trajectory_t), intent(inout) :: self
+      !> Number of nodes wanted
+      integer, intent(in) :: nodes
+
+      real(wp), allocatable :: state(:, :), weight(:)
+      integer :: room
+
+      if (allocated(self%weight)) then
+         if (ubound(self%weight, 1) >= nodes) return
+         room = max(nodes, 2*ubound(self%weight, 1))
+         allocate (state(columns, 0:room), weight(0:room))
+         state(:, 0:self%last) = self%state(:, 0:self%last)
+         weight(0:self%last) = self%weight(0:self%last)
+         call move_alloc(state, self%state)
+         call move_alloc(weight, self%weight)
+      else
+         allocate (self%state(columns, 0:nodes), self%weight(0:nodes))
+      end if
+   end subroutine reserve
+
+   !> Note the map of the panel that comes next
+   pure subroutine add_map(self, map)
+      !> The trajectory
+      class(trajectory_t), intent(inout) :: self
+      !> Coefficients of theta and theta^2 [s]
+      real(wp), intent(in) :: map(2)
+
+      real(wp), allocatable :: longer(:, :)
+
+      if (.not. allocated(self%map)) allocate (self%map(2, 8))
+      if (self%steps == size(self%map, 2)) then
+         allocate (longer(2, 2*self%steps))
+         longer(:, :self%steps) = self%map
+         call move_alloc(longer, self%map)
+      end if
+      self%map(:, self%steps + 1) = map
+   end subroutine add_map
+
+   !> Whether all motion has died out in contact at the last node: what energy is left cannot make a
+   !> rebound that deserves the name
+   pure function is_stuck(self, mass)
+      !> The trajectory
+      class(trajectory_t), intent(in) :: self
+      !> Mass of the sphere [kg]
+      real(wp), intent(in) :: mass
+      !> Whether the sphere sticks
+      logical :: is_stuck
+
+      ! a rebound with all of it had a coefficient of restitution of 1e-7
+      real(wp), parameter :: negligible = 1.0e-14_wp
+
+      associate (now => self%state(:, self%last), first => self%state(:, 0))
+         is_stuck = 0.5_wp*mass*(now(col_velocity)**2 + now(col_sphere_velocity)**2) &
+            + now(col_force)*now(col_indentation) &
+            <= negligible*0.5_wp*mass*first(col_velocity)**2
+      end associate
+   end function is_stuck
+
+   !> State at equal steps of time from first contact to the last node: interpolated by the
+   !> collocation polynomials, or the nodes themselves where the solver works in equal steps
+   pure subroutine sample(self, count, state)
+      !> The trajectory
+      class(trajectory_t), intent(in) :: self
+      !> Number of steps wanted of a collocation solution, > 0
+      integer, intent(in) :: count
+      !> State, shape (columns, 0:)
+      real(wp), allocatable, intent(out) :: state(:, :)
+
+      real(wp) :: time, theta, offset, c(0:self%stages)
+      integer :: i, panel, first
+
+      if (self%stages == 0) then
+         allocate (state(columns, 0:self%last))
+         state = self%state(:, 0:self%last)
+         return
+      end if
+
+      allocate (state(columns, 0:count))
+      state(:, 0) = self%state(:, 0)
+      panel = 1
+      first = 0
+      do i = 1, count - 1
+         time = self%state(col_time, self%last)*(real(i, wp)/real(count, wp))
+         do while (time > self%state(col_time, first + self%stages) &
+                   .and. first + self%stages < self%last)
+            first = first + self%stages
+            panel = panel + 1
+         end do
+         ! the root of the quadratic map in its stable form
+         offset = time - self%state(col_time, first)
+         theta = 2.0_wp*offset/(self%map(1, panel) &
+            + sqrt(self%map(1, panel)**2 + 4.0_wp*self%map(2, panel)*offset))
+         c = lagrange(self%point, self%barycentric, theta)
+         state(:, i) = matmul(self%state(:, first:first + self%stages), c)
+         state(col_time, i) = time
+      end do
+      state(:, count) = self%state(:, self%last)
+   end subroutine sample
+
+   !> Lagrange basis polynomials at an argument
+   pure function lagrange(point, barycentric, theta) result(c)
+      !> Points, shape (0:n)
+      real(wp), intent(in) :: point(0:)
+      !> Barycentric weights, shape (0:n)
+      real(wp), intent(in) :: barycentric(0:)
+      !> Argument
+      real(wp), intent(in) :: theta
+      !> Values, shape (0:n)
+      real(wp) :: c(0:ubound(point, 1))
+
+      integer :: j
+
+      do j = 0, ubound(point, 1)
+         if (abs(theta - point(j)) < 1.0e-14_wp) then
+            c = 0.0_wp
+            c(j) = 1.0_wp
+            return
+         end if
+         c(j) = barycentric(j)/(theta - point(j))
+      end do
+      c = c/sum(c)
+   end function lagrange
+
+end module vcor_impact_trajectory

@@ -1,0 +1,43 @@
+!> Sum of decaying exponentials: the form of a modulus that turns the hereditary integral into
+!> internal variables
+module vcor_material_exponential_sum
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: exponential_sum_t
+
+   !> E(t) = equilibrium + sum_k moduli(k) exp(-rates(k) t) + viscosity delta(t),
+   !> Eq. (17) of Green's paper with a dashpot beside the Maxwell elements
+   type :: exponential_sum_t
+      !> What is left after all relaxation [Pa], >= 0
+      real(wp) :: equilibrium = 0.0_wp
+      !> Moduli of the Maxwell elements [Pa], > 0, shape (n)
+      real(wp), allocatable :: moduli(:)
+      !> Relaxation rates of the Maxwell elements [1/s], > 0, shape (n)
+      real(wp), allocatable :: rates(:)
+      !> Viscosity of the dashpot in parallel [Pa s], >= 0
+      real(wp) :: viscosity = 0.0_wp
+   contains
+      !> The same sum times a factor
+      procedure :: scaled
+   end type exponential_sum_t
+
+contains
+
+   !> The sum times a factor
+   pure function scaled(self, factor) result(product)
+      !> The sum
+      class(exponential_sum_t), intent(in) :: self
+      !> Factor, > 0
+      real(wp), intent(in) :: factor
+      !> factor * self
+      type(exponential_sum_t) :: product
+
+      product%equilibrium = factor*self%equilibrium
+      allocate (product%moduli, source=factor*self%moduli)
+      allocate (product%rates, source=self%rates)
+      product%viscosity = factor*self%viscosity
+   end function scaled
+
+end module vcor_material_exponential_sum

@@ -1,0 +1,153 @@
+!> Fractional Kelvin-Voigt solid: a spring beside a fractional dashpot, the model that Bagley and
+!> Torvik fitted to BUTYL B252
+module vcor_material_power_law
+   use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_type, only : material_t
+   implicit none
+   private
+
+   public :: power_law_t, new_power_law
+
+   !> E(t) = E_0 + C t^-a/Gamma(1 - a), Eq. (23-b) with a = 1/2
+   type, extends(material_t) :: power_law_t
+      private
+      !> Equilibrium modulus E_0 [Pa]
+      real(wp) :: equilibrium = 0.0_wp
+      !> Coefficient C [Pa s^a]
+      real(wp) :: coefficient = 0.0_wp
+      !> Exponent a
+      real(wp) :: exponent = 0.5_wp
+   contains
+      procedure :: relaxation
+      procedure :: rate
+      procedure :: integral
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type power_law_t
+
+contains
+
+   !> Build a power law
+   pure subroutine new_power_law(self, equilibrium, coefficient, exponent, error)
+      !> The material
+      type(power_law_t), intent(out) :: self
+      !> Equilibrium modulus E_0 [Pa], >= 0
+      real(wp), intent(in) :: equilibrium
+      !> Coefficient C [Pa s^a], > 0
+      real(wp), intent(in) :: coefficient
+      !> Exponent a, 0 < a < 1
+      real(wp), intent(in) :: exponent
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. (equilibrium >= 0.0_wp .and. coefficient > 0.0_wp)) then
+         call raise(error, error_input, &
+            'a power law needs equilibrium_modulus >= 0 and coefficient > 0')
+      else if (.not. (exponent > 0.0_wp .and. exponent < 1.0_wp)) then
+         call raise(error, error_input, 'the exponent of a power law must lie between 0 and 1')
+      end if
+      if (allocated(error)) return
+
+      self%equilibrium = equilibrium
+      self%coefficient = coefficient
+      self%exponent = exponent
+   end subroutine new_power_law
+
+   !> Relaxation modulus E(t), infinite at t = 0
+   elemental function relaxation(self, t) result(value)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      if (t > 0.0_wp) then
+         value = self%equilibrium &
+            + self%coefficient*t**(-self%exponent)/gamma(1.0_wp - self%exponent)
+      else
+         value = ieee_value(1.0_wp, ieee_positive_inf)
+      end if
+   end function relaxation
+
+   !> Rate of relaxation dE/dt, minus infinity at t = 0
+   elemental function rate(self, t) result(value)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Rate [Pa/s], <= 0
+      real(wp) :: value
+
+      if (t > 0.0_wp) then
+         value = -self%exponent*self%coefficient*t**(-self%exponent - 1.0_wp) &
+            /gamma(1.0_wp - self%exponent)
+      else
+         value = ieee_value(1.0_wp, ieee_negative_inf)
+      end if
+   end function rate
+
+   !> Integral of E from 0 to t: E_0 t + C t^(1-a)/Gamma(2 - a)
+   elemental function integral(self, t) result(value)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Upper limit [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      value = self%equilibrium*t &
+         + self%coefficient*t**(1.0_wp - self%exponent)/gamma(2.0_wp - self%exponent)
+   end function integral
+
+   !> Complex modulus E_0 + C s^a, the transform of Eq. (23)
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Laplace variable [1/s], not on the negative real axis
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      modulus = self%equilibrium + self%coefficient*s**self%exponent
+   end function complex_modulus
+
+   !> Glassy modulus: infinite
+   pure function glassy(self) result(modulus)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%relaxation(0.0_wp)
+   end function glassy
+
+   !> Rubbery modulus E_0
+   pure function rubbery(self) result(modulus)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium
+   end function rubbery
+
+   !> A power law is no finite sum of exponentials
+   pure subroutine exponentials(self, terms, exact)
+      !> The material
+      class(power_law_t), intent(in) :: self
+      !> Without terms
+      type(exponential_sum_t), intent(out) :: terms
+      !> .false.
+      logical, intent(out) :: exact
+
+      exact = .false.
+      terms%equilibrium = self%equilibrium
+   end subroutine exponentials
+
+end module vcor_material_power_law

@@ -1,0 +1,246 @@
+!> Generalised Maxwell solid: a Prony series with an optional dashpot in parallel. The elastic
+!> solid (no Maxwell element) and the standard linear solid (one) are members of it, and so is
+!> the rigid body, the elastic solid without deformation
+module vcor_material_prony
+   use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_type, only : material_t
+   implicit none
+   private
+
+   public :: prony_t, new_prony, new_sls, new_elastic, new_rigid
+
+   !> E(t) = E_0 + sum_i E_i exp(-b_i t) + viscosity delta(t), Eqs. (17) and (26)
+   type, extends(material_t) :: prony_t
+      private
+      !> Equilibrium modulus E_0 [Pa]
+      real(wp) :: equilibrium = 0.0_wp
+      !> Moduli E_i [Pa], shape (n)
+      real(wp), allocatable :: moduli(:)
+      !> Rates b_i = 1/tau_i [1/s], shape (n)
+      real(wp), allocatable :: rates(:)
+   contains
+      procedure :: relaxation
+      procedure :: rate
+      procedure :: integral
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type prony_t
+
+contains
+
+   !> Build a Prony series
+   pure subroutine new_prony(self, equilibrium, moduli, rates, viscosity, error)
+      !> The material
+      type(prony_t), intent(out) :: self
+      !> Equilibrium modulus [Pa], >= 0
+      real(wp), intent(in) :: equilibrium
+      !> Moduli of the terms [Pa], > 0, shape (n)
+      real(wp), intent(in) :: moduli(:)
+      !> Rates of the terms [1/s], > 0, shape (n)
+      real(wp), intent(in) :: rates(:)
+      !> Viscosity of the dashpot [Pa s], >= 0
+      real(wp), intent(in) :: viscosity
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (size(moduli) /= size(rates)) then
+         call raise(error, error_input, 'a Prony series needs as many rates as moduli')
+      else if (.not. (all(moduli > 0.0_wp) .and. all(rates > 0.0_wp))) then
+         call raise(error, error_input, 'the moduli and rates of a Prony series must be positive')
+      else if (.not. (equilibrium >= 0.0_wp .and. viscosity >= 0.0_wp)) then
+         call raise(error, error_input, &
+            'equilibrium modulus and viscosity of a Prony series must not be negative')
+      else if (.not. equilibrium + sum(moduli) + viscosity > 0.0_wp) then
+         call raise(error, error_input, 'a Prony series needs at least one term')
+      end if
+      if (allocated(error)) return
+
+      self%equilibrium = equilibrium
+      allocate (self%moduli, source=moduli)
+      allocate (self%rates, source=rates)
+      self%viscosity = viscosity
+   end subroutine new_prony
+
+   !> Build the standard linear solid of Eq. (13): E_g (a/b + (1 - a/b) exp(-b t)). With b = 0 it
+   !> is the elastic solid E_g, the limit by which the paper checks its scheme
+   pure subroutine new_sls(self, glassy_modulus, alpha, beta, error)
+      !> The material
+      type(prony_t), intent(out) :: self
+      !> Glassy modulus E_g [Pa], > 0
+      real(wp), intent(in) :: glassy_modulus
+      !> Parameter a [1/s], 0 <= a <= b; the rubbery modulus is E_g a/b
+      real(wp), intent(in) :: alpha
+      !> Rate of relaxation b [1/s], >= 0
+      real(wp), intent(in) :: beta
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: rubbery_fraction
+
+      if (.not. glassy_modulus > 0.0_wp) then
+         call raise(error, error_input, &
+            'the glassy modulus of a standard linear solid must be positive')
+      else if (.not. (alpha >= 0.0_wp .and. beta >= alpha)) then
+         call raise(error, error_input, 'a standard linear solid needs 0 <= alpha <= beta, ' &
+            //'or its rubbery modulus exceeds the glassy one')
+      end if
+      if (allocated(error)) return
+
+      rubbery_fraction = 1.0_wp
+      if (beta > 0.0_wp) rubbery_fraction = alpha/beta
+      if (rubbery_fraction < 1.0_wp) then
+         call new_prony(self, glassy_modulus*rubbery_fraction, &
+            [glassy_modulus*(1.0_wp - rubbery_fraction)], [beta], 0.0_wp, error)
+      else
+         call new_elastic(self, glassy_modulus, error)
+      end if
+   end subroutine new_sls
+
+   !> Build an elastic solid
+   pure subroutine new_elastic(self, modulus, error)
+      !> The material
+      type(prony_t), intent(out) :: self
+      !> Young's modulus [Pa], > 0
+      real(wp), intent(in) :: modulus
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp), parameter :: none(0) = [real(wp) ::]
+
+      call new_prony(self, modulus, none, none, 0.0_wp, error)
+   end subroutine new_elastic
+
+   !> Build a rigid body: every modulus is infinite
+   pure subroutine new_rigid(self)
+      !> The material
+      type(prony_t), intent(out) :: self
+
+      self%rigid = .true.
+      self%equilibrium = ieee_value(1.0_wp, ieee_positive_inf)
+      allocate (self%moduli(0), self%rates(0))
+   end subroutine new_rigid
+
+   !> Relaxation modulus E(t) for t > 0
+   elemental function relaxation(self, t) result(value)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      integer :: i
+
+      value = self%equilibrium
+      do i = 1, size(self%moduli)
+         value = value + self%moduli(i)*exp(-self%rates(i)*t)
+      end do
+   end function relaxation
+
+   !> Rate of relaxation dE/dt
+   elemental function rate(self, t) result(value)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Rate [Pa/s], <= 0
+      real(wp) :: value
+
+      integer :: i
+
+      value = 0.0_wp
+      do i = 1, size(self%moduli)
+         value = value - self%moduli(i)*self%rates(i)*exp(-self%rates(i)*t)
+      end do
+   end function rate
+
+   !> Integral of E from 0 to t: E_0 t + sum E_i (1 - exp(-b_i t))/b_i
+   elemental function integral(self, t) result(value)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Upper limit [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      integer :: i
+
+      value = self%equilibrium*t
+      do i = 1, size(self%moduli)
+         value = value - self%moduli(i)*exp_minus_one(-self%rates(i)*t)/self%rates(i)
+      end do
+   end function integral
+
+   !> exp(x) - 1 without cancellation: 2 sinh(x/2) exp(x/2)
+   elemental function exp_minus_one(x) result(y)
+      !> Argument, <= 0
+      real(wp), intent(in) :: x
+      !> exp(x) - 1
+      real(wp) :: y
+
+      if (x < -1.0_wp) then
+         y = exp(x) - 1.0_wp
+      else
+         y = 2.0_wp*sinh(0.5_wp*x)*exp(0.5_wp*x)
+      end if
+   end function exp_minus_one
+
+   !> Complex modulus E_0 + sum E_i s/(s + b_i) + viscosity s, Eq. (27)
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Laplace variable [1/s], not at -b_i
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      integer :: i
+
+      modulus = self%equilibrium + self%viscosity*s
+      do i = 1, size(self%moduli)
+         modulus = modulus + self%moduli(i)*s/(s + self%rates(i))
+      end do
+   end function complex_modulus
+
+   !> Glassy modulus E_0 + sum E_i, the dashpot left out
+   pure function glassy(self) result(modulus)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium + sum(self%moduli)
+   end function glassy
+
+   !> Rubbery modulus E_0
+   pure function rubbery(self) result(modulus)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium
+   end function rubbery
+
+   !> The series itself
+   pure subroutine exponentials(self, terms, exact)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> The series
+      type(exponential_sum_t), intent(out) :: terms
+      !> .true.
+      logical, intent(out) :: exact
+
+      exact = .true.
+      terms%equilibrium = self%equilibrium
+      allocate (terms%moduli, source=self%moduli)
+      allocate (terms%rates, source=self%rates)
+      terms%viscosity = self%viscosity
+   end subroutine exponentials
+
+end module vcor_material_prony

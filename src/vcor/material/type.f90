@@ -1,0 +1,98 @@
+!> What a solver may ask of a linear viscoelastic material
+module vcor_material_type
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   implicit none
+   private
+
+   public :: material_t
+
+   !> A material; immutable once built, so that threads can share it
+   type, abstract :: material_t
+      !> Name that cases call it by
+      character(len=:), allocatable :: name
+      !> Mass density [kg/m3], > 0; 0 = not known
+      real(wp) :: density = 0.0_wp
+      !> Poisson's ratio [-], -1 < nu <= 0.5, constant in time
+      real(wp) :: poisson_ratio = 0.5_wp
+      !> Does not deform at all: the modulus is infinite
+      logical :: rigid = .false.
+      !> Viscosity of a dashpot in parallel: E(t) has a term viscosity*delta(t) [Pa s], >= 0,
+      !> which `relaxation` and `integral` leave out
+      real(wp) :: viscosity = 0.0_wp
+   contains
+      !> Relaxation modulus E(t)
+      procedure(of_time_i), deferred :: relaxation
+      !> Rate of relaxation dE/dt
+      procedure(of_time_i), deferred :: rate
+      !> Integral of the relaxation modulus from 0 to t
+      procedure(of_time_i), deferred :: integral
+      !> Complex modulus s L{E}(s)
+      procedure(complex_modulus_i), deferred :: complex_modulus
+      !> Glassy modulus E(0), infinite for a singular kernel
+      procedure(limit_i), deferred :: glassy
+      !> Rubbery modulus E(infinity)
+      procedure(limit_i), deferred :: rubbery
+      !> The modulus as a sum of exponentials
+      procedure(exponentials_i), deferred :: exponentials
+      !> Factor 1/(1 - nu^2) from E to the plane-strain modulus E' of Eq. (1)
+      procedure :: plane_strain_factor
+   end type material_t
+
+   abstract interface
+      !> A function of time
+      elemental function of_time_i(self, t) result(value)
+         import :: material_t, wp
+         !> The material
+         class(material_t), intent(in) :: self
+         !> Time since the strain step [s], t >= 0
+         real(wp), intent(in) :: t
+         !> E [Pa], dE/dt [Pa/s] or the integral [Pa s]
+         real(wp) :: value
+      end function of_time_i
+
+      !> A function of the Laplace variable
+      elemental function complex_modulus_i(self, s) result(modulus)
+         import :: material_t, wp
+         !> The material
+         class(material_t), intent(in) :: self
+         !> Laplace variable [1/s], not on the negative real axis; i omega gives storage and loss
+         complex(wp), intent(in) :: s
+         !> Complex modulus [Pa]
+         complex(wp) :: modulus
+      end function complex_modulus_i
+
+      !> A limit of the relaxation modulus
+      pure function limit_i(self) result(modulus)
+         import :: material_t, wp
+         !> The material
+         class(material_t), intent(in) :: self
+         !> Modulus [Pa]
+         real(wp) :: modulus
+      end function limit_i
+
+      !> The modulus as a sum of exponentials
+      pure subroutine exponentials_i(self, terms, exact)
+         import :: exponential_sum_t, material_t
+         !> The material
+         class(material_t), intent(in) :: self
+         !> The sum; defined if `exact`
+         type(exponential_sum_t), intent(out) :: terms
+         !> Whether the material is a finite sum of exponentials
+         logical, intent(out) :: exact
+      end subroutine exponentials_i
+   end interface
+
+contains
+
+   !> Factor from E to the plane-strain modulus: E' = E/(1 - nu^2), Eq. (1)
+   elemental function plane_strain_factor(self) result(factor)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> 1/(1 - nu^2) [-]
+      real(wp) :: factor
+
+      factor = 1.0_wp/(1.0_wp - self%poisson_ratio**2)
+   end function plane_strain_factor
+
+end module vcor_material_type

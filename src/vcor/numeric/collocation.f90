@@ -1,0 +1,338 @@
+!> Radau IIA collocation with the integration matrices diagonalised once and for all
+!>
+!> On a panel of time the independent variable is theta in [0, 1] with the quadratic map
+!>
+!>     t = t_n + scale*(slope*theta + bend*theta**2)
+!>
+!> so that an integral from the start of the panel to the stages is the product with scale*B,
+!> B = A diag(slope + 2 bend c), A the Radau IIA matrix and c its nodes. A step of length h in
+!> x = sqrt(t) from x = n h is scale = h^2, slope = 2 n, bend = 1; a step in t itself is slope = 1,
+!> bend = 0. Both families have few members, hence B = V diag(lambda) V^-1 is made in advance,
+!> and any function of scale*B costs a handful of scalar operations per eigenvalue.
+!>
+!> Radau IIA: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996),
+!> section IV.5.
+module vcor_numeric_collocation
+   use vcor_error, only : error_internal, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_numeric_lapack, only : dgeev, dgesv, zgesv
+   use vcor_numeric_legendre, only : legendre, radau_nodes
+   implicit none
+   private
+
+   public :: collocation_t, panel_map_t, new_collocation
+   public :: linear, max_stages
+
+   !> Largest number of stages: beyond, the eigenvectors lose too many digits
+   integer, parameter :: max_stages = 10
+   !> Index of the map of a step in t
+   integer, parameter :: linear = -1
+
+   !> Integration matrix B of one map, diagonalised; of each complex pair one member is kept
+   type :: panel_map_t
+      !> Linear coefficient of the map
+      real(wp) :: slope = 0.0_wp
+      !> Quadratic coefficient of the map
+      real(wp) :: bend = 0.0_wp
+      !> Number of eigenvalues kept, between half and all of the stages
+      integer :: pairs = 0
+      !> Eigenvalues, shape (pairs)
+      complex(wp), allocatable :: eigenvalue(:)
+      !> V, one column per kept eigenvalue: real parts, shape (stages, pairs)
+      real(wp), allocatable :: right_re(:, :)
+      !> V: imaginary parts, shape (stages, pairs)
+      real(wp), allocatable :: right_im(:, :)
+      !> V^-1, doubled where a conjugate is left out: real parts, shape (pairs, stages)
+      real(wp), allocatable :: left_re(:, :)
+      !> V^-1: imaginary parts, shape (pairs, stages)
+      real(wp), allocatable :: left_im(:, :)
+      !> V^-1 applied to a vector of ones, shape (pairs)
+      complex(wp), allocatable :: left_one(:)
+   end type panel_map_t
+
+   !> A Radau IIA rule
+   type :: collocation_t
+      !> Number of stages
+      integer :: stages = 0
+      !> Nodes in (0, 1], the last at 1, shape (stages)
+      real(wp), allocatable :: node(:)
+      !> Quadrature weights of the nodes, shape (stages)
+      real(wp), allocatable :: weight(:)
+      !> Nodes with the start of the panel before them, shape (0:stages)
+      real(wp), allocatable :: point(:)
+      !> Barycentric weights of `point`, shape (0:stages)
+      real(wp), allocatable :: barycentric(:)
+      !> Barycentric weights of `node`, shape (stages)
+      real(wp), allocatable :: barycentric_node(:)
+      !> Differentiation matrix on `point`, shape (0:stages, 0:stages)
+      real(wp), allocatable :: derivative(:, :)
+      !> Maps: index n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
+      !> shape (linear:)
+      type(panel_map_t), allocatable :: map(:)
+   contains
+      !> Value of a polynomial given at the points
+      procedure :: interpolate
+      !> Value at theta = 0 of the polynomial given at the nodes alone
+      procedure :: extrapolate_to_start
+      !> Zero of a polynomial between two arguments
+      procedure :: crossing
+   end type collocation_t
+
+contains
+
+   !> Build a rule and the diagonalised maps
+   subroutine new_collocation(self, stages, steps, error)
+      !> The rule
+      type(collocation_t), intent(out) :: self
+      !> Number of stages, 2 .. max_stages
+      integer, intent(in) :: stages
+      !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, steps >= 0
+      integer, intent(in) :: steps
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: matrix(stages, stages)
+      integer :: n
+
+      self%stages = stages
+      allocate (self%node(stages), self%weight(stages), self%point(0:stages))
+      call radau_nodes(self%node)
+      self%point(0) = 0.0_wp
+      self%point(1:) = self%node
+      allocate (self%barycentric(0:stages), self%barycentric_node(stages))
+      self%barycentric = barycentric_weights(self%point)
+      self%barycentric_node = barycentric_weights(self%node)
+      allocate (self%derivative(0:stages, 0:stages))
+      self%derivative = differentiation_matrix(self%point, self%barycentric)
+      call integration_matrix(self%node, matrix, error)
+      if (allocated(error)) return
+      self%weight = matrix(stages, :)
+
+      allocate (self%map(linear:steps))
+      call diagonalise(matrix, self%node, 1.0_wp, 0.0_wp, self%map(linear), error)
+      if (allocated(error)) return
+      do n = 0, steps
+         call diagonalise(matrix, self%node, 2.0_wp*real(n, wp), 1.0_wp, self%map(n), error)
+         if (allocated(error)) return
+      end do
+   end subroutine new_collocation
+
+   !> Radau IIA matrix: A_ij = int_0^{c_i} l_j, through Legendre polynomials, whose integrals are
+   !> known: int_{-1}^{x} P_k = (P_{k+1} - P_{k-1})/(2k + 1)
+   subroutine integration_matrix(node, matrix, error)
+      !> Nodes in (0, 1], shape (n)
+      real(wp), intent(in) :: node(:)
+      !> Integrals, shape (n, n)
+      real(wp), intent(out) :: matrix(:, :)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: value(size(node), size(node)), integral(size(node), size(node))
+      real(wp) :: p(0:size(node))
+      integer :: pivot(size(node)), n, i, k, info
+
+      n = size(node)
+      do i = 1, n
+         p = legendre(n, 2.0_wp*node(i) - 1.0_wp)
+         value(:, i) = p(0:n - 1)
+         integral(1, i) = node(i)
+         do k = 1, n - 1
+            integral(k + 1, i) = 0.5_wp*(p(k + 1) - p(k - 1))/real(2*k + 1, wp)
+         end do
+      end do
+      ! A value^T = integral^T, with the transposes stored: value (A^T) = integral
+      call dgesv(n, n, value, n, pivot, integral, n, info)
+      if (info /= 0) then
+         call raise(error, error_internal, 'collocation: the Radau matrix is singular')
+         return
+      end if
+      matrix = transpose(integral)
+   end subroutine integration_matrix
+
+   !> Eigenvalues and eigenvectors of B = A diag(slope + 2 bend c)
+   subroutine diagonalise(matrix, node, slope, bend, map, error)
+      !> Radau IIA matrix A, shape (n, n)
+      real(wp), intent(in) :: matrix(:, :)
+      !> Nodes c, shape (n)
+      real(wp), intent(in) :: node(:)
+      !> Linear coefficient of the map
+      real(wp), intent(in) :: slope
+      !> Quadratic coefficient of the map
+      real(wp), intent(in) :: bend
+      !> The diagonalised map
+      type(panel_map_t), intent(out) :: map
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: b(size(node), size(node)), wr(size(node)), wi(size(node))
+      real(wp) :: vl(1, 1), vr(size(node), size(node)), work(8*size(node))
+      complex(wp) :: v(size(node), size(node)), inverse(size(node), size(node))
+      integer :: pivot(size(node)), kept(size(node)), n, j, m, info
+
+      n = size(node)
+      do j = 1, n
+         b(:, j) = matrix(:, j)*(slope + 2.0_wp*bend*node(j))
+      end do
+      call dgeev('N', 'V', n, b, n, wr, wi, vl, 1, vr, n, work, size(work), info)
+      if (info == 0) then
+         m = 0
+         j = 1
+         do while (j <= n)
+            m = m + 1
+            kept(m) = j
+            if (wi(j) > 0.0_wp) then
+               v(:, j) = cmplx(vr(:, j), vr(:, j + 1), wp)
+               v(:, j + 1) = conjg(v(:, j))
+               j = j + 2
+            else
+               v(:, j) = cmplx(vr(:, j), 0.0_wp, wp)
+               j = j + 1
+            end if
+         end do
+         inverse = (0.0_wp, 0.0_wp)
+         do j = 1, n
+            inverse(j, j) = (1.0_wp, 0.0_wp)
+         end do
+         block
+            complex(wp) :: factors(n, n)
+            factors = v
+            call zgesv(n, n, factors, n, pivot, inverse, n, info)
+         end block
+      end if
+      if (info /= 0) then
+         call raise(error, error_internal, 'collocation: the integration matrix has no eigenvectors')
+         return
+      end if
+
+      map%slope = slope
+      map%bend = bend
+      map%pairs = m
+      allocate (map%eigenvalue(m), map%right_re(n, m), map%right_im(n, m))
+      allocate (map%left_re(m, n), map%left_im(m, n), map%left_one(m))
+      do j = 1, m
+         map%eigenvalue(j) = cmplx(wr(kept(j)), wi(kept(j)), wp)
+         map%right_re(:, j) = real(v(:, kept(j)), wp)
+         map%right_im(:, j) = aimag(v(:, kept(j)))
+         if (wi(kept(j)) > 0.0_wp) inverse(kept(j), :) = 2.0_wp*inverse(kept(j), :)
+         map%left_re(j, :) = real(inverse(kept(j), :), wp)
+         map%left_im(j, :) = aimag(inverse(kept(j), :))
+         map%left_one(j) = sum(inverse(kept(j), :))
+      end do
+   end subroutine diagonalise
+
+   !> Barycentric weights of a set of nodes
+   pure function barycentric_weights(x) result(w)
+      !> Nodes, all different, shape (n)
+      real(wp), intent(in) :: x(:)
+      !> Weights, shape (n)
+      real(wp) :: w(size(x))
+
+      integer :: i
+
+      do i = 1, size(x)
+         w(i) = 1.0_wp/(product(x(i) - x(:i - 1))*product(x(i) - x(i + 1:)))
+      end do
+   end function barycentric_weights
+
+   !> Differentiation matrix: the derivative at node i of the polynomial with values y is row i . y
+   pure function differentiation_matrix(x, w) result(d)
+      !> Nodes, shape (n)
+      real(wp), intent(in) :: x(:)
+      !> Their barycentric weights, shape (n)
+      real(wp), intent(in) :: w(:)
+      !> Matrix, shape (n, n)
+      real(wp) :: d(size(x), size(x))
+
+      integer :: i, j
+
+      do j = 1, size(x)
+         do i = 1, size(x)
+            if (i /= j) d(i, j) = (w(j)/w(i))/(x(i) - x(j))
+         end do
+      end do
+      do i = 1, size(x)
+         d(i, i) = -sum(d(i, :i - 1)) - sum(d(i, i + 1:))
+      end do
+   end function differentiation_matrix
+
+   !> Value of the polynomial that takes the given values at the points
+   pure function interpolate(self, value, theta) result(y)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `point`, shape (0:stages)
+      real(wp), intent(in) :: value(0:)
+      !> Argument, 0 .. 1, or somewhat beyond to extrapolate
+      real(wp), intent(in) :: theta
+      !> Value
+      real(wp) :: y
+
+      real(wp) :: numerator, denominator, d, w
+      integer :: j
+
+      numerator = 0.0_wp
+      denominator = 0.0_wp
+      do j = 0, self%stages
+         d = theta - self%point(j)
+         if (abs(d) < 1.0e-15_wp) then
+            y = value(j)
+            return
+         end if
+         w = self%barycentric(j)/d
+         numerator = numerator + w*value(j)
+         denominator = denominator + w
+      end do
+      y = numerator/denominator
+   end function interpolate
+
+   !> Value at theta = 0 of the polynomial that takes the given values at the nodes: how far it
+   !> misses the value known there is the error of the polynomial at that end
+   pure function extrapolate_to_start(self, value) result(y)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `node`, shape (stages)
+      real(wp), intent(in) :: value(:)
+      !> Value at 0
+      real(wp) :: y
+
+      y = sum(self%barycentric_node*value/self%node)/sum(self%barycentric_node/self%node)
+   end function extrapolate_to_start
+
+   !> Zero of the polynomial with the given values between two arguments where its signs differ,
+   !> by the Illinois method
+   pure function crossing(self, value, lower, upper) result(theta)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `point`, shape (0:stages)
+      real(wp), intent(in) :: value(0:)
+      !> Lower end of the bracket
+      real(wp), intent(in) :: lower
+      !> Upper end of the bracket
+      real(wp), intent(in) :: upper
+      !> Zero
+      real(wp) :: theta
+
+      real(wp) :: a, b, fa, fb, f
+      integer :: iteration
+
+      a = lower
+      b = upper
+      fa = self%interpolate(value, a)
+      fb = self%interpolate(value, b)
+      theta = b
+      do iteration = 1, 100
+         if (abs(b - a) <= 1.0e-14_wp .or. .not. abs(fb - fa) > 0.0_wp) exit
+         theta = (a*fb - b*fa)/(fb - fa)
+         f = self%interpolate(value, theta)
+         if (.not. abs(f) > 0.0_wp) exit
+         if ((f > 0.0_wp) .neqv. (fb > 0.0_wp)) then
+            a = b
+            fa = fb
+         else
+            fa = 0.5_wp*fa
+         end if
+         b = theta
+         fb = f
+      end do
+   end function crossing
+
+end module vcor_numeric_collocation

@@ -1,0 +1,510 @@
+!> Internal variable evolution: the fast method for kernels that are sums of exponentials
+!> (Section VI of Green's paper), by collocation with the internal variables eliminated
+!>
+!> Time is cut into panels. Close to first contact they are steps in x = sqrt(t), in which the
+!> solution is analytic from the start, u = s^1.5 included; later, where the branch point at t = 0
+!> has become remote, steps in t. Each panel is accepted by its defect, so the mesh adapts itself.
+!> The last panel is solved anew until it ends where the force is zero: the end of a panel is where
+!> collocation is most accurate (order 2 n - 1), and all integrals over the contact are then sums
+!> over whole panels. Towards the end of a nearly elastic contact, where s goes to zero as well and
+!> u = s^1.5 loses its derivatives, the panels shrink geometrically.
+module vcor_solver_ive
+   use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
+      contact_lasting, contact_separated, contact_sticking, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_numeric_collocation, only : collocation_t, new_collocation
+   use vcor_solver_panel, only : advance_modes, hertz, panel_t, solve_panel, start_t
+   use vcor_solver_step, only : step_t, step_to
+   use vcor_solver_type, only : solver_t
+   implicit none
+   private
+
+   public :: ive_t, new_ive
+
+   !> Steps in x = sqrt(t) are taken from x = 0, h, .. most_steps*h
+   integer, parameter :: most_steps = 12
+   !> Newton's method has not converged on a panel after so many iterations
+   integer, parameter :: newton_iterations = 25
+   !> Share of the wanted accuracy that the defect of one panel may use up
+   real(wp), parameter :: panel_share = 0.2_wp
+
+   !> Internal variable evolution
+   type, extends(solver_t) :: ive_t
+      private
+      !> Wanted accuracy of the coefficient of restitution [-]
+      real(wp) :: accuracy = 1.0e-8_wp
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp) :: end_time = 0.0_wp
+      !> Rule of the panels
+      type(collocation_t) :: rule
+      !> Rule with one stage more, for the defect
+      type(collocation_t) :: fine
+      !> Interpolation from the points of `rule` to the nodes of `fine`,
+      !> shape (fine%stages, 0:rule%stages)
+      real(wp), allocatable :: to_fine(:, :)
+      !> First step in x over the square root of the expected contact time [-]
+      real(wp) :: first_step = 0.25_wp
+   contains
+      procedure :: solve
+   end type ive_t
+
+contains
+
+   !> Build the solver
+   subroutine new_ive(self, accuracy, end_time, error)
+      !> The solver
+      type(ive_t), intent(out) :: self
+      !> Wanted accuracy of the coefficient of restitution, > 0
+      real(wp), intent(in) :: accuracy
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp), intent(in) :: end_time
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: stages, i, j
+      real(wp), allocatable :: unit(:)
+
+      self%accuracy = accuracy
+      self%end_time = end_time
+      if (accuracy >= 1.0e-5_wp) then
+         stages = 5
+      else if (accuracy >= 3.0e-19_wp) then
+         stages = 7
+      else
+         stages = 9
+      end if
+      call new_collocation(self%rule, stages, most_steps, error)
+      if (allocated(error)) return
+      call new_collocation(self%fine, stages + 1, most_steps, error)
+      if (allocated(error)) return
+
+      allocate (self%to_fine(stages + 1, 0:stages), unit(0:stages))
+      do j = 0, stages
+         unit = 0.0_wp
+         unit(j) = 1.0_wp
+         do i = 1, stages + 1
+            self%to_fine(i, j) = self%rule%interpolate(unit, self%fine%node(i))
+         end do
+      end do
+   end subroutine new_ive
+
+   !> Compute the course of an impact
+   subroutine solve(self, impact, trajectory, error)
+      !> The solver
+      class(ive_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: most_trials = 20000
+      ! the panel before an end that was refused comes this close to it
+      real(wp), parameter :: approach = 0.65_wp
+      type(exponential_sum_t) :: kernel
+      type(start_t) :: start
+      type(step_t) :: step
+      type(panel_t) :: panel, previous, fine
+      real(wp) :: end_time, time_scale, impulse_error, defect, growth
+      integer :: trial, n
+      logical :: exact, ends, last
+
+      call impact%kernel_exponentials(kernel, exact)
+      if (.not. exact) then
+         call raise(error, error_input, 'the contact modulus of this case is no sum of ' &
+            //"exponentials, which method = 'ive' needs: use method = 'direct' (or 'auto')")
+         return
+      end if
+
+      n = self%rule%stages
+      time_scale = impact%time_scale()
+      end_time = self%end_time
+      if (.not. end_time > 0.0_wp) end_time = impact%patience()
+      allocate (start%q(size(kernel%rates)))
+      start%q = 0.0_wp
+      step%length = self%first_step*sqrt(hertz_contact_time*time_scale)
+      call begin(self%rule, impact, trajectory)
+      impulse_error = 0.0_wp
+
+      do trial = 1, most_trials
+         last = start%time + step%duration() >= end_time
+         if (last) step = step_to(start%time, end_time - start%time)
+         call guess(self%rule, impact, previous, start, step, panel)
+         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
+            start, panel, newton_iterations)
+         ! while the indentation grows the force is positive: what is not is rounding
+         ends = .false.
+         if (panel%converged) ends = any(panel%force(1:n) <= 0.0_wp &
+            .and. panel%indentation(1:n) < panel%indentation(0:n - 1))
+         if (ends) call land(self, impact, kernel, start, step, panel)
+         if (.not. panel%converged) then
+            call step%shorten(0.5_wp*step%duration())
+            cycle
+         end if
+         previous = panel
+
+         call refine(self, impact, kernel, start, step, panel, fine)
+         defect = abs(fine%impulse(n + 1) - panel%impulse(n))/(impact%mass*impact%velocity) &
+            + abs(fine%indentation(n + 1) - panel%indentation(n))/(impact%velocity*time_scale)
+         if (.not. defect <= panel_share*self%accuracy) then
+            call step%shorten(merge(approach, 0.5_wp, ends)*step%duration())
+            cycle
+         end if
+
+         call append(self%rule, impact, kernel, start, panel, trajectory)
+         impulse_error = impulse_error + abs(fine%impulse(n + 1) - panel%impulse(n))
+         if (ends) then
+            trajectory%status = contact_separated
+            trajectory%cor_error = error_of_cor(impact, panel, fine, impulse_error)
+            return
+         else if (trajectory%is_stuck(impact%mass)) then
+            trajectory%status = contact_sticking
+            return
+         else if (last) then
+            trajectory%status = contact_lasting
+            return
+         end if
+
+         call advance_modes(self%rule, self%rule%map(step%index), step%map_scale(), kernel, panel, &
+            start%q)
+         start%time = panel%time(n)
+         start%indentation = panel%indentation(n)
+         start%force = panel%force(n)
+         start%impulse = panel%impulse(n)
+         start%second_impulse = panel%second_impulse(n)
+         growth = min(3.0_wp, (panel_share*self%accuracy/max(defect, tiny(1.0_wp))) &
+            **(1.0_wp/real(2*n, wp)))
+         call step%proceed(growth, most_steps)
+      end do
+      call raise(error, error_numerical, 'the internal-variable method does not get to the end of ' &
+         //'the contact: the accuracy asked for is out of reach')
+   end subroutine solve
+
+   !> First node of a trajectory
+   subroutine begin(rule, impact, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer, parameter :: usual_panels = 8
+
+      call trajectory%reserve(usual_panels*rule%stages)
+      trajectory%state(:, 0) = 0.0_wp
+      trajectory%state(col_velocity, 0) = impact%velocity
+      trajectory%state(col_sphere_velocity, 0) = impact%velocity
+      trajectory%weight(0) = 0.0_wp
+      trajectory%stages = rule%stages
+      allocate (trajectory%point(0:rule%stages), source=rule%point)
+      allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric)
+   end subroutine begin
+
+   !> Guess the indentation in the panel to come from the polynomial of the panel solved last
+   subroutine guess(rule, impact, previous, start, step, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel solved last, accepted or not; without stages if there is none
+      type(panel_t), intent(in) :: previous
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Step
+      type(step_t), intent(in) :: step
+      !> The panel
+      type(panel_t), intent(inout) :: panel
+
+      ! polynomials run away beyond their own panel
+      real(wp), parameter :: farthest = 2.2_wp
+      real(wp) :: time, theta
+      integer :: j
+
+      associate (map => rule%map(step%index))
+         do j = 1, rule%stages
+            time = start%time &
+               + step%map_scale()*rule%node(j)*(map%slope + map%bend*rule%node(j))
+            if (previous%stages == 0) then
+               panel%indentation(j) = impact%velocity*time
+            else
+               theta = min(previous%theta(time), farthest)
+               panel%indentation(j) = &
+                  rule%interpolate(previous%indentation(0:rule%stages), theta)
+            end if
+         end do
+      end associate
+   end subroutine guess
+
+   !> Cut a panel in which the force changes its sign so that it ends where the force is zero
+   subroutine land(self, impact, kernel, start, step, panel)
+      !> The solver
+      class(ive_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The step, on return the one that ends at the zero
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the zero; not converged on failure
+      type(panel_t), intent(inout) :: panel
+
+      integer, parameter :: most_iterations = 40
+      type(panel_t) :: crossing
+      real(wp) :: theta, time, correction, velocity, kappa, memory_rate, old_memory, memory
+      integer :: iteration, n, k
+
+      n = self%rule%stages
+      crossing = panel
+      k = 1
+      do while (crossing%force(k) > 0.0_wp .or. crossing%indentation(k) >= crossing%indentation(k - 1))
+         k = k + 1
+      end do
+      theta = self%rule%point(k - 1)
+      if (k > 1) theta = self%rule%crossing(crossing%force(0:n), theta, self%rule%point(k))
+      time = theta*(crossing%map(1) + crossing%map(2)*theta)
+
+      ! Write F = kappa u - M with any kappa that is about dF/du: the indentation s and the memory
+      ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
+      ! kappa u(s) = M with s and M linear in time, the slope of M from the last two iterations
+      kappa = crossing%end_stiffness
+      memory_rate = 0.0_wp
+      old_memory = 0.0_wp
+      correction = 0.0_wp
+      panel%converged = .false.
+      do iteration = 1, most_iterations
+         if (.not. time > 0.0_wp) return
+         step = step_to(start%time, time)
+         call guess(self%rule, impact, crossing, start, step, panel)
+         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
+            start, panel, newton_iterations)
+         if (.not. panel%converged) return
+         velocity = relative_velocity(impact, panel, n)
+         memory = kappa*hertz(panel%indentation(n)) - panel%force(n)
+         if (abs(correction) > 0.0_wp) memory_rate = (memory - old_memory)/correction
+         old_memory = memory
+         call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
+            panel%converged)
+         if (.not. panel%converged) return
+         if (abs(correction) <= 1.0e-3_wp*self%accuracy*(start%time + time)) return
+         time = time + correction
+      end do
+      panel%converged = .false.
+   end subroutine land
+
+   !> Solve kappa hertz(s + v x) = memory + rate x for x near 0 by Newton's method
+   pure subroutine look_ahead(kappa, s, v, memory, rate, x, found)
+      !> Stiffness kappa [N/m^1.5], > 0
+      real(wp), intent(in) :: kappa
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> Its rate [m/s]
+      real(wp), intent(in) :: v
+      !> Memory [N]
+      real(wp), intent(in) :: memory
+      !> Its rate [N/s]
+      real(wp), intent(in) :: rate
+      !> Time [s]
+      real(wp), intent(out) :: x
+      !> Whether the force falls to zero there
+      logical, intent(out) :: found
+
+      real(wp) :: correction, slope
+      integer :: iteration
+
+      x = 0.0_wp
+      found = .false.
+      do iteration = 1, 50
+         slope = 1.5_wp*kappa*sqrt(abs(s + v*x))*v - rate
+         if (.not. slope < 0.0_wp) return
+         correction = (memory + rate*x - kappa*hertz(s + v*x))/slope
+         x = x + correction
+         found = abs(correction) <= 1.0e-3_wp*abs(x)
+         if (found) return
+      end do
+   end subroutine look_ahead
+
+   !> Relative velocity s' = v0 - I/m - alpha F - alpha' I at a stage of a panel
+   pure function relative_velocity(impact, panel, j) result(velocity)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = impact%velocity - panel%impulse(j)/impact%mass - panel%alpha(j)*panel%force(j) &
+         - impact%plate%alpha_rate(panel%time(j))*panel%impulse(j)
+   end function relative_velocity
+
+   !> Add a panel to the trajectory
+   subroutine append(rule, impact, kernel, start, panel, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: alpha_rate(rule%stages)
+      integer :: n, first
+
+      n = rule%stages
+      call trajectory%reserve(trajectory%last + n)
+      call trajectory%add_map(panel%map)
+      first = trajectory%last + 1
+      trajectory%last = trajectory%last + n
+      trajectory%steps = trajectory%steps + 1
+      alpha_rate = impact%plate%alpha_rate(panel%time(1:n))
+      trajectory%weight(first:first + n - 1) = rule%weight &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node)
+      associate (state => trajectory%state(:, first:first + n - 1))
+         state(col_time, :) = panel%time(1:n)
+         state(col_indentation, :) = panel%indentation(1:n)
+         state(col_force, :) = panel%force(1:n)
+         state(col_impulse, :) = panel%impulse(1:n)
+         state(col_sphere, :) = impact%velocity*panel%time(1:n) &
+            - panel%second_impulse(1:n)/impact%mass
+         state(col_sphere_velocity, :) = impact%velocity - panel%impulse(1:n)/impact%mass
+         state(col_plate, :) = panel%alpha(1:n)*panel%impulse(1:n)
+         state(col_plate_velocity, :) = panel%alpha(1:n)*panel%force(1:n) &
+            + alpha_rate*panel%impulse(1:n)
+         state(col_velocity, :) = state(col_sphere_velocity, :) - state(col_plate_velocity, :)
+      end associate
+      call find_peaks(rule, impact, kernel, start, panel, trajectory)
+   end subroutine append
+
+   !> Largest indentation and force so far
+   subroutine find_peaks(rule, impact, kernel, start, panel, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The trajectory, the panel added
+      type(trajectory_t), intent(inout) :: trajectory
+
+      type(panel_t) :: peak
+      integer :: n, j
+
+      n = rule%stages
+      if (rises_and_falls(panel%indentation(0:n))) then
+         call solve_to_peak(panel%indentation(0:n))
+         if (peak%converged .and. peak%indentation(n) > trajectory%max_indentation) then
+            trajectory%max_indentation = peak%indentation(n)
+            trajectory%time_of_max_indentation = peak%time(n)
+         end if
+      end if
+      if (rises_and_falls(panel%force(0:n))) then
+         call solve_to_peak(panel%force(0:n))
+         if (peak%converged .and. peak%force(n) > trajectory%max_force) then
+            trajectory%max_force = peak%force(n)
+            trajectory%time_of_max_force = peak%time(n)
+         end if
+      end if
+      do j = 1, n
+         if (panel%indentation(j) > trajectory%max_indentation) then
+            trajectory%max_indentation = panel%indentation(j)
+            trajectory%time_of_max_indentation = panel%time(j)
+         end if
+         if (panel%force(j) > trajectory%max_force) then
+            trajectory%max_force = panel%force(j)
+            trajectory%time_of_max_force = panel%time(j)
+         end if
+      end do
+
+   contains
+
+      !> Whether a polynomial has a maximum inside the panel
+      pure function rises_and_falls(value)
+         !> Values at the points, shape (0:n)
+         real(wp), intent(in) :: value(0:)
+         !> Whether it rises at the start and falls at the end
+         logical :: rises_and_falls
+
+         rises_and_falls = sum(rule%derivative(0, :)*value) > 0.0_wp &
+            .and. sum(rule%derivative(n, :)*value) < 0.0_wp
+      end function rises_and_falls
+
+      !> Solve the panel up to a maximum: inside, its polynomials are less accurate than at its end
+      subroutine solve_to_peak(value)
+         !> Values at the points, shape (0:n)
+         real(wp), intent(in) :: value(0:)
+
+         type(step_t) :: step
+         real(wp) :: theta
+
+         theta = rule%crossing(matmul(rule%derivative, value), 0.0_wp, 1.0_wp)
+         step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
+         call guess(rule, impact, panel, start, step, peak)
+         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, peak, &
+            newton_iterations)
+      end subroutine solve_to_peak
+   end subroutine find_peaks
+
+   !> Solve the panel once more with the finer rule: by how much its end changes is the error
+   subroutine refine(self, impact, kernel, start, step, panel, fine)
+      !> The solver
+      class(ive_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Step
+      type(step_t), intent(in) :: step
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The panel in the finer rule
+      type(panel_t), intent(out) :: fine
+
+      integer :: n
+
+      n = self%rule%stages
+      ! the interpolated solution is so close that one iteration of Newton's converges
+      fine%indentation(1:n + 1) = matmul(self%to_fine, panel%indentation(0:n))
+      call solve_panel(self%fine, self%fine%map(step%index), step%map_scale(), impact, kernel, &
+         start, fine, 1)
+   end subroutine refine
+
+   !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I
+   pure function error_of_cor(impact, panel, fine, impulse_error) result(estimate)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The last panel
+      type(panel_t), intent(in) :: panel
+      !> The last panel in the finer rule
+      type(panel_t), intent(in) :: fine
+      !> Sum of the errors of the impulse of all panels [N s]
+      real(wp), intent(in) :: impulse_error
+      !> Estimate [-]
+      real(wp) :: estimate
+
+      associate (n => panel%stages)
+         estimate = (impulse_error*(1.0_wp/impact%mass + impact%plate%alpha_rate(panel%time(n))) &
+            + panel%alpha(n)*abs(fine%force(n + 1) - panel%force(n)))/impact%velocity
+      end associate
+   end function error_of_cor
+
+end module vcor_solver_ive

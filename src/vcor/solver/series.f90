@@ -1,0 +1,188 @@
+!> Evaluation of a solution on equal time steps: end of contact, quadrature weights, peaks
+module vcor_solver_series
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: end_of_contact, set_series_weights, find_series_peaks
+
+contains
+
+   !> Move the last node, the first one with F <= 0, back to where F = 0. The indentation (by cubic
+   !> Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth there
+   !> even where s goes to zero with F
+   pure subroutine end_of_contact(impact, stiffness, trajectory)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> About dF/du [N/m^1.5]
+      real(wp), intent(in) :: stiffness
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: a(columns), b(columns), memory(-1:1), dt, theta, lower, upper
+      real(wp) :: f, f_lower, f_upper, t, alpha, alpha_rate, impulse, second
+      integer :: n, j, iteration
+
+      n = trajectory%last
+      b = trajectory%state(:, n)
+      a = trajectory%state(:, n - 1)
+      dt = b(col_time) - a(col_time)
+      do j = -1, 1
+         associate (node => trajectory%state(:, max(n - 1 + j, 0)))
+            memory(j) = stiffness*hertz(node(col_indentation)) - node(col_force)
+         end associate
+      end do
+
+      lower = 0.0_wp
+      upper = 1.0_wp
+      f_lower = a(col_force)
+      f_upper = b(col_force)
+      theta = 1.0_wp
+      do iteration = 1, 200
+         if (.not. f_upper < 0.0_wp .or. .not. f_lower > 0.0_wp) exit
+         theta = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)
+         if (mod(iteration, 3) == 0) theta = 0.5_wp*(lower + upper)
+         f = stiffness*hertz(hermite(col_indentation, col_velocity, theta)) &
+            - parabola(memory, theta)
+         if (abs(upper - lower) <= 1.0e-13_wp) exit
+         if (f > 0.0_wp) then
+            lower = theta
+            f_lower = f
+         else
+            upper = theta
+            f_upper = f
+         end if
+      end do
+      if (.not. f_lower > 0.0_wp) theta = 0.0_wp
+
+      t = a(col_time) + theta*dt
+      impulse = hermite(col_impulse, col_force, theta)
+      second = hermite(col_sphere, col_sphere_velocity, theta)
+      alpha = impact%plate%alpha(t)
+      alpha_rate = impact%plate%alpha_rate(t)
+      associate (node => trajectory%state(:, n))
+         node(col_time) = t
+         node(col_force) = 0.0_wp
+         node(col_impulse) = impulse
+         node(col_sphere) = second
+         node(col_sphere_velocity) = impact%velocity - impulse/impact%mass
+         node(col_plate) = alpha*impulse
+         node(col_plate_velocity) = alpha_rate*impulse
+         node(col_indentation) = node(col_sphere) - node(col_plate)
+         node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
+      end associate
+
+   contains
+
+      !> Cubic through values and slopes at both ends of the last step
+      pure function hermite(value, slope, x) result(y)
+         !> Column of the values
+         integer, intent(in) :: value
+         !> Column of the slopes
+         integer, intent(in) :: slope
+         !> Position in the step, 0 .. 1
+         real(wp), intent(in) :: x
+         !> Interpolated value
+         real(wp) :: y
+
+         y = a(value)*(1.0_wp + 2.0_wp*x)*(1.0_wp - x)**2 + b(value)*x**2*(3.0_wp - 2.0_wp*x) &
+            + dt*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
+      end function hermite
+   end subroutine end_of_contact
+
+   !> Parabola through values at -1, 0 and 1
+   pure function parabola(value, x) result(y)
+      !> Values
+      real(wp), intent(in) :: value(-1:1)
+      !> Argument
+      real(wp), intent(in) :: x
+      !> Interpolated value
+      real(wp) :: y
+
+      y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
+   end function parabola
+
+   !> u = s^1.5, continued oddly
+   elemental function hertz(s) result(u)
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> u [m^1.5]
+      real(wp) :: u
+
+      u = s*sqrt(abs(s))
+   end function hertz
+
+   !> Weights for integrals over the contact: Gregory's rule of third order on the equal steps, the
+   !> parabola through the last three nodes on the last one, which is shorter
+   pure subroutine set_series_weights(dt, trajectory)
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp), parameter :: correction(0:1) = [-1.0_wp, 1.0_wp]/12.0_wp
+      real(wp) :: h
+      integer :: n
+
+      n = trajectory%last
+      associate (w => trajectory%weight)
+         w(0:n) = 0.0_wp
+         if (n >= 2) then
+            ! trapezoids up to node n - 1, each end corrected by its first difference
+            w(0:n - 1) = dt
+            w(0) = 0.5_wp*dt
+            w(n - 1) = 0.5_wp*dt
+            w(0:1) = w(0:1) + dt*correction
+            w(n - 1) = w(n - 1) + dt*correction(0)
+            w(n - 2) = w(n - 2) + dt*correction(1)
+            h = trajectory%state(col_time, n) - trajectory%state(col_time, n - 1)
+            w(n - 2) = w(n - 2) - h**3/(6.0_wp*dt*(dt + h))
+            w(n - 1) = w(n - 1) + h*(h + 3.0_wp*dt)/(6.0_wp*dt)
+            w(n) = h*(2.0_wp*h + 3.0_wp*dt)/(6.0_wp*(dt + h))
+         else
+            w(0:n) = 0.5_wp*dt
+         end if
+      end associate
+   end subroutine set_series_weights
+
+   !> Largest indentation and force, by the parabola through the largest node and its neighbours
+   pure subroutine find_series_peaks(trajectory)
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      call peak(col_indentation, trajectory%max_indentation, trajectory%time_of_max_indentation)
+      call peak(col_force, trajectory%max_force, trajectory%time_of_max_force)
+
+   contains
+
+      !> Peak of one column
+      pure subroutine peak(column, value, time)
+         !> Column
+         integer, intent(in) :: column
+         !> Largest value
+         real(wp), intent(out) :: value
+         !> Its time [s]
+         real(wp), intent(out) :: time
+
+         real(wp) :: y(-1:1), x, bend
+         integer :: i
+
+         i = maxloc(trajectory%state(column, 0:trajectory%last), 1) - 1
+         value = trajectory%state(column, i)
+         time = trajectory%state(col_time, i)
+         ! the last node is not at an equal distance
+         if (i < 1 .or. i > trajectory%last - 2) return
+         y = trajectory%state(column, i - 1:i + 1)
+         bend = y(1) - 2.0_wp*y(0) + y(-1)
+         if (.not. bend < 0.0_wp) return
+         x = 0.5_wp*(y(-1) - y(1))/bend
+         value = parabola(y, x)
+         time = time + x*(trajectory%state(col_time, i + 1) - time)
+      end subroutine peak
+   end subroutine find_series_peaks
+
+end module vcor_solver_series

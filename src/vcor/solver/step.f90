@@ -1,0 +1,113 @@
+!> Steps of the internal-variable method: in x = sqrt(t) next to first contact, in t beyond
+module vcor_solver_step
+   use vcor_kinds, only : wp
+   use vcor_numeric_collocation, only : linear
+   implicit none
+   private
+
+   public :: step_t, step_to
+
+   !> One step
+   type :: step_t
+      !> The step in x starts at x = index*length; `linear` for a step in t
+      integer :: index = 0
+      !> Length in x [s^0.5] or in t [s]
+      real(wp) :: length = 0.0_wp
+   contains
+      !> Scale of the map of the panel
+      procedure :: map_scale
+      !> Duration
+      procedure :: duration
+      !> Cut the step
+      procedure :: shorten
+      !> Go on to the next step
+      procedure :: proceed
+   end type step_t
+
+contains
+
+   !> The step of given duration, of a kind that goes with its start
+   pure function step_to(start, time) result(step)
+      !> Start of the step [s], >= 0
+      real(wp), intent(in) :: start
+      !> Duration [s]
+      real(wp), intent(in) :: time
+      !> Step
+      type(step_t) :: step
+
+      if (start > 0.0_wp) then
+         step%index = linear
+         step%length = time
+      else
+         step%index = 0
+         step%length = sqrt(time)
+      end if
+   end function step_to
+
+   !> Scale of the map of the panel [s]
+   pure function map_scale(self) result(scale)
+      !> The step
+      class(step_t), intent(in) :: self
+      !> Scale [s]
+      real(wp) :: scale
+
+      scale = self%length
+      if (self%index /= linear) scale = self%length**2
+   end function map_scale
+
+   !> Duration [s]
+   pure function duration(self)
+      !> The step
+      class(step_t), intent(in) :: self
+      !> Duration [s]
+      real(wp) :: duration
+
+      duration = self%length
+      if (self%index /= linear) duration = self%length**2*real(2*self%index + 1, wp)
+   end function duration
+
+   !> Cut the step. Steps in x can only be halved, so that the next ones still start at multiples
+   !> of their length; from x = 2 h on, a step in t of any length does as well
+   pure subroutine shorten(self, time)
+      !> The step
+      class(step_t), intent(inout) :: self
+      !> Wanted duration [s], less than the present one
+      real(wp), intent(in) :: time
+
+      select case (self%index)
+      case (0)
+         self%length = sqrt(time)
+      case (1)
+         self%length = 0.5_wp*self%length
+         self%index = 2
+      case default
+         self%index = linear
+         self%length = time
+      end select
+   end subroutine shorten
+
+   !> Go on to the next step
+   pure subroutine proceed(self, growth, most)
+      !> The step that was taken, on return the next one
+      class(step_t), intent(inout) :: self
+      !> Factor by which a step could be longer
+      real(wp), intent(in) :: growth
+      !> Largest index of a step in x
+      integer, intent(in) :: most
+
+      if (self%index == linear) then
+         self%length = self%length*growth
+      else
+         self%index = self%index + 1
+         if (growth >= 2.0_wp .and. mod(self%index, 2) == 0) then
+            self%index = self%index/2
+            self%length = 2.0_wp*self%length
+         end if
+         if (self%index > most) then
+            self%length = self%duration()
+            self%index = linear
+         end if
+      end if
+   end subroutine proceed
+
+end module vcor_solver_step
