@@ -1,0 +1,23 @@
+# Compiler flags, per target: nothing here touches CMAKE_Fortran_FLAGS, which belongs to the user.
+#
+#   vcor_set_flags(<target>)
+
+function(vcor_set_flags target)
+  # Only .F90 is preprocessed: CMake would do it to .f90 as well, and compile what comes out
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "\\.f90$")
+  set_source_files_properties(${sources} PROPERTIES Fortran_PREPROCESS OFF)
+
+  if(NOT CMAKE_Fortran_COMPILER_ID STREQUAL "GNU")
+    return()
+  endif()
+  # Release has CMake's own -O3. Not -ffast-math (it makes ieee_is_nan false) and not -march=native
+  # (the program runs elsewhere too).
+  target_compile_options(${target} PRIVATE
+    # -fimplicit-none holds in interface bodies too, which do not inherit the statement
+    -std=f2008 -fimplicit-none -Wall -Wextra -Wimplicit-interface
+    $<$<BOOL:${VCOR_WERROR}>:-Werror>
+    # Traps are set by the main program, so tests and program get these flags as the library does
+    $<$<CONFIG:Debug>:-Og -fbacktrace -fcheck=all>
+    $<$<CONFIG:Debug>:-finit-real=snan -ffpe-trap=invalid,zero,overflow>)
+endfunction()

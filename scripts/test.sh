@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Installs what is missing and runs every test: CMake release and debug, fpm, the linter.
+# Stops at the first step that fails. The last line is the sum of all tests: N passed, N failed
+set -euo pipefail
+
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+passed=0
+failed=0
+step="start"
+
+begin() {
+   step=$*
+   printf '\ntest: %s\n' "$step"
+}
+
+# Runs on every way out. A step that fails without a failed test (a build, say) counts as one
+finish() {
+   local code=$?
+   if [ $code -ne 0 ]; then
+      printf '\ntest: error: stopped at: %s\n' "$step"
+      if [ $failed -eq 0 ]; then failed=1; fi
+   fi
+   printf '%d passed, %d failed\n' "$passed" "$failed"
+}
+trap finish EXIT
+trap 'exit 130' INT TERM
+
+jobs=$(nproc 2>/dev/null || echo 2)
+venv=$PWD/build/venv
+
+# Environment of Python, made anew only when the list of packages has changed
+make_venv() {
+   if cmp -s tests/requirements.txt "$venv/requirements.txt" \
+      && "$venv/bin/python" -c '' 2>/dev/null; then
+      echo "$venv is up to date"
+      return
+   fi
+   python3 -m venv --clear "$venv"
+   "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input \
+      -r tests/requirements.txt
+   # Last: an installation that was interrupted is done again
+   cp tests/requirements.txt "$venv/requirements.txt"
+}
+
+# attribute NAME FILE: number in the first such attribute of an XML file
+attribute() { sed -n "s/.*[^a-z]$1=\"\([0-9]*\)\".*/\1/p" "$2" | head -n 1; }
+
+# with_cmake PRESET: build and run CTest
+with_cmake() {
+   local preset=$1 report=$PWD/build/$1/ctest.xml code=0 tests bad
+   begin "$preset build"
+   cmake --preset "$preset" -DVCOR_WERROR=ON -DVCOR_PYTHON="$venv/bin/python"
+   cmake --build --preset "$preset"
+   begin "$preset tests"
+   rm -f "$report"
+   ctest --preset "$preset" --parallel "$jobs" --output-junit "$report" || code=$?
+   if [ -f "$report" ]; then
+      tests=$(attribute tests "$report")
+      bad=$(attribute failures "$report")
+      # A test that CTest did not run has not passed
+      bad=$((bad + $(attribute skipped "$report") + $(attribute disabled "$report")))
+      passed=$((passed + tests - bad))
+      failed=$((failed + bad))
+   fi
+   [ $code -eq 0 ] && [ "${bad:-1}" -eq 0 ]
+}
+
+# Build with fpm and run the test programs
+with_fpm() {
+   local fpm=$venv/bin/fpm report=build/fpm-test.txt code=0 tests bad
+   begin "fpm build"
+   "$fpm" build
+   begin "fpm tests"
+   tests=$("$fpm" test --list 2>&1 | grep -c '^test_')
+   "$fpm" test 2>&1 | tee "$report" || code=$?
+   bad=$(grep -c 'Execution for object' "$report" || true)
+   # Without a failed program it was the build that failed: none was run
+   if [ $code -eq 0 ] || [ "$bad" -gt 0 ]; then
+      passed=$((passed + tests - bad))
+      failed=$((failed + bad))
+   fi
+   return $code
+}
+
+begin "set-up"
+scripts/setup.sh --tests
+
+begin "Python environment"
+make_venv
+
+with_cmake release
+with_cmake debug
+with_fpm
+
+begin "linter"
+"$venv/bin/fortitude" check
+
+begin "end"
