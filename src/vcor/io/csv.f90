@@ -1,0 +1,297 @@
+!> Tables as text files, comma-separated values (RFC 4180, lines end with LF)
+!>
+!>     # vcor 0.1.0
+!>     # title: rubber ball on steel
+!>     # columns:
+!>     #   cor [1] coefficient of restitution
+!>     # case:
+!>     # &case
+!>     ...
+!>     cor,status
+!>     6.9313750012345678e-01,separated
+!>
+!> All lines that begin with `#` come first, then one line with the names, then the rows. Taking the
+!> first two characters of the lines after `# case:` away gives the case again. Numbers have 17
+!> digits (`vcor_io_number`); text stands between quotation marks only if it has to.
+!>
+!> The coordinates of a dimension are columns too, unless they are just numbers in a row.
+module vcor_io_csv
+   use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
+   use vcor_error, only : error_t
+   use vcor_io_file, only : commit, create_file, output_file_t, put
+   use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
+      & put_real
+   use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
+      & row_count, table_t
+   implicit none
+   private
+
+   public :: write_csv
+
+   !> Characters that are collected before they go to the file
+   integer, parameter :: buffer_length = 65536
+
+   !> A file with a buffer before it
+   type :: writer_t
+      !> The file
+      type(output_file_t) :: file
+      !> Text on its way to the file
+      character(len=buffer_length) :: buffer
+      !> Last character of the buffer in use
+      integer :: last = 0
+      !> Powers of ten for the numbers
+      type(decimal_t) :: decimal
+   end type writer_t
+
+contains
+
+   !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
+   subroutine write_csv(filename, table, error)
+      !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      type(writer_t), allocatable :: writer
+
+      call check_table(table, error)
+      if (allocated(error)) return
+      ! Not on the stack, for the sake of its buffer
+      allocate(writer)
+      call new_decimal(writer%decimal)
+      call create_file(writer%file, filename, error)
+      if (allocated(error)) return
+      call put_head(writer, table, error)
+      if (allocated(error)) return
+      call put_rows(writer, table, error)
+      if (allocated(error)) return
+      call flush_buffer(writer, error)
+      if (allocated(error)) return
+      call commit(writer%file, error)
+   end subroutine write_csv
+
+   !> Write what describes the table, and the line of the names
+   subroutine put_head(writer, table, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i
+      logical :: first
+
+      call put_comments(writer, "vcor "//table%version, error)
+      if (allocated(error)) return
+      call put_comments(writer, "title: "//table%title, error)
+      if (allocated(error)) return
+      call put_comments(writer, "columns:", error)
+      if (allocated(error)) return
+      do i = 1, table%dimension_count
+         if (table%dimensions(i)%is_index) cycle
+         call put_description(writer, table%dimensions(i)%coordinate, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, table%column_count
+         call put_description(writer, table%columns(i), error)
+         if (allocated(error)) return
+      end do
+      call put_comments(writer, "case:", error)
+      if (allocated(error)) return
+      call put_comments(writer, table%case_text, error)
+      if (allocated(error)) return
+
+      first = .true.
+      do i = 1, table%dimension_count
+         if (table%dimensions(i)%is_index) cycle
+         call put_name(writer, table%dimensions(i)%coordinate%name, first, error)
+         if (allocated(error)) return
+      end do
+      do i = 1, table%column_count
+         call put_name(writer, table%columns(i)%name, first, error)
+         if (allocated(error)) return
+      end do
+      call put_text(writer, c_new_line, error)
+   end subroutine put_head
+
+   !> Write the rows
+   subroutine put_rows(writer, table, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: i, row
+      logical :: first
+
+      do row = 1, row_count(table)
+         first = .true.
+         do i = 1, table%dimension_count
+            if (table%dimensions(i)%is_index) cycle
+            call put_value(writer, table%dimensions(i)%coordinate, coordinate_row(table, i, row), &
+               & first, error)
+            if (allocated(error)) return
+         end do
+         do i = 1, table%column_count
+            call put_value(writer, table%columns(i), row, first, error)
+            if (allocated(error)) return
+         end do
+         call put_text(writer, c_new_line, error)
+         if (allocated(error)) return
+      end do
+   end subroutine put_rows
+
+   !> Write one line that says what a column is
+   subroutine put_description(writer, column, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Column to describe
+      type(column_t), intent(in) :: column
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (len(column%unit) == 0) then
+         call put_comments(writer, "  "//column%name//" "//column%long_name, error)
+      else
+         call put_comments(writer, &
+            & "  "//column%name//" ["//column%unit//"] "//column%long_name, error)
+      end if
+   end subroutine put_description
+
+   !> Write a text as comment, each of its lines after `# `
+   subroutine put_comments(writer, text, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Any number of lines; the end of the last one may be missing
+      character(len=*), intent(in) :: text
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      integer :: end_of_line, first, next
+
+      first = 1
+      do while (first <= len(text))
+         ! A carriage return ends a line for most readers, with or without a line feed: what comes
+         ! after it would be taken for data
+         end_of_line = scan(text(first:), c_new_line//c_carriage_return) + first - 1
+         if (end_of_line < first) end_of_line = len(text) + 1
+         next = end_of_line + 1
+         if (next <= len(text)) then
+            if (text(next-1:next) == c_carriage_return//c_new_line) next = next + 1
+         end if
+         call put_text(writer, "# "//text(first:end_of_line-1)//c_new_line, error)
+         if (allocated(error)) return
+         first = next
+      end do
+   end subroutine put_comments
+
+   !> Write the name of a column
+   subroutine put_name(writer, name, first, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Whether it is the first of the line; false afterwards
+      logical, intent(inout) :: first
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. first) call put_text(writer, ",", error)
+      if (allocated(error)) return
+      first = .false.
+      call put_text(writer, field(name), error)
+   end subroutine put_name
+
+   !> Write one value of a column
+   subroutine put_value(writer, column, row, first, error)
+      !> Open file
+      type(writer_t), intent(inout) :: writer
+      !> Column
+      type(column_t), intent(in) :: column
+      !> Number of the value
+      integer, intent(in) :: row
+      !> Whether it is the first of the line; false afterwards
+      logical, intent(inout) :: first
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      ! Room for the comma and any number
+      if (writer%last > buffer_length - 1 - max(longest_real, longest_integer)) then
+         call flush_buffer(writer, error)
+         if (allocated(error)) return
+      end if
+      if (.not. first) then
+         writer%last = writer%last + 1
+         writer%buffer(writer%last:writer%last) = ","
+      end if
+      first = .false.
+      select case (column%kind)
+      case (real_column)
+         call put_real(writer%decimal, column%reals(row), writer%buffer, writer%last)
+      case (integer_column)
+         call put_integer(column%integers(row), writer%buffer, writer%last)
+      case default
+         associate (width => column%width)
+            call put_text(writer, field(column%texts((row - 1)*width + 1:row*width)), error)
+         end associate
+      end select
+   end subroutine put_value
+
+   !> Write text through the buffer
+   subroutine put_text(writer, text, error)
+      !> Open file; discarded on failure
+      type(writer_t), intent(inout) :: writer
+      !> Text to write
+      character(len=*), intent(in) :: text
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (writer%last + len(text) > buffer_length) then
+         call flush_buffer(writer, error)
+         if (allocated(error)) return
+      end if
+      if (len(text) > buffer_length) then
+         call put(writer%file, text, error)
+      else
+         writer%buffer(writer%last+1:writer%last+len(text)) = text
+         writer%last = writer%last + len(text)
+      end if
+   end subroutine put_text
+
+   !> Hand the buffer to the file
+   subroutine flush_buffer(writer, error)
+      !> Open file; discarded on failure
+      type(writer_t), intent(inout) :: writer
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      call put(writer%file, writer%buffer(:writer%last), error)
+      writer%last = 0
+   end subroutine flush_buffer
+
+   !> A text as a field of a row
+   pure function field(text)
+      !> Any text; blanks at its end do not count
+      character(len=*), intent(in) :: text
+      !> The text, between quotation marks if need be
+      character(len=:), allocatable :: field
+      ! `#` begins a comment for most readers
+      character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
+      integer :: i
+
+      field = trim(text)
+      ! An empty field might make an empty line, which readers skip
+      if (len(field) > 0) then
+         if (scan(field, special) == 0 .and. field(1:1) /= " ") return
+      end if
+
+      field = '"'
+      do i = 1, len_trim(text)
+         field = field//text(i:i)
+         if (text(i:i) == '"') field = field//'"'
+      end do
+      field = field//'"'
+   end function field
+
+end module vcor_io_csv

@@ -1,0 +1,472 @@
+!> Tables as an HDF5 file, the only module that calls HDF5
+!>
+!>     /                  attributes program, version, title, case
+!>     /summary           a dataset per dimension and column, in their order
+!>     /history           the same, if there is a history
+!>
+!> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
+!> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
+!> see named axes. A grid has datasets of more than one dimension, the first of the table first, as
+!> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
+!> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
+!>
+!> HDF5 builds the file in memory and `vcor_io_file` writes it, so that a full disk is none of
+!> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends. That
+!> takes memory for two copies of the file. Objects hold no times: the same tables give the same
+!> bytes.
+module vcor_io_hdf5
+   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_int64_t, c_loc, &
+      & c_null_char, c_null_funptr, c_null_ptr, c_ptr
+   use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
+   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
+      & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
+      & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, h5iis_valid_f, h5open_f, &
+      & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
+      & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcreate_f, &
+      & h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_link_creation_order_f, &
+      & h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
+      & h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, &
+      & h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t, size_t
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_file, only : quoted_path, write_file
+   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
+      & text_value
+   implicit none
+   private
+
+   public :: write_hdf5
+
+   !> An identifier that stands for nothing
+   integer(hid_t), parameter :: nothing = -1_hid_t
+   !> Step by which the file grows in memory [bytes]
+   integer(size_t), parameter :: growth = 65536_size_t
+   !> HDF5 wants a name for a file in memory too and reads what has that name: nothing can
+   character(len=*), parameter :: no_path = "/dev/null/vcor.h5"
+   !> The error stack that H5E functions take by default (H5E_DEFAULT)
+   integer(c_int64_t), parameter :: default_stack = 0_c_int64_t
+
+   !> A file that is being built in memory
+   type :: writer_t
+      !> The file
+      integer(hid_t) :: file = nothing
+      !> How to create the file
+      integer(hid_t) :: file_creation = nothing
+      !> How to open the file: in memory
+      integer(hid_t) :: file_access = nothing
+      !> How to create groups
+      integer(hid_t) :: group_creation = nothing
+      !> How to create datasets
+      integer(hid_t) :: dataset_creation = nothing
+      !> Type of text
+      integer(hid_t) :: text_type = nothing
+      !> What failed first; not allocated as long as nothing did
+      character(len=:), allocatable :: fault
+   end type writer_t
+
+   ! HDF5's Fortran interface can turn the printing of errors on and off but cannot tell whether it
+   ! is on, and a program that uses this library may have a handler of its own
+   interface
+      !> Ask for the handler of errors
+      function c_get_handler(stack, handler, client) result(status) bind(c, name="H5Eget_auto2")
+         import :: c_funptr, c_int, c_int64_t, c_ptr
+         !> Error stack
+         integer(c_int64_t), intent(in), value :: stack
+         !> Handler, null if there is none
+         type(c_funptr), intent(out) :: handler
+         !> What the handler is called with
+         type(c_ptr), intent(out) :: client
+         !> Negative on failure
+         integer(c_int) :: status
+      end function c_get_handler
+
+      !> Set the handler of errors
+      function c_set_handler(stack, handler, client) result(status) bind(c, name="H5Eset_auto2")
+         import :: c_funptr, c_int, c_int64_t, c_ptr
+         !> Error stack
+         integer(c_int64_t), intent(in), value :: stack
+         !> Handler, null for none
+         type(c_funptr), intent(in), value :: handler
+         !> What the handler is called with
+         type(c_ptr), intent(in), value :: client
+         !> Negative on failure
+         integer(c_int) :: status
+      end function c_set_handler
+   end interface
+
+contains
+
+   !> Write the summary and, if there is one, the history to a file
+   !>
+   !> The file is there as a whole or, if that fails, as it was before.
+   subroutine write_hdf5(filename, summary, history, error)
+      !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> A row per impact; its version, title and case describe the file
+      type(table_t), intent(in) :: summary
+      !> A row per time
+      type(table_t), intent(in), optional :: history
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      type(writer_t) :: writer
+      type(c_funptr) :: handler
+      type(c_ptr) :: client
+      character(len=:), allocatable :: image
+      integer :: status
+      logical :: is_open
+
+      call check_table(summary, error)
+      if (allocated(error)) return
+      if (present(history)) call check_table(history, error)
+      if (allocated(error)) return
+
+      ! The types of HDF5 are there if the library was opened, by whomever; it is never closed here,
+      ! since that would close everything else the program has open in HDF5
+      call h5iis_valid_f(h5t_native_double, is_open, status)
+      if (status < 0 .or. .not. is_open) then
+         call h5open_f(status)
+         call note(writer, status, "open its library")
+      end if
+      status = c_get_handler(default_stack, handler, client)
+      call note(writer, status, "give its handler of errors")
+      if (.not. allocated(writer%fault)) then
+         status = c_set_handler(default_stack, c_null_funptr, c_null_ptr)
+         call build(writer, summary, history)
+         call take_image(writer, image)
+         call close_all(writer)
+         status = c_set_handler(default_stack, handler, client)
+      end if
+
+      if (allocated(writer%fault)) then
+         call raise(error, error_file, &
+            & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
+         return
+      end if
+      call write_file(filename, image, error)
+   end subroutine write_hdf5
+
+   !> Build the file in memory
+   subroutine build(writer, summary, history)
+      !> Writer, nothing open yet
+      type(writer_t), intent(inout) :: writer
+      !> A row per impact
+      type(table_t), intent(in) :: summary
+      !> A row per time
+      type(table_t), intent(in), optional :: history
+      integer :: status
+
+      call prepare(writer)
+      if (allocated(writer%fault)) return
+      call h5fcreate_f(no_path, h5f_acc_trunc_f, writer%file, status, &
+         & writer%file_creation, writer%file_access)
+      call note(writer, status, "create a file in memory")
+      call put_attribute(writer, writer%file, "program", "vcor")
+      call put_attribute(writer, writer%file, "version", summary%version)
+      call put_attribute(writer, writer%file, "title", summary%title)
+      call put_attribute(writer, writer%file, "case", summary%case_text)
+      call put_table(writer, "summary", summary)
+      if (present(history)) call put_table(writer, "history", history)
+   end subroutine build
+
+   !> Make the property lists and types that all objects share
+   subroutine prepare(writer)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      integer :: order, status
+
+      order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
+
+      call h5pcreate_f(h5p_file_create_f, writer%file_creation, status)
+      call note(writer, status, "make a property list")
+      call h5pset_link_creation_order_f(writer%file_creation, order, status)
+      call note(writer, status, "keep the order of the groups")
+      call h5pset_obj_track_times_f(writer%file_creation, .false., status)
+      call note(writer, status, "leave times out")
+
+      call h5pcreate_f(h5p_group_create_f, writer%group_creation, status)
+      call note(writer, status, "make a property list")
+      call h5pset_link_creation_order_f(writer%group_creation, order, status)
+      call note(writer, status, "keep the order of the columns")
+      call h5pset_obj_track_times_f(writer%group_creation, .false., status)
+      call note(writer, status, "leave times out")
+
+      call h5pcreate_f(h5p_dataset_create_f, writer%dataset_creation, status)
+      call note(writer, status, "make a property list")
+      call h5pset_obj_track_times_f(writer%dataset_creation, .false., status)
+      call note(writer, status, "leave times out")
+
+      call h5pcreate_f(h5p_file_access_f, writer%file_access, status)
+      call note(writer, status, "make a property list")
+      call h5pset_fapl_core_f(writer%file_access, growth, .false., status)
+      call note(writer, status, "keep a file in memory")
+      ! What is still open after a failure goes with the file
+      call h5pset_fclose_degree_f(writer%file_access, h5f_close_strong_f, status)
+      call note(writer, status, "keep a file in memory")
+
+      call h5tcopy_f(h5t_string, writer%text_type, status)
+      call note(writer, status, "make a type for text")
+      call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status)
+      call note(writer, status, "make a type for text")
+   end subroutine prepare
+
+   !> Write a table as a group
+   subroutine put_table(writer, name, table)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> Name of the group
+      character(len=*), intent(in) :: name
+      !> Table to write
+      type(table_t), intent(in) :: table
+      integer(hid_t) :: dataset, group
+      integer(hid_t) :: scales(table%dimension_count)
+      integer :: i, j, lengths(table%dimension_count), status
+
+      if (allocated(writer%fault)) return
+      call h5gcreate_f(writer%file, name, group, status, gcpl_id=writer%group_creation)
+      call note(writer, status, "create the group '"//name//"'")
+      if (allocated(writer%fault)) return
+
+      scales = nothing
+      do i = 1, table%dimension_count
+         associate (coordinate => table%dimensions(i)%coordinate)
+            lengths(i) = coordinate%length
+            call put_column(writer, group, coordinate, lengths(i:i), scales(i))
+            if (allocated(writer%fault)) exit
+            call h5dsset_scale_f(scales(i), status, link_name(coordinate%name))
+            call note(writer, status, "make '"//coordinate%name//"' a dimension scale")
+         end associate
+      end do
+
+      do j = 1, table%column_count
+         call put_column(writer, group, table%columns(j), lengths, dataset)
+         if (allocated(writer%fault)) exit
+         do i = 1, table%dimension_count
+            call h5dsattach_scale_f(dataset, scales(i), fortran_dimension(table, i), status)
+            call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
+         end do
+         call h5dclose_f(dataset, status)
+         call note(writer, status, "close '"//table%columns(j)%name//"'")
+      end do
+
+      do i = 1, table%dimension_count
+         if (scales(i) == nothing) cycle
+         call h5dclose_f(scales(i), status)
+         call note(writer, status, "close a dimension scale")
+      end do
+      call h5gclose_f(group, status)
+      call note(writer, status, "close the group '"//name//"'")
+   end subroutine put_table
+
+   !> Number of a dimension as HDF5's Fortran interface counts: backwards, so that Fortran's arrays
+   !> need not be turned over
+   pure function fortran_dimension(table, number) result(backwards)
+      !> Table
+      type(table_t), intent(in) :: table
+      !> Number of the dimension, from 1
+      integer, intent(in) :: number
+      !> Its number backwards, from 1
+      integer :: backwards
+
+      backwards = table%dimension_count - number + 1
+   end function fortran_dimension
+
+   !> Write a column as a dataset and leave it open
+   subroutine put_column(writer, group, column, lengths, dataset)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> Group to write to
+      integer(hid_t), intent(in) :: group
+      !> Column to write
+      type(column_t), intent(in), target :: column
+      !> Lengths of its dimensions, the slowest first
+      integer, intent(in) :: lengths(:)
+      !> The dataset, open
+      integer(hid_t), intent(out) :: dataset
+      integer(hid_t) :: file_type, memory_type, space
+      integer(hsize_t) :: backwards(size(lengths))
+      integer :: status
+
+      dataset = nothing
+      if (allocated(writer%fault)) return
+      select case (column%kind)
+      case (real_column)
+         file_type = h5t_ieee_f64le
+         memory_type = h5t_native_double
+      case (integer_column)
+         file_type = h5t_std_i32le
+         memory_type = h5t_native_integer
+      case default
+         file_type = writer%text_type
+         memory_type = writer%text_type
+      end select
+
+      backwards = int(lengths(size(lengths):1:-1), hsize_t)
+      call h5screate_simple_f(size(lengths), backwards, space, status)
+      call note(writer, status, "make the dimensions of '"//column%name//"'")
+      if (allocated(writer%fault)) return
+      call h5dcreate_f(group, link_name(column%name), file_type, space, dataset, status, &
+         & dcpl_id=writer%dataset_creation)
+      call note(writer, status, "create '"//column%name//"'")
+      call h5sclose_f(space, status)
+      call note(writer, status, "close the dimensions of '"//column%name//"'")
+      if (allocated(writer%fault)) return
+
+      ! An array without elements has no address
+      if (column%length > 0) then
+         select case (column%kind)
+         case (real_column)
+            call h5dwrite_f(dataset, memory_type, c_loc(column%reals), status)
+         case (integer_column)
+            call h5dwrite_f(dataset, memory_type, c_loc(column%integers), status)
+         case default
+            call write_texts(column, dataset, memory_type, status)
+         end select
+         call note(writer, status, "write '"//column%name//"'")
+      end if
+      if (len(column%unit) > 0) call put_attribute(writer, dataset, "units", column%unit)
+      call put_attribute(writer, dataset, "long_name", column%long_name)
+   end subroutine put_column
+
+   !> Write the values of a text column
+   subroutine write_texts(column, dataset, memory_type, status)
+      !> Text column
+      type(column_t), intent(in) :: column
+      !> Dataset to write to
+      integer(hid_t), intent(in) :: dataset
+      !> Type of text
+      integer(hid_t), intent(in) :: memory_type
+      !> Negative on failure
+      integer, intent(out) :: status
+      character(len=column%width+1, kind=c_char), allocatable, target :: texts(:)
+      type(c_ptr), allocatable, target :: places(:)
+      integer :: i
+
+      allocate(texts(column%length), places(column%length))
+      do i = 1, column%length
+         texts(i) = text_value(column, i)//c_null_char
+         places(i) = c_loc(texts(i))
+      end do
+      call h5dwrite_f(dataset, memory_type, c_loc(places), status)
+   end subroutine write_texts
+
+   !> Write a text attribute
+   subroutine put_attribute(writer, object, name, text)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value
+      character(len=*), intent(in) :: text
+      character(len=:, kind=c_char), allocatable, target :: value
+      type(c_ptr), target :: place
+      integer(hid_t) :: attribute, space
+      integer :: status
+
+      if (allocated(writer%fault)) return
+      call h5screate_f(h5s_scalar_f, space, status)
+      call note(writer, status, "make the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+      call h5acreate_f(object, name, writer%text_type, space, attribute, status)
+      call note(writer, status, "create the attribute '"//name//"'")
+      call h5sclose_f(space, status)
+      call note(writer, status, "close the dimensions of the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+
+      value = text//c_null_char
+      place = c_loc(value)
+      call h5awrite_f(attribute, writer%text_type, c_loc(place), status)
+      call note(writer, status, "write the attribute '"//name//"'")
+      call h5aclose_f(attribute, status)
+      call note(writer, status, "close the attribute '"//name//"'")
+   end subroutine put_attribute
+
+   !> Get the bytes of the file
+   subroutine take_image(writer, image)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> The file; empty if there is none
+      character(len=:), allocatable, target, intent(out) :: image
+      type(c_ptr) :: place
+      integer(size_t) :: length
+      integer :: status
+
+      image = ""
+      if (allocated(writer%fault)) return
+      call h5fflush_f(writer%file, h5f_scope_global_f, status)
+      call note(writer, status, "complete the file")
+      if (allocated(writer%fault)) return
+      place = c_null_ptr
+      call h5fget_file_image_f(writer%file, place, 0_size_t, status, length)
+      call note(writer, status, "give the length of the file")
+      if (allocated(writer%fault)) return
+
+      deallocate(image)
+      allocate(character(len=length) :: image, stat=status)
+      if (status /= 0) call note(writer, -1, "get memory for a copy of the file")
+      if (allocated(writer%fault)) return
+      place = c_loc(image)
+      call h5fget_file_image_f(writer%file, place, length, status)
+      call note(writer, status, "give the bytes of the file")
+   end subroutine take_image
+
+   !> Close whatever is open
+   subroutine close_all(writer)
+      !> Writer; nothing is open afterwards
+      type(writer_t), intent(inout) :: writer
+      integer :: status
+
+      if (writer%file /= nothing) then
+         call h5fclose_f(writer%file, status)
+         call note(writer, status, "close the file")
+      end if
+      if (writer%text_type /= nothing) then
+         call h5tclose_f(writer%text_type, status)
+         call note(writer, status, "close a type")
+      end if
+      call close_list(writer, writer%file_creation)
+      call close_list(writer, writer%file_access)
+      call close_list(writer, writer%group_creation)
+      call close_list(writer, writer%dataset_creation)
+   end subroutine close_all
+
+   !> Close a property list
+   subroutine close_list(writer, list)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Property list, or nothing
+      integer(hid_t), intent(in) :: list
+      integer :: status
+
+      if (list == nothing) return
+      call h5pclose_f(list, status)
+      call note(writer, status, "close a property list")
+   end subroutine close_list
+
+   !> A name as HDF5 may take it
+   pure function link_name(name) result(link)
+      !> Name of a column
+      character(len=*), intent(in) :: name
+      !> The name without slashes, which would name groups
+      character(len=len(name)) :: link
+      integer :: i
+
+      link = name
+      do i = 1, len(link)
+         if (link(i:i) == "/") link(i:i) = "_"
+      end do
+   end function link_name
+
+   !> Keep the first failure
+   pure subroutine note(writer, status, what)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Status of HDF5, negative on failure
+      integer, intent(in) :: status
+      !> What was asked of HDF5
+      character(len=*), intent(in) :: what
+
+      if (status < 0 .and. .not. allocated(writer%fault)) writer%fault = what
+   end subroutine note
+
+end module vcor_io_hdf5

@@ -1,0 +1,241 @@
+!> The system calls behind files: thin interfaces to C and POSIX, used by `vcor_io_file` alone
+!>
+!> Fortran's own units hide what matters here: gfortran writes its buffer when a unit is closed and
+!> reports no error if the disk is full then, it has no rename, no directories and no exclusive
+!> creation. All functions are called as C declares them, none is variadic. Two are Linux's own:
+!> `__errno_location` (its name is `__error` on macOS) and `statx`. The preprocessor of gfortran
+!> does not know the system it runs on, so another system takes an edit of this file.
+module vcor_io_posix
+   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int16_t, c_null_char, &
+      & c_ptr, c_size_t
+   implicit none
+   private
+
+   public :: c_access, c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, &
+      & c_rename, c_write
+   public :: c_text, is_regular, last_errno, system_reason
+   public :: access_exists, all_permissions, errno_exists, errno_interrupted, standard_output
+
+   !> Mode of `c_access`: does something of that name exist (F_OK)
+   integer(c_int), parameter :: access_exists = 0
+   !> `errno`: interrupted by a signal (EINTR)
+   integer(c_int), parameter :: errno_interrupted = 4
+   !> `errno`: there is something of that name (EEXIST)
+   integer(c_int), parameter :: errno_exists = 17
+   !> Permissions rwxrwxrwx, of which the user's umask takes its part away
+   integer(c_int), parameter :: all_permissions = int(o'777', c_int)
+   !> File descriptor of the standard output
+   integer(c_int), parameter :: standard_output = 1
+
+   interface
+      !> Open a stream
+      function c_fopen(path, mode) result(stream) bind(c, name="fopen")
+         import :: c_char, c_ptr
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> Mode as in C, ends with NUL; `wbx` creates and refuses what exists
+         character(kind=c_char), intent(in) :: mode(*)
+         !> Stream, null if it failed
+         type(c_ptr) :: stream
+      end function c_fopen
+
+      !> Write to a stream
+      function c_fwrite(bytes, size, count, stream) result(written) bind(c, name="fwrite")
+         import :: c_char, c_ptr, c_size_t
+         !> What to write
+         character(kind=c_char), intent(in) :: bytes(*)
+         !> Bytes per item
+         integer(c_size_t), intent(in), value :: size
+         !> Number of items
+         integer(c_size_t), intent(in), value :: count
+         !> Open stream
+         type(c_ptr), intent(in), value :: stream
+         !> Number of items written; fewer than `count` if it failed
+         integer(c_size_t) :: written
+      end function c_fwrite
+
+      !> Hand the buffer of a stream to the system
+      function c_fflush(stream) result(status) bind(c, name="fflush")
+         import :: c_int, c_ptr
+         !> Open stream
+         type(c_ptr), intent(in), value :: stream
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_fflush
+
+      !> Close a stream
+      function c_fclose(stream) result(status) bind(c, name="fclose")
+         import :: c_int, c_ptr
+         !> Open stream; closed afterwards, whatever the status
+         type(c_ptr), intent(in), value :: stream
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_fclose
+
+      !> Write to a file descriptor
+      function c_write(descriptor, bytes, count) result(written) bind(c, name="write")
+         import :: c_char, c_int, c_size_t
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> What to write
+         character(kind=c_char), intent(in) :: bytes(*)
+         !> Number of bytes
+         integer(c_size_t), intent(in), value :: count
+         !> Number of bytes written, may be fewer than `count`; -1 if it failed
+         integer(c_size_t) :: written
+      end function c_write
+
+      !> Give a file another name, in place of what has that name
+      function c_rename(old, new) result(status) bind(c, name="rename")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: old(*)
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: new(*)
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_rename
+
+      !> Remove a file
+      function c_remove(path) result(status) bind(c, name="remove")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_remove
+
+      !> Make a directory
+      function c_mkdir(path, mode) result(status) bind(c, name="mkdir")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> Permissions before the umask
+         integer(c_int), intent(in), value :: mode
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_mkdir
+
+      !> Ask what may be done with a path
+      function c_access(path, mode) result(status) bind(c, name="access")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> What is asked: `access_exists`
+         integer(c_int), intent(in), value :: mode
+         !> 0 for yes
+         integer(c_int) :: status
+      end function c_access
+
+      !> Ask for the properties of a file; unlike that of `stat`, the structure is the same on all
+      !> processors
+      function c_statx(directory, path, flags, mask, properties) result(status) &
+         & bind(c, name="statx")
+         import :: c_char, c_int, c_int16_t
+         !> Where a relative path begins
+         integer(c_int), intent(in), value :: directory
+         !> Path, ends with NUL; links are followed
+         character(kind=c_char), intent(in) :: path(*)
+         !> Flags, 0
+         integer(c_int), intent(in), value :: flags
+         !> Which properties are asked for
+         integer(c_int), intent(in), value :: mask
+         !> Structure of 256 bytes, the type and the permissions are two bytes from byte 28 on
+         integer(c_int16_t), intent(inout) :: properties(128)
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_statx
+
+      !> Number of this process
+      function c_getpid() result(process) bind(c, name="getpid")
+         import :: c_int
+         !> Process id
+         integer(c_int) :: process
+      end function c_getpid
+
+      !> Where `errno` of this thread is
+      function c_errno_place() result(place) bind(c, name="__errno_location")
+         import :: c_ptr
+         !> Address of a C int
+         type(c_ptr) :: place
+      end function c_errno_place
+
+      !> What an `errno` means
+      function c_strerror(number) result(text) bind(c, name="strerror")
+         import :: c_int, c_ptr
+         !> Value of `errno`
+         integer(c_int), intent(in), value :: number
+         !> Address of a text that ends with NUL
+         type(c_ptr) :: text
+      end function c_strerror
+
+      !> Length of a text of C
+      function c_strlen(text) result(length) bind(c, name="strlen")
+         import :: c_ptr, c_size_t
+         !> Address of a text that ends with NUL
+         type(c_ptr), intent(in), value :: text
+         !> Number of bytes before the NUL
+         integer(c_size_t) :: length
+      end function c_strlen
+   end interface
+
+contains
+
+   !> A text as C wants it
+   pure function c_text(text) result(terminated)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> The text and a NUL
+      character(len=len(text)+1, kind=c_char) :: terminated
+
+      terminated = text//c_null_char
+   end function c_text
+
+   !> Whether what exists is a file rather than a device, a pipe or the like
+   function is_regular(path)
+      !> Path of something that exists; a link counts as what it points at
+      character(len=*), intent(in) :: path
+      !> False if it is something else; true also if the system does not tell
+      logical :: is_regular
+      ! AT_FDCWD, STATX_TYPE, S_IFMT and S_IFREG of C
+      integer(c_int), parameter :: current_directory = -100, type_of_file = 1
+      integer, parameter :: type_bits = int(o'170000'), regular = int(o'100000')
+      integer(c_int16_t) :: properties(128)
+      integer(c_int) :: status
+
+      is_regular = .true.
+      properties = 0_c_int16_t
+      status = c_statx(current_directory, c_text(path), 0_c_int, type_of_file, properties)
+      if (status == 0) is_regular = iand(int(properties(15)), type_bits) == regular
+   end function is_regular
+
+   !> Value of `errno`: to be asked for right after the call that failed
+   function last_errno() result(number)
+      !> Number of the last failure
+      integer(c_int) :: number
+      integer(c_int), pointer :: place
+
+      call c_f_pointer(c_errno_place(), place)
+      number = place
+   end function last_errno
+
+   !> What the system says about a failure
+   function system_reason(number) result(reason)
+      !> Value of `errno`
+      integer(c_int), intent(in) :: number
+      !> Text such as `No space left on device`
+      character(len=:), allocatable :: reason
+      type(c_ptr) :: text
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, length
+
+      text = c_strerror(number)
+      length = int(c_strlen(text))
+      call c_f_pointer(text, letters, [length])
+      allocate(character(len=length) :: reason)
+      do i = 1, length
+         reason(i:i) = letters(i)
+      end do
+   end function system_reason
+
+end module vcor_io_posix
