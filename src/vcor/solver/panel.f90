@@ -97,7 +97,7 @@ contains
    end function theta
 
    !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_panel(rule, map, scale, impact, kernel, start, panel, iterations)
+   pure subroutine solve_panel(rule, map, scale, impact, kernel, start, panel, tolerance)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -112,13 +112,11 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry `indentation` holds a guess at the stages
       type(panel_t), intent(inout) :: panel
-      !> Largest number of Newton's iterations
-      integer, intent(in) :: iterations
+      !> Newton's iteration ends with the first correction below this part of the largest
+      !> indentation; as it converges quadratically, what is left is of the order of its square
+      real(wp), intent(in) :: tolerance
 
-      ! Newton converges quadratically, at the end of an elastic contact (u'' infinite) with order
-      ! 1.5: a correction of 1e-10 is followed by one below rounding
-      real(wp), parameter :: small_correction = 1.0e-10_wp
-
+      integer, parameter :: most_iterations = 25
       complex(wp), dimension(map%pairs) :: lambda, stiffness, memory, first, second
       real(wp), dimension(rule%stages) :: s, u, right, alpha, slope, correction, residual
       real(wp), dimension(rule%stages) :: time, force, impulse, second_impulse
@@ -164,7 +162,7 @@ contains
 
       s = panel%indentation(1:n)
       panel%converged = .false.
-      do iteration = 1, iterations
+      do iteration = 1, most_iterations
          slope = sqrt(abs(s))
          u = s*slope
          slope = 1.5_wp*slope
@@ -177,7 +175,7 @@ contains
          call solve_linear(jacobian, residual, regular)
          if (.not. regular) return
          s = s + residual
-         if (maxval(abs(residual)) <= small_correction*maxval(abs(s))) then
+         if (maxval(abs(residual)) <= tolerance*maxval(abs(s))) then
             panel%converged = .true.
             exit
          end if

@@ -1,0 +1,174 @@
+!> The command line as a request
+module vcor_app_cli
+   use vcor_app_argument, only : argument_t
+   use vcor, only : error_t, error_usage, printable, quantity_names, raise, suggestion
+   implicit none
+   private
+
+   public :: request_t, parse, commands
+
+   !> Known commands
+   character(len=*), parameter :: commands = 'run check help'
+   !> Options of run
+   character(len=*), parameter :: run_options = '--set --output --print --quiet --help --version'
+   !> Options of check
+   character(len=*), parameter :: check_options = '--set --help --version'
+   !> Options of help
+   character(len=*), parameter :: help_options = '--help --version'
+
+   !> What the user asks for
+   type :: request_t
+      !> One of `commands`, or version
+      character(len=:), allocatable :: command
+      !> Case files, or the topic of help, shape (n)
+      type(argument_t), allocatable :: files(:)
+      !> Values of --set, shape (n)
+      type(argument_t), allocatable :: settings(:)
+      !> Names of --print, shape (n)
+      type(argument_t), allocatable :: names(:)
+      !> Directory of --output; unallocated without it
+      character(len=:), allocatable :: directory
+      !> Nothing on the screen
+      logical :: quiet = .false.
+   end type request_t
+
+contains
+
+   !> Understand the command line
+   subroutine parse(words, request, error)
+      !> Words after the name of the program
+      type(argument_t), intent(in) :: words(:)
+      !> The request
+      type(request_t), intent(out) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: known, name, value
+      integer :: i, mark
+      logical :: plain
+
+      allocate (request%files(0), request%settings(0), request%names(0))
+      if (size(words) == 0) then
+         call raise(error, error_usage, 'no command; known: run, check, help ' &
+            //'(vcor help says more)')
+         return
+      end if
+
+      select case (words(1)%text)
+      case ('run')
+         known = run_options
+      case ('check')
+         known = check_options
+      case ('help', '--help', '-h')
+         known = help_options
+      case ('--version')
+         request%command = 'version'
+         return
+      case default
+         call raise(error, error_usage, "unknown command '"//printable(words(1)%text)//"'; " &
+            //suggestion(words(1)%text, commands))
+         return
+      end select
+      request%command = words(1)%text
+      if (request%command(1:1) == '-') request%command = 'help'
+
+      plain = .false.
+      i = 1
+      do while (i < size(words))
+         i = i + 1
+         name = words(i)%text
+         if (plain .or. index(name, '-') /= 1 .or. name == '-') then
+            request%files = [request%files, words(i)]
+            cycle
+         end if
+         if (name == '--') then
+            plain = .true.
+            cycle
+         end if
+         if (name == '-h') name = '--help'
+
+         value = ''
+         mark = index(name, '=')
+         if (mark > 0) then
+            value = name(mark + 1:)
+            name = name(:mark - 1)
+         end if
+         if (index(' '//known//' ', ' '//name//' ') == 0) then
+            call raise(error, error_usage, "unknown option '"//printable(name)//"' of " &
+               //request%command//'; '//suggestion(name, known))
+            return
+         end if
+         select case (name)
+         case ('--help')
+            request%files = [argument_t(request%command)]
+            if (request%command == 'help') deallocate (request%files)
+            if (.not. allocated(request%files)) allocate (request%files(0))
+            request%command = 'help'
+            return
+         case ('--version')
+            request%command = 'version'
+            return
+         case ('--quiet')
+            if (mark > 0) then
+               call raise(error, error_usage, 'option --quiet takes no value')
+               return
+            end if
+            request%quiet = .true.
+            cycle
+         end select
+
+         if (mark == 0) then
+            if (i == size(words)) then
+               call raise(error, error_usage, 'option '//name//' needs a value')
+               return
+            end if
+            i = i + 1
+            value = words(i)%text
+         end if
+         if (len_trim(value) == 0) then
+            call raise(error, error_usage, 'option '//name//' needs a value')
+            return
+         end if
+         select case (name)
+         case ('--set')
+            request%settings = [request%settings, argument_t(value)]
+         case ('--output')
+            request%directory = value
+         case ('--print')
+            call add_names(value, request, error)
+            if (allocated(error)) return
+         end select
+      end do
+
+      if (request%command /= 'help' .and. size(request%files) == 0) &
+         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
+         //' CASE.nml')
+   end subroutine parse
+
+   !> Split the value of --print
+   subroutine add_names(list, request, error)
+      !> Names separated by commas
+      character(len=*), intent(in) :: list
+      !> The request
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: name
+      integer :: first, last
+
+      first = 1
+      do while (first <= len(list) + 1)
+         last = index(list(first:)//',', ',') + first - 2
+         name = trim(adjustl(list(first:last)))
+         if (len(name) == 0 .or. index(' '//quantity_names()//' ', ' '//name//' ') == 0) then
+            call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+               //suggestion(name, quantity_names()))
+            return
+         end if
+         request%names = [request%names, argument_t(name)]
+         first = last + 2
+      end do
+   end subroutine add_names
+
+end module vcor_app_cli

@@ -1,0 +1,322 @@
+!> What the commands do
+module vcor_app_driver
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use vcor_app_argument, only : argument_t
+   use vcor_app_cli, only : request_t
+   use vcor_app_help, only : help_text
+   use vcor_app_screen, only : report
+   use vcor, only : build_impact, build_solver, case_t, contact_lasting, contact_separated, &
+      error_input, error_numerical, error_t, evaluate, history_table, impact_t, integer_text, &
+      join_path, make_directory, method_for, outcome_t, override, quantities, quantity_value, &
+      raise, read_case, real_text, solver_t, status_name, summary_table, table_t, trajectory_t, &
+      version, write_csv, write_hdf5, write_stdout
+   implicit none
+   private
+
+   public :: execute, complain
+
+   !> One case of a call, ready to run
+   type :: job_t
+      !> The case
+      type(case_t) :: case
+      !> Its impact
+      type(impact_t) :: impact
+      !> Its solver
+      class(solver_t), allocatable :: solver
+      !> Its method
+      character(len=:), allocatable :: method
+      !> Directory and stem of its files
+      character(len=:), allocatable :: path
+      !> Whether it writes any file
+      logical :: writes = .true.
+   end type job_t
+
+contains
+
+   !> Do what is asked for
+   subroutine execute(request, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The first error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      select case (request%command)
+      case ('version')
+         call write_stdout('vcor '//version//new_line('a'), error)
+      case ('help')
+         call help(request%files, error)
+      case ('check')
+         call check(request, error)
+      case default
+         call run(request, error)
+      end select
+   end subroutine execute
+
+   !> One line on stderr
+   subroutine complain(error)
+      !> The error
+      type(error_t), intent(in) :: error
+
+      write (error_unit, '(a)') 'vcor: error: '//error%message
+   end subroutine complain
+
+   !> Print a help page
+   subroutine help(topics, error)
+      !> Topic, if any
+      type(argument_t), intent(in) :: topics(:)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: text
+
+      if (size(topics) > 0) then
+         call help_text(topics(1)%text, text, error)
+      else
+         call help_text('', text, error)
+      end if
+      if (.not. allocated(error)) call write_stdout(text, error)
+   end subroutine help
+
+   !> Validate cases and print them complete
+   subroutine check(request, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The first error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(job_t), allocatable :: jobs(:)
+      integer :: i
+
+      call prepare(request, jobs, error)
+      if (allocated(error)) return
+      do i = 1, size(jobs)
+         call write_stdout(jobs(i)%case%to_text(complete=.true., remarks=.true.), error)
+         if (allocated(error)) return
+      end do
+   end subroutine check
+
+   !> Run cases. All are read and validated before the first one runs, so that a mistake in the
+   !> last does not come after hours
+   subroutine run(request, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The first error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(job_t), allocatable :: jobs(:)
+      type(error_t), allocatable :: trouble
+      integer :: i
+
+      call prepare(request, jobs, error)
+      if (allocated(error)) return
+      do i = 1, size(jobs)
+         call run_job(request, jobs(i), trouble)
+         if (.not. allocated(trouble)) cycle
+         ! a case that fails numerically does not stop the others, anything else does
+         if (trouble%code /= error_numerical) then
+            call move_alloc(trouble, error)
+            return
+         end if
+         if (allocated(error)) call complain(error)
+         call move_alloc(trouble, error)
+      end do
+   end subroutine run
+
+   !> Read, override, validate and build all cases of a request
+   subroutine prepare(request, jobs, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The cases
+      type(job_t), allocatable, intent(out) :: jobs(:)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory, stem, method
+      logical :: csv, hdf5
+      integer :: i, j
+
+      allocate (jobs(size(request%files)))
+      do i = 1, size(jobs)
+         associate (job => jobs(i))
+            call read_case(job%case, request%files(i)%text, error)
+            if (allocated(error)) return
+            do j = 1, size(request%settings)
+               call override(job%case, request%settings(j)%text, error)
+               if (allocated(error)) return
+            end do
+            call job%case%validate(error)
+            if (allocated(error)) return
+            call build_impact(job%case, job%impact, error)
+            if (allocated(error)) return
+            call build_solver(job%case, job%impact, job%solver, error)
+            if (allocated(error)) return
+
+            call job%case%get('solver', 'method', method)
+            job%method = method_for(job%impact, method)
+            call job%case%get('output', 'directory', directory)
+            if (allocated(request%directory)) directory = request%directory
+            call job%case%get('output', 'stem', stem)
+            job%path = join_path(directory, stem)
+            call job%case%get('output', 'csv', csv)
+            call job%case%get('output', 'hdf5', hdf5)
+            ! bare numbers are for scripts, which would be surprised by files
+            job%writes = (csv .or. hdf5) &
+               .and. (size(request%names) == 0 .or. allocated(request%directory))
+         end associate
+         do j = 1, i - 1
+            if (jobs(j)%path == jobs(i)%path .and. jobs(i)%writes) then
+               call raise(error, error_input, request%files(i)%text//': its files would replace ' &
+                  //'those of '//request%files(j)%text//': give one of them another output.stem')
+               return
+            end if
+         end do
+      end do
+   end subroutine prepare
+
+   !> Run one case
+   subroutine run_job(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: trouble
+      character(len=:), allocatable :: files, title
+
+      call job%solver%solve(job%impact, trajectory, error)
+      if (allocated(error)) then
+         error%message = job%case%source//': '//error%message
+         return
+      end if
+      outcome = evaluate(job%impact, trajectory)
+      call end_of(job, outcome, trajectory, error)
+
+      files = ''
+      if (job%writes) then
+         call write_files(request, job, outcome, trajectory, files, trouble)
+         if (allocated(trouble)) then
+            call move_alloc(trouble, error)
+            return
+         end if
+      end if
+      call job%case%get('case', 'title', title)
+      if (size(request%names) > 0) then
+         call write_stdout(numbers(request%names, outcome)//new_line('a'), trouble)
+      else if (.not. request%quiet) then
+         call write_stdout(report(job%case%source, title, job%method, outcome, files), trouble)
+      end if
+      if (allocated(trouble)) call move_alloc(trouble, error)
+   end subroutine run_job
+
+   !> An impact without separation has no coefficient of restitution: say why
+   subroutine end_of(job, outcome, trajectory, error)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Its trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Error of code `error_numerical`; unallocated where the bodies separated
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: time
+
+      if (outcome%status == contact_separated) return
+      time = real_text(trajectory%state(1, trajectory%last))
+      if (outcome%status == contact_lasting) then
+         call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
+            //'within '//time//' s: give a longer solver.end_time')
+      else
+         call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
+            //time//' s all motion has died out in contact, a material without equilibrium ' &
+            //'modulus does not push it back')
+      end if
+   end subroutine end_of
+
+   !> Write the files of a case
+   subroutine write_files(request, job, outcome, trajectory, files, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Its trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Files written, separated by commas
+      character(len=:), allocatable, intent(out) :: files
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(table_t) :: summary, course
+      character(len=:), allocatable :: title, text, directory
+      logical :: csv, hdf5, history
+
+      call job%case%get('output', 'csv', csv)
+      call job%case%get('output', 'hdf5', hdf5)
+      call job%case%get('output', 'history', history)
+      call job%case%get('case', 'title', title)
+      text = job%case%to_text(complete=.true.)
+      call summary_table(summary, title, text, [outcome])
+      if (history) call history_table(course, title, text, trajectory)
+
+      call job%case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      files = ''
+      call make_directory(directory, error)
+      if (allocated(error)) return
+      if (csv) then
+         call write_csv(job%path//'_summary.csv', summary, error)
+         if (allocated(error)) return
+         files = files//', '//job%path//'_summary.csv'
+         if (history) then
+            call write_csv(job%path//'.csv', course, error)
+            if (allocated(error)) return
+            files = files//', '//job%path//'.csv'
+         end if
+      end if
+      if (hdf5) then
+         if (history) then
+            call write_hdf5(job%path//'.h5', summary, course, error)
+         else
+            call write_hdf5(job%path//'.h5', summary, error=error)
+         end if
+         if (allocated(error)) return
+         files = files//', '//job%path//'.h5'
+      end if
+      files = files(3:)
+   end subroutine write_files
+
+   !> Bare numbers for --print
+   function numbers(names, outcome) result(text)
+      !> Names of the quantities
+      type(argument_t), intent(in) :: names(:)
+      !> Outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Numbers separated by blanks
+      character(len=:), allocatable :: text
+
+      integer :: i, j
+
+      text = ''
+      do i = 1, size(names)
+         if (i > 1) text = text//' '
+         select case (names(i)%text)
+         case ('steps')
+            text = text//integer_text(outcome%steps)
+         case ('status')
+            text = text//status_name(outcome%status)
+         case default
+            do j = 1, size(quantities)
+               if (quantities(j)%name == names(i)%text) &
+                  text = text//real_text(quantity_value(outcome, j))
+            end do
+         end select
+      end do
+   end function numbers
+
+end module vcor_app_driver

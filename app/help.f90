@@ -1,0 +1,139 @@
+!> Help pages; the page of the input is made from the catalogue of keys
+module vcor_app_help
+   use vcor, only : catalogue, error_t, error_usage, groups, printable, quantities, raise, &
+      range_text, suggestion, version
+   implicit none
+   private
+
+   public :: help_text
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+   !> Known topics
+   character(len=*), parameter :: topics = 'run check input output help'
+
+contains
+
+   !> A help page
+   subroutine help_text(topic, text, error)
+      !> Topic, empty for the overview
+      character(len=*), intent(in) :: topic
+      !> The page
+      character(len=:), allocatable, intent(out) :: text
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      select case (topic)
+      case ('', 'help')
+         text = overview()
+      case ('run')
+         text = run_page()
+      case ('check')
+         text = check_page()
+      case ('input')
+         text = input_page()
+      case ('output')
+         text = output_page()
+      case default
+         call raise(error, error_usage, "no help on '"//printable(topic)//"'; " &
+            //suggestion(topic, topics))
+      end select
+   end subroutine help_text
+
+   !> Overview
+   function overview() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
+         //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
+         //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
+         //'       vcor help [TOPIC]                  topics: run, check, input, output'//nl &
+         //'       vcor --version'//nl//nl &
+         //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
+         //'5 numerical failure'//nl
+   end function overview
+
+   !> Page of run
+   function run_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor run CASE.nml ... [options]'//nl//nl &
+         //'Solves the impact of each case and writes STEM_summary.csv, STEM.csv (the time'//nl &
+         //'history) and STEM.h5 (both), STEM being the name of the case file.'//nl//nl &
+         //'  --set GROUP.KEY=VALUE   replace a value of the case; a material is addressed'//nl &
+         //"                          by its name: --set rubber.beta=600; may be repeated"//nl &
+         //'  --output DIR            directory of the files, made if it is not there'//nl &
+         //'  --print NAME,NAME       print bare numbers instead of the table, and write'//nl &
+         //'                          files only if --output is given; names: vcor help output' &
+         //nl &
+         //'  --quiet                 print nothing'//nl
+   end function run_page
+
+   !> Page of check
+   function check_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor check CASE.nml ... [--set GROUP.KEY=VALUE]'//nl//nl &
+         //'Validates each case and prints it with every default filled in; what it prints is'//nl &
+         //'a case file again.'//nl
+   end function check_page
+
+   !> Page of the input, from the catalogue
+   function input_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      character(len=28) :: name
+      character(len=:), allocatable :: note
+      integer :: i, j
+
+      text = 'A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units.'//nl
+      do i = 1, size(groups)
+         text = text//nl//'&'//trim(groups(i)%name)//'  '//trim(groups(i)%meaning)
+         if (groups(i)%repeated) text = text//'; may be repeated'
+         if (.not. groups(i)%required) text = text//'; optional'
+         text = text//nl
+         do j = 1, size(catalogue)
+            associate (key => catalogue(j))
+               if (key%group /= groups(i)%name) cycle
+               name = key%name
+               note = ''
+               if (key%unit /= '') note = note//' ['//trim(key%unit)//']'
+               if (range_text(key) /= '') note = note//', '//range_text(key)
+               if (key%required) then
+                  note = note//', required'
+               else if (key%default /= '' .and. key%default /= "''") then
+                  note = note//', default '//trim(key%default)
+               end if
+               if (key%models /= '') note = note//'; '//trim(key%models)
+               text = text//'   '//name//trim(key%meaning)//note//nl
+            end associate
+         end do
+      end do
+   end function input_page
+
+   !> Page of the output, from the table of quantities
+   function output_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      character(len=28) :: name
+      integer :: i
+
+      text = 'Columns of STEM_summary.csv and names for --print:'//nl
+      do i = 1, size(quantities)
+         name = quantities(i)%name
+         text = text//'   '//name//trim(quantities(i)%meaning)//' ['//trim(quantities(i)%unit) &
+            //']'//nl
+      end do
+      name = 'steps'
+      text = text//'   '//name//'number of time steps'//nl
+      name = 'status'
+      text = text//'   '//name//'separated, no_separation or sticks; the numbers are nan ' &
+         //'unless separated'//nl
+   end function output_page
+
+end module vcor_app_help

@@ -1,0 +1,32 @@
+!> The program vcor: the coefficient of restitution of viscoelastic impacts
+program vcor_main
+   use, intrinsic :: iso_c_binding, only : c_int
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use vcor_app_argument, only : argument_t, get_arguments
+   use vcor_app_cli, only : parse, request_t
+   use vcor_app_driver, only : complain, execute
+   use vcor, only : error_t
+   implicit none
+
+   interface
+      !> Leave the process with an exit code and without the words of `stop`
+      subroutine c_exit(code) bind(c, name='exit')
+         import :: c_int
+         !> Exit code
+         integer(c_int), intent(in), value :: code
+      end subroutine c_exit
+   end interface
+
+   type(argument_t), allocatable :: words(:)
+   type(request_t) :: request
+   type(error_t), allocatable :: error
+
+   call get_arguments(words)
+   call parse(words, request, error)
+   if (.not. allocated(error)) call execute(request, error)
+   if (allocated(error)) then
+      call complain(error)
+      flush (error_unit)
+      call c_exit(int(error%code, c_int))
+   end if
+end program vcor_main

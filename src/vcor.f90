@@ -1,0 +1,55 @@
+!> The public interface of the library: everything a program needs, re-exported
+module vcor
+   use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
+      error_usage, raise
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, new_impact
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
+      trajectory_t
+   use vcor_io_case_reader, only : override, read_case, read_case_text
+   use vcor_io_csv, only : write_csv
+   use vcor_io_file, only : join_path, make_directory, write_stdout
+   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_number, only : integer_text, real_text
+   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_table, only : table_t
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, material_t, new_material
+   use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
+   use vcor_study_build, only : build_impact, build_material, build_solver
+   use vcor_study_case, only : case_t
+   use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
+   use vcor_study_nearest, only : suggestion
+   use vcor_study_quantity, only : quantities, quantity_names, quantity_t, quantity_value, &
+      status_name
+   use vcor_study_text, only : printable
+   use vcor_version, only : version
+   implicit none
+   private
+
+   public :: wp, version
+   public :: error_t, raise
+   public :: error_internal, error_usage, error_input, error_file, error_numerical
+   public :: material_t, material_data_t, new_material
+   public :: prony_t, power_law_t, cerf_t
+   public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
+   public :: contact_modulus_t, new_contact_modulus
+   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing
+   public :: impact_t, new_impact
+   public :: solver_t, solver_settings_t, new_solver, method_for
+   public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
+   public :: outcome_t, evaluate
+   public :: case_t, read_case, read_case_text, override
+   public :: build_impact, build_material, build_solver
+   public :: quantity_t, quantities, quantity_names, quantity_value, status_name
+   public :: key_t, group_t, catalogue, groups, range_text
+   public :: table_t, summary_table, history_table, write_csv, write_hdf5
+   public :: write_stdout, make_directory, join_path
+   public :: real_text, integer_text, printable, suggestion
+
+end module vcor

@@ -1,0 +1,104 @@
+!> Materials by the name of their model
+module vcor_material
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_type, only : material_t
+   implicit none
+   private
+
+   public :: material_t, material_data_t, new_material
+
+   !> What describes a material of any model; a model looks at its own components only
+   type :: material_data_t
+      !> Name that cases call it by
+      character(len=:), allocatable :: name
+      !> One of rigid, elastic, sls, prony, power_law, cerf
+      character(len=:), allocatable :: model
+      !> Mass density [kg/m3]; 0: not known
+      real(wp) :: density = 0.0_wp
+      !> Poisson's ratio [-]
+      real(wp) :: poisson_ratio = 0.5_wp
+      !> elastic: Young's modulus [Pa]
+      real(wp) :: modulus = 0.0_wp
+      !> sls: glassy modulus [Pa]
+      real(wp) :: glassy_modulus = 0.0_wp
+      !> sls: parameter alpha [1/s]
+      real(wp) :: alpha = 0.0_wp
+      !> sls: rate of relaxation [1/s]; cerf: its root [s^(-1/2)]
+      real(wp) :: beta = 0.0_wp
+      !> prony, power_law, cerf: equilibrium modulus [Pa]
+      real(wp) :: equilibrium_modulus = 0.0_wp
+      !> prony: moduli of the terms [Pa], shape (n)
+      real(wp), allocatable :: moduli(:)
+      !> prony: rates of the terms [1/s], shape (n)
+      real(wp), allocatable :: rates(:)
+      !> prony: viscosity of a dashpot in parallel [Pa s]
+      real(wp) :: viscosity = 0.0_wp
+      !> power_law: coefficient [Pa s^a]
+      real(wp) :: coefficient = 0.0_wp
+      !> power_law: exponent a [-]
+      real(wp) :: exponent = 0.5_wp
+      !> cerf: relaxing modulus [Pa]
+      real(wp) :: relaxing_modulus = 0.0_wp
+   end type material_data_t
+
+contains
+
+   !> Build a material
+   subroutine new_material(material, data, error)
+      !> The material; not allocated on failure
+      class(material_t), allocatable, intent(out) :: material
+      !> Its description
+      type(material_data_t), intent(in) :: data
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(prony_t) :: prony
+      type(power_law_t) :: power_law
+      type(cerf_t) :: cerf
+
+      select case (data%model)
+      case ('rigid')
+         call new_rigid(prony)
+         call accept(prony)
+      case ('elastic')
+         call new_elastic(prony, data%modulus, error)
+         call accept(prony)
+      case ('sls')
+         call new_sls(prony, data%glassy_modulus, data%alpha, data%beta, error)
+         call accept(prony)
+      case ('prony')
+         call new_prony(prony, data%equilibrium_modulus, data%moduli, data%rates, &
+            data%viscosity, error)
+         call accept(prony)
+      case ('power_law')
+         call new_power_law(power_law, data%equilibrium_modulus, data%coefficient, &
+            data%exponent, error)
+         call accept(power_law)
+      case ('cerf')
+         call new_cerf(cerf, data%equilibrium_modulus, data%relaxing_modulus, data%beta, error)
+         call accept(cerf)
+      case default
+         call raise(error, error_input, "unknown model '"//data%model &
+            //"'; known: rigid, elastic, sls, prony, power_law, cerf")
+      end select
+
+   contains
+
+      !> Take a finished material over
+      subroutine accept(built)
+         !> The material
+         class(material_t), intent(in) :: built
+
+         if (allocated(error)) return
+         allocate (material, source=built)
+         material%name = data%name
+         material%density = data%density
+         material%poisson_ratio = data%poisson_ratio
+      end subroutine accept
+   end subroutine new_material
+
+end module vcor_material

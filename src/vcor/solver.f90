@@ -1,0 +1,103 @@
+!> Solvers by the name of their method
+module vcor_solver
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_solver_ive, only : ive_t, new_ive
+   use vcor_solver_product, only : new_product, product_t
+   use vcor_solver_type, only : solver_t
+   implicit none
+   private
+
+   public :: solver_t, solver_settings_t, new_solver, method_for
+
+   !> How an impact is to be solved
+   type :: solver_settings_t
+      !> One of auto, ive, direct
+      character(len=:), allocatable :: method
+      !> Scheme of the direct method: product
+      character(len=:), allocatable :: scheme
+      !> Time step of the direct method [s]; 0: follows from the accuracy
+      real(wp) :: time_step = 0.0_wp
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp) :: end_time = 0.0_wp
+      !> Wanted accuracy of the coefficient of restitution [-]; 0: that of the method
+      real(wp) :: accuracy = 0.0_wp
+   end type solver_settings_t
+
+   !> Accuracy of ive where none is asked for
+   real(wp), parameter :: ive_accuracy = 1.0e-8_wp
+   !> Accuracy of direct where none is asked for
+   real(wp), parameter :: direct_accuracy = 1.0e-6_wp
+
+contains
+
+   !> The method for an impact: `auto` is ive where the kernel is a sum of exponentials
+   pure function method_for(impact, method) result(name)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> What the user asks for: auto, ive or direct
+      character(len=*), intent(in) :: method
+      !> ive or direct
+      character(len=:), allocatable :: name
+
+      type(exponential_sum_t) :: terms
+      logical :: exact
+
+      name = method
+      if (method /= 'auto') return
+      call impact%kernel_exponentials(terms, exact)
+      if (exact) then
+         name = 'ive'
+      else
+         name = 'direct'
+      end if
+   end function method_for
+
+   !> Build a solver
+   subroutine new_solver(solver, settings, impact, error)
+      !> The solver; not allocated on failure
+      class(solver_t), allocatable, intent(out) :: solver
+      !> How the impact is to be solved
+      type(solver_settings_t), intent(in) :: settings
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(exponential_sum_t) :: terms
+      type(ive_t), allocatable :: ive
+      type(product_t), allocatable :: product
+      real(wp) :: accuracy
+      logical :: exact
+
+      accuracy = settings%accuracy
+      select case (method_for(impact, settings%method))
+      case ('ive')
+         call impact%kernel_exponentials(terms, exact)
+         if (.not. exact) then
+            call raise(error, error_input, "method = 'ive' needs a contact modulus that is a sum " &
+               //"of exponentials, which this one is not; use method = 'direct' (or 'auto')")
+            return
+         end if
+         if (.not. accuracy > 0.0_wp) accuracy = ive_accuracy
+         allocate (ive)
+         call new_ive(ive, accuracy, settings%end_time, error)
+         if (.not. allocated(error)) call move_alloc(ive, solver)
+      case ('direct')
+         if (settings%scheme /= 'product') then
+            call raise(error, error_input, "unknown scheme '"//settings%scheme//"'; known: product")
+            return
+         end if
+         if (.not. accuracy > 0.0_wp) accuracy = direct_accuracy
+         allocate (product)
+         call new_product(product, settings%time_step, accuracy, settings%end_time)
+         call move_alloc(product, solver)
+      case default
+         call raise(error, error_input, "unknown method '"//settings%method &
+            //"'; known: auto, ive, direct")
+      end select
+   end subroutine new_solver
+
+end module vcor_solver

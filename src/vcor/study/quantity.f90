@@ -1,0 +1,109 @@
+!> The numbers of an outcome under the names that files, the screen and --print use
+module vcor_study_quantity
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : columns, contact_lasting, contact_separated
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: quantity_t, quantities, history_quantities
+   public :: quantity_value, quantity_names, status_name
+
+   !> One quantity
+   type :: quantity_t
+      !> Name of the column
+      character(len=20) :: name
+      !> Symbol in the paper and in docs/theory.md
+      character(len=8) :: symbol
+      !> Unit; 1 for a pure number
+      character(len=8) :: unit
+      !> What it is
+      character(len=56) :: meaning
+   end type quantity_t
+
+   !> Numbers of a summary, in the order of its columns; steps and status follow
+   type(quantity_t), parameter :: quantities(*) = [ &
+      quantity_t('cor', 'e', '1', 'coefficient of restitution, relative velocity'), &
+      quantity_t('cor_sphere', 'e_a', '1', 'coefficient of restitution, velocity of the sphere'), &
+      quantity_t('contact_time', 't0', 's', 'contact time'), &
+      quantity_t('max_indentation', 's_max', 'm', 'largest indentation'), &
+      quantity_t('max_force', 'F_max', 'N', 'largest contact force'), &
+      quantity_t('residual_indentation', 's(t0)', 'm', 'indentation left at separation'), &
+      quantity_t('residual_ratio', 's0/smax', '1', 'residual over largest indentation'), &
+      quantity_t('hysteresis_energy', 'W_h', 'J', 'energy lost in the contact'), &
+      quantity_t('wave_energy', 'W_wave', 'J', 'energy radiated into the plate'), &
+      quantity_t('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact'), &
+      quantity_t('energy_imbalance', 'dW', 'J', 'what the energy budget misses'), &
+      quantity_t('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0'), &
+      quantity_t('inelasticity', 'lambda', '1', "Zener's inelasticity parameter"), &
+      quantity_t('loss_tangent', 'tan(d)', '1', 'loss tangent at min_frequency'), &
+      quantity_t('cor_error', 'de', '1', 'estimated error of cor')]
+
+   !> Columns of a history, in the order of the rows of a trajectory's state
+   type(quantity_t), parameter :: history_quantities(columns) = [ &
+      quantity_t('time', 't', 's', 'time since first contact'), &
+      quantity_t('indentation', 's', 'm', 'indentation'), &
+      quantity_t('relative_velocity', "s'", 'm/s', 'rate of the indentation'), &
+      quantity_t('force', 'F', 'N', 'contact force'), &
+      quantity_t('impulse', 'I', 'N s', 'impulse of the contact force'), &
+      quantity_t('sphere_displacement', 'z', 'm', 'displacement of the sphere'), &
+      quantity_t('sphere_velocity', "z'", 'm/s', 'velocity of the sphere'), &
+      quantity_t('plate_displacement', 'U', 'm', 'displacement of the plate'), &
+      quantity_t('plate_velocity', "U'", 'm/s', 'velocity of the plate')]
+
+contains
+
+   !> Value of a quantity, NaN where the impact did not end in separation
+   pure function quantity_value(outcome, index) result(value)
+      !> Outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Place of the quantity in `quantities`
+      integer, intent(in) :: index
+      !> Value, in its unit
+      real(wp) :: value
+
+      real(wp) :: all_values(size(quantities))
+
+      all_values = [outcome%cor, outcome%cor_sphere, outcome%contact_time, &
+         outcome%max_indentation, outcome%max_force, outcome%residual_indentation, &
+         outcome%residual_ratio, outcome%hysteresis_energy, outcome%wave_energy, &
+         outcome%initial_energy, outcome%energy_imbalance, outcome%min_frequency, &
+         outcome%inelasticity, outcome%loss_tangent, outcome%cor_error]
+      value = all_values(index)
+      if (outcome%status /= contact_separated .and. quantities(index)%name /= 'initial_energy') &
+         value = ieee_value(value, ieee_quiet_nan)
+   end function quantity_value
+
+   !> Names of all columns of a summary, steps and status included, separated by blanks
+   pure function quantity_names() result(names)
+      !> Names
+      character(len=:), allocatable :: names
+
+      integer :: i
+
+      names = ''
+      do i = 1, size(quantities)
+         names = names//trim(quantities(i)%name)//' '
+      end do
+      names = names//'steps status'
+   end function quantity_names
+
+   !> Name of a status
+   pure function status_name(status) result(name)
+      !> One of the `contact_*` constants
+      integer, intent(in) :: status
+      !> separated, no_separation or sticks
+      character(len=:), allocatable :: name
+
+      select case (status)
+      case (contact_separated)
+         name = 'separated'
+      case (contact_lasting)
+         name = 'no_separation'
+      case default
+         name = 'sticks'
+      end select
+   end function status_name
+
+end module vcor_study_quantity
