@@ -43,7 +43,7 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: known, name, value
+      character(len=:), allocatable :: known, name
       integer :: i, mark
       logical :: plain
 
@@ -87,12 +87,9 @@ contains
          end if
          if (name == '-h') name = '--help'
 
-         value = ''
+         ! --option=value, or the value is the next word
          mark = index(name, '=')
-         if (mark > 0) then
-            value = name(mark + 1:)
-            name = name(:mark - 1)
-         end if
+         if (mark > 0) name = name(:mark - 1)
          if (index(' '//known//' ', ' '//name//' ') == 0) then
             call raise(error, error_usage, "unknown option '"//printable(name)//"' of " &
                //request%command//'; '//suggestion(name, known))
@@ -123,27 +120,40 @@ contains
                return
             end if
             i = i + 1
-            value = words(i)%text
          end if
-         if (len_trim(value) == 0) then
-            call raise(error, error_usage, 'option '//name//' needs a value')
-            return
-         end if
-         select case (name)
-         case ('--set')
-            request%settings = [request%settings, argument_t(value)]
-         case ('--output')
-            request%directory = value
-         case ('--print')
-            call add_names(value, request, error)
-            if (allocated(error)) return
-         end select
+         call apply(name, words(i)%text(mark + 1:), request, error)
+         if (allocated(error)) return
       end do
 
       if (request%command /= 'help' .and. size(request%files) == 0) &
          call raise(error, error_usage, 'no case file; expected vcor '//request%command &
          //' CASE.nml')
    end subroutine parse
+
+   !> Take the value of an option
+   subroutine apply(option, value, request, error)
+      !> Option, a known one
+      character(len=*), intent(in) :: option
+      !> Its value
+      character(len=*), intent(in) :: value
+      !> The request
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (len_trim(value) == 0) then
+         call raise(error, error_usage, 'option '//option//' needs a value')
+         return
+      end if
+      select case (option)
+      case ('--set')
+         request%settings = [request%settings, argument_t(value)]
+      case ('--output')
+         request%directory = value
+      case ('--print')
+         call add_names(value, request, error)
+      end select
+   end subroutine apply
 
    !> Split the value of --print
    subroutine add_names(list, request, error)
@@ -154,21 +164,32 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: name
       integer :: first, last
 
       first = 1
       do while (first <= len(list) + 1)
-         last = index(list(first:)//',', ',') + first - 2
-         name = trim(adjustl(list(first:last)))
-         if (len(name) == 0 .or. index(' '//quantity_names()//' ', ' '//name//' ') == 0) then
-            call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
-               //suggestion(name, quantity_names()))
-            return
-         end if
-         request%names = [request%names, argument_t(name)]
+         last = first + index(list(first:)//',', ',') - 2
+         call add_name(trim(adjustl(list(first:last))), request, error)
+         if (allocated(error)) return
          first = last + 2
       end do
    end subroutine add_names
+
+   !> Add one name of --print
+   subroutine add_name(name, request, error)
+      !> Name
+      character(len=*), intent(in) :: name
+      !> The request
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (len(name) == 0 .or. index(' '//quantity_names()//' ', ' '//name//' ') == 0) then
+         call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+            //suggestion(name, quantity_names()))
+      else
+         request%names = [request%names, argument_t(name)]
+      end if
+   end subroutine add_name
 
 end module vcor_app_cli

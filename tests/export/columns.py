@@ -12,7 +12,7 @@ SUMMARY = {
     "wave_energy": "J",
     "initial_energy": "J",
     "energy_imbalance": None,
-    "min_frequency": "rad s-1",
+    "min_frequency": "rad/s",
     "inelasticity": "1",
     "loss_tangent": "1",
     "cor_error": "1",
@@ -23,13 +23,13 @@ SUMMARY = {
 HISTORY = {
     "time": "s",
     "indentation": "m",
-    "relative_velocity": "m s-1",
+    "relative_velocity": "m/s",
     "force": "N",
     "impulse": "N s",
     "sphere_displacement": "m",
-    "sphere_velocity": "m s-1",
+    "sphere_velocity": "m/s",
     "plate_displacement": "m",
-    "plate_velocity": "m s-1",
+    "plate_velocity": "m/s",
 }
 
 INTEGERS = {"steps"}

@@ -213,8 +213,7 @@ contains
       !> `group.key=value` or `material_name.key=value`; a text may stand without quotes
       character(len=*), intent(in) :: setting
       !> Error of code `error_usage` when path or value cannot be read, `error_input` when the
-      !> value is out of
-      !> range; unallocated on success
+      !> value is out of range; unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(entry_t) :: entry
       character(len=:), allocatable :: message, path
@@ -232,16 +231,17 @@ contains
       path = trim(adjustl(setting(:mark-1)))
       entry%origin = "--set "//shortened(path)
       call case%resolve(path, handle, message)
-      if (.not. allocated(message)) then
-         call case%locate(handle, group, row, item)
-         applicable = row_for_model(row, case%model(group, item))
-         if (applicable == 0) applicable = row
-         if (len_trim(setting(mark+1:)) == 0) then
-            message = "there is no value after the equals sign"
-         else
-            call convert_text(catalogue(applicable), trim(adjustl(setting(mark+1:))), entry, &
-               & message)
-         end if
+      if (allocated(message)) then
+         call raise(error, error_usage, entry%origin//": "//message)
+         return
+      end if
+      call case%locate(handle, group, row, item)
+      applicable = row_for_model(row, case%model(group, item))
+      if (applicable == 0) applicable = row
+      if (len_trim(setting(mark+1:)) == 0) then
+         message = "there is no value after the equals sign"
+      else
+         call convert_text(catalogue(applicable), trim(adjustl(setting(mark+1:))), entry, message)
       end if
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)

@@ -9,7 +9,7 @@
 !> run through them with the last dimension the fastest, as in nested loops, the first one outside.
 !>
 !> Units: `1` for numbers without dimension, such as ratios, counts and numbers in a row; the SI
-!> unit otherwise, factors with blanks between them and powers as in `kg m-3`; nothing for text.
+!> unit otherwise, as in `m/s` and `N s`; nothing for text.
 !>
 !> Building a table cannot fail at the caller's hand: the first fault (lengths that do not match, a
 !> name twice) is kept, and `check_table`, which every writer calls, makes an error of it. All
