@@ -112,6 +112,7 @@ contains
             end if
             request%quiet = .true.
             cycle
+         case default
          end select
 
          if (mark == 0) then
@@ -150,7 +151,7 @@ contains
          request%settings = [request%settings, argument_t(value)]
       case ('--output')
          request%directory = value
-      case ('--print')
+      case default
          call add_names(value, request, error)
       end select
    end subroutine apply

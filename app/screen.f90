@@ -43,7 +43,7 @@ contains
          do i = 1, size(shown)
             do j = 1, size(quantities)
                if (quantities(j)%name /= shown(i)) cycle
-               text = text//'  '//quantities(j)%meaning(1:46)//quantities(j)%symbol &
+               text = text//'  '//quantities(j)%meaning(1:50)//quantities(j)%symbol &
                   //significant(quantity_value(outcome, j))//'  '//unit_text(quantities(j)%unit)
                if (quantities(j)%name == 'cor') &
                   text = text//'  +- '//short(outcome%cor_error)
@@ -63,12 +63,12 @@ contains
       !> Lines
       character(len=:), allocatable :: text
 
-      text = '  energy before the impact                      KE_0    ' &
+      text = '  energy before the impact                          KE_0    ' &
          //significant(outcome%initial_energy)//'  J'//nl &
          //share('  lost in the contact (hysteresis)', 'W_h', outcome%hysteresis_energy) &
          //share('  radiated into the plate', 'W_wave', outcome%wave_energy) &
          //share('  left to the sphere', 'KE_1', outcome%final_energy) &
-         //'    imbalance                                   dW      ' &
+         //'  imbalance                                         dW      ' &
          //significant(outcome%energy_imbalance)//'  J'//nl
 
    contains
@@ -84,13 +84,14 @@ contains
          !> Line
          character(len=:), allocatable :: line
 
-         character(len=46) :: wide
+         character(len=50) :: wide
          character(len=8) :: narrow, percent
 
-         wide = '  '//name
+         wide = name
          narrow = symbol
-         write (percent, '(f7.3)') 100.0_wp*energy/outcome%initial_energy
-         line = '  '//wide(1:46)//narrow//significant(energy)//'  J  '//percent//'%'//nl
+         ! a thousandth of a percent is the last digit shown; zero has no sign
+         write (percent, '(f8.3)') 1.0e-3_wp*max(0, nint(1.0e5_wp*energy/outcome%initial_energy))
+         line = '  '//wide//narrow//significant(energy)//'  J  '//percent//' %'//nl
       end function share
    end function budget
 
@@ -101,14 +102,18 @@ contains
       !> Its text
       character(len=16) :: text
 
-      if (abs(value) > 0.0_wp .and. (abs(value) < 1.0e-3_wp .or. abs(value) >= 1.0e6_wp)) then
-         write (text, '(es16.7e3)') value
-         if (text(13:14) == 'E-' .or. text(13:14) == 'E+') then
-            if (text(14:14) == '0') continue
-         end if
+      integer, parameter :: digits = 8
+      character(len=8) :: form
+      integer :: whole
+
+      if (.not. abs(value) > 0.0_wp) then
+         text = repeat(' ', 15)//'0'
+      else if (abs(value) < 0.1_wp .or. abs(value) >= 1.0e6_wp) then
+         write (text, '(es16.7e2)') value
       else
-         write (text, '(g16.8)') value
-         text = adjustr(text)
+         whole = max(0, floor(log10(abs(value))) + 1)
+         write (form, '(a,i1,a)') '(f16.', digits - whole, ')'
+         write (text, form) value
       end if
    end function significant
 

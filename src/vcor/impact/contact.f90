@@ -31,6 +31,8 @@ module vcor_impact_contact
       procedure :: relaxation
       !> dE'/dt
       procedure :: rate
+      !> Integral of E'
+      procedure :: integral
       !> Integrals of E' over equal steps
       procedure :: step_integrals
       !> Storage and loss modulus
@@ -145,6 +147,25 @@ contains
       end if
    end function rate
 
+   !> Integral of E' from 0 to t, the dashpot left out; for a pair by quadrature
+   elemental function integral(self, t) result(value)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Upper limit [s], >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      real(wp), allocatable :: node(:), weight(:)
+
+      if (allocated(self%second)) then
+         call endpoint_rule(node, weight)
+         value = t*sum(weight*self%relaxation(t*node))
+      else
+         value = self%first_factor*self%first%integral(t)
+      end if
+   end function integral
+
    !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, the dashpot left out
    pure function step_integrals(self, dt, n) result(value)
       !> Contact modulus
@@ -160,12 +181,10 @@ contains
       ! Gauss nodes converge there as 5.8^-16
       integer, parameter :: order = 8
       real(wp) :: node(order), weight(order), upper, lower
-      real(wp), allocatable :: end_node(:), end_weight(:)
       integer :: i
 
       if (allocated(self%second)) then
-         call endpoint_rule(end_node, end_weight)
-         value(0) = dt*sum(end_weight*self%relaxation(dt*end_node))
+         value(0) = self%integral(dt)
          call gauss_nodes(node, weight)
          do i = 1, n - 1
             value(i) = dt*sum(weight*self%relaxation(dt*(real(i, wp) + node)))

@@ -36,7 +36,9 @@ module vcor_impact_problem
    contains
       !> Kernel k(t)
       procedure :: kernel
-      !> Weights of the product integration
+      !> Integral of the kernel
+      procedure :: kernel_integral
+      !> Integrals of the kernel over equal steps
       procedure :: kernel_step_integrals
       !> The kernel as a sum of exponentials
       procedure :: kernel_exponentials
@@ -105,6 +107,18 @@ contains
       k = self%hertz_factor*self%modulus%relaxation(t)
    end function kernel
 
+   !> Integral of the kernel from 0 to t, the dashpot left out
+   elemental function kernel_integral(self, t) result(value)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Upper limit [s], >= 0
+      real(wp), intent(in) :: t
+      !> Integral [N s/m^1.5]
+      real(wp) :: value
+
+      value = self%hertz_factor*self%modulus%integral(t)
+   end function kernel_integral
+
    !> Integrals of the kernel over the steps from i dt to (i + 1) dt, i = 0 .. n - 1
    pure function kernel_step_integrals(self, dt, n) result(value)
       !> The impact
@@ -152,14 +166,14 @@ contains
       !> Time scale [s]
       real(wp) :: scale
 
-      real(wp) :: firmness, integral(0:0), guess
+      real(wp) :: firmness, viscosity, guess
       integer :: iteration
 
       ! start from T = 1 s and iterate; with a kernel t^-a the map contracts by 2a/5
       scale = 1.0_wp
+      viscosity = self%kernel_viscosity()
       do iteration = 1, 60
-         integral = self%kernel_step_integrals(scale, 1)
-         firmness = (integral(0) + self%kernel_viscosity())/scale
+         firmness = (self%kernel_integral(scale) + viscosity)/scale
          guess = (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp
          if (abs(guess - scale) <= 1.0e-3_wp*guess) exit
          scale = guess
@@ -167,8 +181,8 @@ contains
       scale = guess
    end function time_scale
 
-   !> Time after which a contact counts as lasting where the user gives none: a thousand time scales,
-   !> those of the rubbery modulus if there is one
+   !> Time after which a contact counts as lasting where the user gives none: a thousand time
+   !> scales, those of the rubbery modulus if there is one
    pure function patience(self) result(time)
       !> The impact
       class(impact_t), intent(in) :: self

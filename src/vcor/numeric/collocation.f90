@@ -21,10 +21,12 @@ module vcor_numeric_collocation
    private
 
    public :: collocation_t, panel_map_t, new_collocation
-   public :: linear, max_stages
+   public :: linear, width
 
-   !> Largest number of stages: beyond, the eigenvectors lose too many digits
-   integer, parameter :: max_stages = 10
+   !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
+   !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
+   !> The eigenvectors' condition grows tenfold per stage; with eight, they cost four digits
+   integer, parameter :: width = 8
    !> Index of the map of a step in t
    integer, parameter :: linear = -1
 
@@ -36,44 +38,40 @@ module vcor_numeric_collocation
       real(wp) :: bend = 0.0_wp
       !> Number of eigenvalues kept, between half and all of the stages
       integer :: pairs = 0
-      !> Eigenvalues, shape (pairs)
-      complex(wp), allocatable :: eigenvalue(:)
-      !> V, one column per kept eigenvalue: real parts, shape (stages, pairs)
-      real(wp), allocatable :: right_re(:, :)
-      !> V: imaginary parts, shape (stages, pairs)
-      real(wp), allocatable :: right_im(:, :)
-      !> V^-1, doubled where a conjugate is left out: real parts, shape (pairs, stages)
-      real(wp), allocatable :: left_re(:, :)
-      !> V^-1: imaginary parts, shape (pairs, stages)
-      real(wp), allocatable :: left_im(:, :)
-      !> V^-1 applied to a vector of ones, shape (pairs)
-      complex(wp), allocatable :: left_one(:)
+      !> Eigenvalues, `pairs` of them
+      complex(wp) :: eigenvalue(width) = (0.0_wp, 0.0_wp)
+      !> V, one column per kept eigenvalue: real parts
+      real(wp) :: right_re(width, width) = 0.0_wp
+      !> V: imaginary parts
+      real(wp) :: right_im(width, width) = 0.0_wp
+      !> V^-1 transposed, doubled where a conjugate is left out: real parts
+      real(wp) :: left_re(width, width) = 0.0_wp
+      !> V^-1 transposed: imaginary parts
+      real(wp) :: left_im(width, width) = 0.0_wp
+      !> V^-1 applied to a vector of ones, `pairs` of them
+      complex(wp) :: left_one(width) = (0.0_wp, 0.0_wp)
    end type panel_map_t
 
    !> A Radau IIA rule
    type :: collocation_t
       !> Number of stages
       integer :: stages = 0
-      !> Nodes in (0, 1], the last at 1, shape (stages)
-      real(wp), allocatable :: node(:)
-      !> Quadrature weights of the nodes, shape (stages)
-      real(wp), allocatable :: weight(:)
-      !> Nodes with the start of the panel before them, shape (0:stages)
-      real(wp), allocatable :: point(:)
-      !> Barycentric weights of `point`, shape (0:stages)
-      real(wp), allocatable :: barycentric(:)
-      !> Barycentric weights of `node`, shape (stages)
-      real(wp), allocatable :: barycentric_node(:)
-      !> Differentiation matrix on `point`, shape (0:stages, 0:stages)
-      real(wp), allocatable :: derivative(:, :)
+      !> Nodes in (0, 1], the last at 1
+      real(wp) :: node(width) = 0.0_wp
+      !> Quadrature weights of the nodes
+      real(wp) :: weight(width) = 0.0_wp
+      !> Nodes with the start of the panel before them
+      real(wp) :: point(0:width) = 0.0_wp
+      !> Barycentric weights of `point`
+      real(wp) :: barycentric(0:width) = 0.0_wp
+      !> Differentiation matrix on `point`
+      real(wp) :: derivative(0:width, 0:width) = 0.0_wp
       !> Maps: index n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
       !> shape (linear:)
       type(panel_map_t), allocatable :: map(:)
    contains
       !> Value of a polynomial given at the points
       procedure :: interpolate
-      !> Value at theta = 0 of the polynomial given at the nodes alone
-      procedure :: extrapolate_to_start
       !> Zero of a polynomial between two arguments
       procedure :: crossing
    end type collocation_t
@@ -84,7 +82,7 @@ contains
    subroutine new_collocation(self, stages, steps, error)
       !> The rule
       type(collocation_t), intent(out) :: self
-      !> Number of stages, 2 .. max_stages
+      !> Number of stages, 2 .. width
       integer, intent(in) :: stages
       !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, steps >= 0
       integer, intent(in) :: steps
@@ -95,24 +93,21 @@ contains
       integer :: n
 
       self%stages = stages
-      allocate (self%node(stages), self%weight(stages), self%point(0:stages))
-      call radau_nodes(self%node)
-      self%point(0) = 0.0_wp
-      self%point(1:) = self%node
-      allocate (self%barycentric(0:stages), self%barycentric_node(stages))
-      self%barycentric = barycentric_weights(self%point)
-      self%barycentric_node = barycentric_weights(self%node)
-      allocate (self%derivative(0:stages, 0:stages))
-      self%derivative = differentiation_matrix(self%point, self%barycentric)
-      call integration_matrix(self%node, matrix, error)
+      call radau_nodes(self%node(1:stages))
+      self%point(1:stages) = self%node(1:stages)
+      self%barycentric(0:stages) = barycentric_weights(self%point(0:stages))
+      self%derivative(0:stages, 0:stages) = &
+         differentiation_matrix(self%point(0:stages), self%barycentric(0:stages))
+      call integration_matrix(self%node(1:stages), matrix, error)
       if (allocated(error)) return
-      self%weight = matrix(stages, :)
+      self%weight(1:stages) = matrix(stages, :)
 
       allocate (self%map(linear:steps))
-      call diagonalise(matrix, self%node, 1.0_wp, 0.0_wp, self%map(linear), error)
+      call diagonalise(matrix, self%node(1:stages), 1.0_wp, 0.0_wp, self%map(linear), error)
       if (allocated(error)) return
       do n = 0, steps
-         call diagonalise(matrix, self%node, 2.0_wp*real(n, wp), 1.0_wp, self%map(n), error)
+         call diagonalise(matrix, self%node(1:stages), 2.0_wp*real(n, wp), 1.0_wp, self%map(n), &
+            error)
          if (allocated(error)) return
       end do
    end subroutine new_collocation
@@ -200,22 +195,21 @@ contains
          end block
       end if
       if (info /= 0) then
-         call raise(error, error_internal, 'collocation: the integration matrix has no eigenvectors')
+         call raise(error, error_internal, &
+            'collocation: the integration matrix has no eigenvectors')
          return
       end if
 
       map%slope = slope
       map%bend = bend
       map%pairs = m
-      allocate (map%eigenvalue(m), map%right_re(n, m), map%right_im(n, m))
-      allocate (map%left_re(m, n), map%left_im(m, n), map%left_one(m))
       do j = 1, m
          map%eigenvalue(j) = cmplx(wr(kept(j)), wi(kept(j)), wp)
-         map%right_re(:, j) = real(v(:, kept(j)), wp)
-         map%right_im(:, j) = aimag(v(:, kept(j)))
+         map%right_re(1:n, j) = real(v(:, kept(j)), wp)
+         map%right_im(1:n, j) = aimag(v(:, kept(j)))
          if (wi(kept(j)) > 0.0_wp) inverse(kept(j), :) = 2.0_wp*inverse(kept(j), :)
-         map%left_re(j, :) = real(inverse(kept(j), :), wp)
-         map%left_im(j, :) = aimag(inverse(kept(j), :))
+         map%left_re(1:n, j) = real(inverse(kept(j), :), wp)
+         map%left_im(1:n, j) = aimag(inverse(kept(j), :))
          map%left_one(j) = sum(inverse(kept(j), :))
       end do
    end subroutine diagonalise
@@ -283,19 +277,6 @@ contains
       end do
       y = numerator/denominator
    end function interpolate
-
-   !> Value at theta = 0 of the polynomial that takes the given values at the nodes: how far it
-   !> misses the value known there is the error of the polynomial at that end
-   pure function extrapolate_to_start(self, value) result(y)
-      !> The rule
-      class(collocation_t), intent(in) :: self
-      !> Values at `node`, shape (stages)
-      real(wp), intent(in) :: value(:)
-      !> Value at 0
-      real(wp) :: y
-
-      y = sum(self%barycentric_node*value/self%node)/sum(self%barycentric_node/self%node)
-   end function extrapolate_to_start
 
    !> Zero of the polynomial with the given values between two arguments where its signs differ,
    !> by the Illinois method

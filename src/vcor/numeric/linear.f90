@@ -1,6 +1,7 @@
-!> Dense linear systems of a few equations
+!> Dense linear systems of the size of a collocation panel
 module vcor_numeric_linear
    use vcor_kinds, only : wp
+   use vcor_numeric_collocation, only : width
    implicit none
    private
 
@@ -8,56 +9,48 @@ module vcor_numeric_linear
 
 contains
 
-   !> Solve A x = b by Gaussian elimination with partial pivoting. For the half dozen equations of
-   !> a collocation panel, solved some dozen times per impact, the call of a library routine would
-   !> cost more than the elimination
+   !> Solve A x = b by Gauss and Jordan's elimination with partial pivoting. For the eight equations
+   !> of a panel, solved some dozen times per impact, the call of a library routine would cost more
+   !> than the elimination; with loops over whole columns of known length it is a few hundred vector
+   !> instructions
    pure subroutine solve_linear(a, b, regular)
-      !> Matrix, destroyed on return, shape (n, n)
-      real(wp), intent(inout) :: a(:, :)
-      !> Right-hand side, on return the solution, shape (n)
-      real(wp), intent(inout) :: b(:)
+      !> Matrix, destroyed on return
+      real(wp), intent(inout) :: a(width, width)
+      !> Right-hand side, on return the solution
+      real(wp), intent(inout) :: b(width)
       !> Whether all pivots were nonzero numbers
       logical, intent(out) :: regular
 
-      real(wp) :: pivot, swap
-      integer :: n, i, j, k, p
+      real(wp) :: column(width), pivot, factor
+      integer :: j, k, p
 
-      n = size(b)
       regular = .false.
-      do k = 1, n
+      do k = 1, width
          p = k
-         do i = k + 1, n
-            if (abs(a(i, k)) > abs(a(p, k))) p = i
+         do j = k + 1, width
+            if (abs(a(j, k)) > abs(a(p, k))) p = j
          end do
          if (.not. abs(a(p, k)) > 0.0_wp) return
          if (p /= k) then
-            do j = k, n
-               swap = a(k, j)
+            do j = k, width
+               factor = a(k, j)
                a(k, j) = a(p, j)
-               a(p, j) = swap
+               a(p, j) = factor
             end do
-            swap = b(k)
+            factor = b(k)
             b(k) = b(p)
-            b(p) = swap
+            b(p) = factor
          end if
          pivot = 1.0_wp/a(k, k)
-         do i = k + 1, n
-            a(i, k) = a(i, k)*pivot
+         column = a(:, k)
+         do j = k + 1, width
+            factor = a(k, j)*pivot
+            a(:, j) = a(:, j) - column*factor
+            a(k, j) = factor
          end do
-         do j = k + 1, n
-            do i = k + 1, n
-               a(i, j) = a(i, j) - a(i, k)*a(k, j)
-            end do
-         end do
-         do i = k + 1, n
-            b(i) = b(i) - a(i, k)*b(k)
-         end do
-      end do
-      do k = n, 1, -1
-         b(k) = b(k)/a(k, k)
-         do i = 1, k - 1
-            b(i) = b(i) - a(i, k)*b(k)
-         end do
+         factor = b(k)*pivot
+         b = b - column*factor
+         b(k) = factor
       end do
       regular = .true.
    end subroutine solve_linear

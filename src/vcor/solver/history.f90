@@ -12,8 +12,8 @@ contains
 
    !> Weights W_i = w_i + v_i - v_{i-1}, i = 0 .. n - 1, with w_i the mean of the kernel over step i
    !> and v_i its moment int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta. By parts the moment is,
-   !> with K the integral of k, (mean of K over the step - mean of K at its ends)/dt; away from t = 0
-   !> it is (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 k'''
+   !> with K the integral of k, (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it
+   !> is (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 k'''
    pure function history_weights(impact, dt, n) result(weight)
       !> The impact
       type(impact_t), intent(in) :: impact
@@ -28,7 +28,7 @@ contains
       ! closed Newton-Cotes rule of nine points
       real(wp), parameter :: cotes(0:parts) = [989.0_wp, 5888.0_wp, -928.0_wp, 10496.0_wp, &
          -4540.0_wp, 10496.0_wp, -928.0_wp, 5888.0_wp, 989.0_wp]/28350.0_wp
-      real(wp) :: mean(0:n), part(0:near*parts - 1), integral(0:parts), moment(0:n - 1), one(1)
+      real(wp) :: mean(0:n), part(0:near*parts - 1), integral(0:parts), moment(0:n - 1)
       real(wp), allocatable :: node(:), share(:)
       integer :: i, j
 
@@ -36,11 +36,7 @@ contains
 
       ! first step: the kernel may be singular at its end
       call endpoint_rule(node, share)
-      moment(0) = -0.5_wp*mean(0)
-      do j = lbound(node, 1), ubound(node, 1)
-         one = impact%kernel_step_integrals(dt*node(j), 1)
-         moment(0) = moment(0) + share(j)*one(1)/dt
-      end do
+      moment(0) = sum(share*impact%kernel_integral(dt*node))/dt - 0.5_wp*mean(0)
       part = impact%kernel_step_integrals(dt/real(parts, wp), near*parts)
       do i = 1, min(near, n) - 1
          integral(0) = 0.0_wp

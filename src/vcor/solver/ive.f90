@@ -1,12 +1,13 @@
 !> Internal variable evolution: the fast method for kernels that are sums of exponentials
 !> (Section VI of Green's paper), by collocation with the internal variables eliminated
 !>
-!> Every impact is solved twice on the same panels, the second time with one stage more: what the two
+!> Every impact is solved twice on the same panels, with seven stages and with eight: what the two
 !> differ by is the error, of a panel and of the outcome.
 !>
 !> Time is cut into panels. Close to first contact they are steps in x = sqrt(t), in which the
 !> solution is analytic from the start, u = s^1.5 included; later, where the branch point at t = 0
-!> has become remote, steps in t. Panels are accepted or cut by their error, so the mesh adapts itself.
+!> has become remote, steps in t. Panels are accepted or cut by their
+!> error, so the mesh adapts itself.
 !> The last panel is solved anew until it ends where the force is zero: the end of a panel is where
 !> collocation is most accurate (order 2 n - 1), and all integrals over the contact are then sums
 !> over whole panels. Towards the end of a nearly elastic contact, where s goes to zero as well and
@@ -28,19 +29,20 @@ module vcor_solver_ive
 
    public :: ive_t, new_ive
 
+   !> Stages of the solution: enough that four panels make an impact, few enough that the
+   !> eigenvectors of the integration matrices cost three digits only
+   integer, parameter :: stages = 7
+   !> Stages of the finer solution
+   integer, parameter :: fine_stages = 8
    !> Steps in x = sqrt(t) are taken from x = 0, h, .. most_steps*h
    integer, parameter :: most_steps = 12
-   !> End of Newton's method on a panel: the next correction would be of rounding size, also at the
-   !> end of an elastic contact, where u'' is infinite and the order of convergence 1.5
-   real(wp), parameter :: newton_tolerance = 1.0e-10_wp
-   !> End of Newton's method for the finer solution that measures the error of a panel
+   !> End of Newton's method on a panel: what is left is the square of it, at the end of an elastic
+   !> contact, where u'' is infinite, its power 1.5
+   real(wp), parameter :: newton_tolerance = 3.0e-8_wp
+   !> End of Newton's method where the guess is that close already
    real(wp), parameter :: refinement_tolerance = 1.0e-6_wp
    !> Share of the wanted accuracy that the defect of one panel may use up
    real(wp), parameter :: panel_share = 0.2_wp
-
-   !> Weight of the relative error of the force: it enters the coefficient of restitution through
-   !> its integral only, and stiff internal variables make it less accurate than all else
-   real(wp), parameter :: force_share = 0.02_wp
 
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
@@ -51,11 +53,10 @@ module vcor_solver_ive
       real(wp) :: end_time = 0.0_wp
       !> Rule of the panels
       type(collocation_t) :: rule
-      !> Rule with one stage more, for the defect
+      !> Rule of the finer solution
       type(collocation_t) :: fine
-      !> Interpolation from the points of `rule` to the nodes of `fine`,
-      !> shape (fine%stages, 0:rule%stages)
-      real(wp), allocatable :: to_fine(:, :)
+      !> Interpolation from the points of `rule` to the nodes of `fine`
+      real(wp) :: to_fine(fine_stages, 0:stages) = 0.0_wp
       !> First step in x over the square root of the expected contact time [-]
       real(wp) :: first_step = 0.25_wp
    contains
@@ -75,28 +76,20 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: stages, i, j
-      real(wp), allocatable :: unit(:)
+      real(wp) :: unit(0:stages)
+      integer :: i, j
 
       self%accuracy = accuracy
       self%end_time = end_time
-      if (accuracy >= 1.0e-5_wp) then
-         stages = 5
-      else if (accuracy >= 3.0e-19_wp) then
-         stages = 7
-      else
-         stages = 9
-      end if
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
-      call new_collocation(self%fine, stages + 1, most_steps, error)
+      call new_collocation(self%fine, fine_stages, most_steps, error)
       if (allocated(error)) return
 
-      allocate (self%to_fine(stages + 1, 0:stages), unit(0:stages))
       do j = 0, stages
          unit = 0.0_wp
          unit(j) = 1.0_wp
-         do i = 1, stages + 1
+         do i = 1, fine_stages
             self%to_fine(i, j) = self%rule%interpolate(unit, self%fine%node(i))
          end do
       end do
@@ -120,14 +113,15 @@ contains
       type(start_t) :: start, fine_start
       type(step_t) :: step
       type(panel_t) :: panel, previous, fine
-      real(wp) :: end_time, time_scale, largest_force, panel_error, growth
+      real(wp) :: end_time, time_scale, largest_force, force_tolerance, time_tolerance
+      real(wp) :: excess, force_error
       integer :: trial, n
       logical :: exact, ends, last
 
       call impact%kernel_exponentials(kernel, exact)
       if (.not. exact) then
          call raise(error, error_input, 'the contact modulus of this case is no sum of ' &
-            //"exponentials, which method = 'ive' needs: use method = 'direct' (or 'auto')")
+            //"exponentials, which method = 'ive' needs: use method = 'direct'")
          return
       end if
 
@@ -141,6 +135,9 @@ contains
       step%length = self%first_step*sqrt(hertz_contact_time*time_scale)
       call begin(self%rule, impact, trajectory)
       largest_force = 0.0_wp
+      ! rounding in the force of stiff internal variables and dashpots is not to stop the march
+      force_tolerance = 10.0_wp*max(self%accuracy, 1.0e-8_wp)
+      time_tolerance = max(panel_share*self%accuracy, 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time
@@ -161,12 +158,14 @@ contains
 
          call refine(self, impact, kernel, fine_start, step, panel, fine)
          largest_force = max(largest_force, maxval(panel%force(1:n)))
-         panel_error = growth_of(fine%impulse, panel%impulse)/(impact%mass*impact%velocity) &
-            + growth_of(fine%indentation, panel%indentation)/(impact%velocity*time_scale) &
-            + force_share*growth_of(fine%force, panel%force)/largest_force
-         if (ends) panel_error = panel_error + growth_of(fine%force, panel%force) &
-            /abs(slope_at_end(self%rule, panel))/panel%time(n)
-         if (.not. panel_error <= panel_share*self%accuracy) then
+         excess = (growth_of(fine%impulse, panel%impulse)/(impact%mass*impact%velocity) &
+            + growth_of(fine%indentation, panel%indentation)/(impact%velocity*time_scale)) &
+            /(panel_share*self%accuracy)
+         force_error = growth_of(fine%force, panel%force)
+         excess = max(excess, force_error/(largest_force*force_tolerance))
+         if (ends) excess = max(excess, force_error/abs(slope_at_end(self%rule, panel)) &
+            /(panel%time(n)*time_tolerance))
+         if (.not. excess <= 1.0_wp) then
             call step%shorten(merge(approach, 0.5_wp, ends)*step%duration())
             cycle
          end if
@@ -186,9 +185,8 @@ contains
 
          call advance(self%rule, step, kernel, panel, start)
          call advance(self%fine, step, kernel, fine, fine_start)
-         growth = min(3.0_wp, (panel_share*self%accuracy/max(panel_error, tiny(1.0_wp))) &
-            **(1.0_wp/real(2*n, wp)))
-         call step%proceed(growth, most_steps)
+         call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n, wp))), &
+            most_steps)
       end do
       call raise(error, error_numerical, 'the internal-variable method does not get to the end of ' &
          //'the contact: the accuracy asked for is out of reach')
@@ -248,8 +246,8 @@ contains
       trajectory%state(col_sphere_velocity, 0) = impact%velocity
       trajectory%weight(0) = 0.0_wp
       trajectory%stages = rule%stages
-      allocate (trajectory%point(0:rule%stages), source=rule%point)
-      allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric)
+      allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
+      allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
    end subroutine begin
 
    !> Guess the indentation in the panel to come from the polynomial of the panel solved last
@@ -303,14 +301,16 @@ contains
       type(panel_t), intent(inout) :: panel
 
       integer, parameter :: most_iterations = 40
-      type(panel_t) :: crossing
-      real(wp) :: theta, time, correction, velocity, kappa, memory_rate, old_memory, memory
+      type(panel_t) :: crossing, last
+      real(wp) :: theta, time, correction, tolerance, velocity
+      real(wp) :: kappa, memory_rate, old_memory, memory
       integer :: iteration, n, k
 
       n = self%rule%stages
       crossing = panel
       k = 1
-      do while (crossing%force(k) > 0.0_wp .or. crossing%indentation(k) >= crossing%indentation(k - 1))
+      do while (crossing%force(k) > 0.0_wp &
+                .or. crossing%indentation(k) >= crossing%indentation(k - 1))
          k = k + 1
       end do
       theta = self%rule%point(k - 1)
@@ -320,18 +320,21 @@ contains
       ! Write F = kappa u - M with any kappa that is about dF/du: the indentation s and the memory
       ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
       ! kappa u(s) = M with s and M linear in time, the slope of M from the last two iterations
+      tolerance = 1.0e-3_wp*min(self%accuracy, 1.0e-7_wp)
       kappa = crossing%end_stiffness
       memory_rate = 0.0_wp
       old_memory = 0.0_wp
       correction = 0.0_wp
       panel%converged = .false.
+      last = crossing
       do iteration = 1, most_iterations
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
-         call guess(self%rule, impact, crossing, start, step, panel)
+         call guess(self%rule, impact, last, start, step, panel)
          call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
             start, panel, newton_tolerance)
          if (.not. panel%converged) return
+         last = panel
          velocity = relative_velocity(impact, panel, n)
          memory = kappa*hertz(panel%indentation(n)) - panel%force(n)
          if (abs(correction) > 0.0_wp) memory_rate = (memory - old_memory)/correction
@@ -339,7 +342,7 @@ contains
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
-         if (abs(correction) <= 1.0e-3_wp*self%accuracy*(start%time + time)) return
+         if (abs(correction) <= tolerance*(start%time + time)) return
          time = time + correction
       end do
       panel%converged = .false.
@@ -417,8 +420,8 @@ contains
       trajectory%last = trajectory%last + n
       trajectory%steps = trajectory%steps + 1
       alpha_rate = impact%plate%alpha_rate(panel%time(1:n))
-      trajectory%weight(first:first + n - 1) = rule%weight &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node)
+      trajectory%weight(first:first + n - 1) = rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
       associate (state => trajectory%state(:, first:first + n - 1))
          state(col_time, :) = panel%time(1:n)
          state(col_indentation, :) = panel%indentation(1:n)
@@ -488,8 +491,8 @@ contains
          !> Whether it rises at the start and falls at the end
          logical :: rises_and_falls
 
-         rises_and_falls = sum(rule%derivative(0, :)*value) > 0.0_wp &
-            .and. sum(rule%derivative(n, :)*value) < 0.0_wp
+         rises_and_falls = sum(rule%derivative(0, 0:n)*value) > 0.0_wp &
+            .and. sum(rule%derivative(n, 0:n)*value) < 0.0_wp
       end function rises_and_falls
 
       !> Solve the panel up to a maximum: inside, its polynomials are less accurate than at its end
@@ -500,11 +503,11 @@ contains
          type(step_t) :: step
          real(wp) :: theta
 
-         theta = rule%crossing(matmul(rule%derivative, value), 0.0_wp, 1.0_wp)
+         theta = rule%crossing(matmul(rule%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
          step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
          call guess(rule, impact, panel, start, step, peak)
-         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, peak, &
-            newton_tolerance)
+         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, &
+            peak, refinement_tolerance)
       end subroutine solve_to_peak
    end subroutine find_peaks
 
@@ -525,10 +528,7 @@ contains
       !> The panel in the finer rule
       type(panel_t), intent(out) :: fine
 
-      integer :: n
-
-      n = self%rule%stages
-      fine%indentation(1:n + 1) = matmul(self%to_fine, panel%indentation(0:n))
+      fine%indentation(1:fine_stages) = matmul(self%to_fine, panel%indentation(0:stages))
       call solve_panel(self%fine, self%fine%map(step%index), step%map_scale(), impact, kernel, &
          start, fine, refinement_tolerance)
    end subroutine refine
@@ -543,7 +543,7 @@ contains
       real(wp) :: slope
 
       associate (n => rule%stages)
-         slope = sum(rule%derivative(n, :)*panel%force(0:n))/(panel%map(1) + 2.0_wp*panel%map(2))
+         slope = sum(rule%derivative(n, 0:n)*panel%force(0:n))/(panel%map(1) + 2.0_wp*panel%map(2))
       end associate
    end function slope_at_end
 

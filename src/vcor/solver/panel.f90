@@ -15,7 +15,7 @@ module vcor_solver_panel
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, max_stages, panel_map_t
+   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : solve_linear
    implicit none
    private
@@ -46,17 +46,17 @@ module vcor_solver_panel
       !> Time in the panel: start + map(1) theta + map(2) theta^2 [s]
       real(wp) :: map(2) = 0.0_wp
       !> Times of the stages [s]
-      real(wp) :: time(0:max_stages) = 0.0_wp
+      real(wp) :: time(0:width) = 0.0_wp
       !> Indentation [m]
-      real(wp) :: indentation(0:max_stages) = 0.0_wp
+      real(wp) :: indentation(0:width) = 0.0_wp
       !> Force [N]
-      real(wp) :: force(0:max_stages) = 0.0_wp
+      real(wp) :: force(0:width) = 0.0_wp
       !> Impulse [N s]
-      real(wp) :: impulse(0:max_stages) = 0.0_wp
+      real(wp) :: impulse(0:width) = 0.0_wp
       !> Integral of the impulse [N s2]
-      real(wp) :: second_impulse(0:max_stages) = 0.0_wp
+      real(wp) :: second_impulse(0:width) = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
-      real(wp) :: alpha(0:max_stages) = 0.0_wp
+      real(wp) :: alpha(0:width) = 0.0_wp
       !> Change of the force per change of u at the last stage alone [N/m^1.5]
       real(wp) :: end_stiffness = 0.0_wp
       !> Whether Newton's iteration converged
@@ -117,100 +117,98 @@ contains
       real(wp), intent(in) :: tolerance
 
       integer, parameter :: most_iterations = 25
-      complex(wp), dimension(map%pairs) :: lambda, stiffness, memory, first, second
-      real(wp), dimension(rule%stages) :: s, u, right, alpha, slope, correction, residual
-      real(wp), dimension(rule%stages) :: time, force, impulse, second_impulse
-      real(wp) :: response(rule%stages, rule%stages), jacobian(rule%stages, rule%stages)
-      real(wp) :: w_re, w_im
-      integer :: n, i, j, m, iteration
+      complex(wp), dimension(width) :: lambda, stiffness, memory, spectrum
+      real(wp), dimension(width) :: s, u, time, alpha, right, slope, change, re, im
+      real(wp) :: response(width, width), jacobian(width, width)
+      complex(wp) :: first, second
+      integer :: n, j, m, iteration
       logical :: regular
 
       n = rule%stages
       panel%stages = n
       panel%map = scale*[map%slope, map%bend]
       time = start%time + rule%node*(panel%map(1) + panel%map(2)*rule%node)
-      alpha = impact%plate%alpha(time)
+      alpha = 0.0_wp
+      alpha(1:n) = impact%plate%alpha(time(1:n))
       lambda = scale*map%eigenvalue
-      call resolve_modes(kernel, start, lambda, stiffness, memory)
+      call resolve_modes(kernel, start, lambda(1:map%pairs), stiffness, memory)
       memory = memory*map%left_one
 
-      ! response = (H^2/m + alpha H) S, right = v0 t - (J_n + H I_n)/m - alpha I_n + (..) b
-      first = lambda**2/impact%mass
+      ! With f(H) = V f(lambda) V^-1:
+      ! right = v0 t - (J_n + H I_n)/m - alpha I_n + (H^2/m + alpha H) b
+      ! response = (H^2/m + alpha H) S
       right = impact%velocity*time &
          - (start%second_impulse + start%impulse*(time - start%time))/impact%mass &
          - alpha*start%impulse
       response = 0.0_wp
       do m = 1, map%pairs
-         second(m) = first(m)*memory(m)
-         do i = 1, n
-            w_re = real(second(m), wp) + alpha(i)*real(lambda(m)*memory(m), wp)
-            w_im = aimag(second(m)) + alpha(i)*aimag(lambda(m)*memory(m))
-            right(i) = right(i) + map%right_re(i, m)*w_re - map%right_im(i, m)*w_im
-         end do
-         second(m) = lambda(m)*stiffness(m)
-         first(m) = first(m)*stiffness(m)
-         do i = 1, n
-            w_re = real(first(m), wp) + alpha(i)*real(second(m), wp)
-            w_im = aimag(first(m)) + alpha(i)*aimag(second(m))
-            slope(i) = map%right_re(i, m)*w_re - map%right_im(i, m)*w_im
-            correction(i) = map%right_re(i, m)*w_im + map%right_im(i, m)*w_re
-         end do
-         do j = 1, n
-            response(:, j) = response(:, j) + slope*map%left_re(m, j) - correction*map%left_im(m, j)
+         first = lambda(m)**2*memory(m)/impact%mass
+         second = lambda(m)*memory(m)
+         re = real(first, wp) + alpha*real(second, wp)
+         im = aimag(first) + alpha*aimag(second)
+         right = right + map%right_re(:, m)*re - map%right_im(:, m)*im
+         first = lambda(m)**2*stiffness(m)/impact%mass
+         second = lambda(m)*stiffness(m)
+         slope = real(first, wp) + alpha*real(second, wp)
+         change = aimag(first) + alpha*aimag(second)
+         re = map%right_re(:, m)*slope - map%right_im(:, m)*change
+         im = map%right_re(:, m)*change + map%right_im(:, m)*slope
+         do j = 1, width
+            response(:, j) = response(:, j) + re*map%left_re(j, m) - im*map%left_im(j, m)
          end do
       end do
 
-      s = panel%indentation(1:n)
+      s = 0.0_wp
+      s(1:n) = panel%indentation(1:n)
+      right(n + 1:) = 0.0_wp
       panel%converged = .false.
       do iteration = 1, most_iterations
          slope = sqrt(abs(s))
          u = s*slope
          slope = 1.5_wp*slope
-         residual = right - s
-         do j = 1, n
-            residual = residual - response(:, j)*u(j)
+         change = right - s
+         do j = 1, width
+            change = change - response(:, j)*u(j)
             jacobian(:, j) = response(:, j)*slope(j)
             jacobian(j, j) = jacobian(j, j) + 1.0_wp
          end do
-         call solve_linear(jacobian, residual, regular)
+         call solve_linear(jacobian, change, regular)
          if (.not. regular) return
-         s = s + residual
-         if (maxval(abs(residual)) <= tolerance*maxval(abs(s))) then
-            panel%converged = .true.
-            exit
-         end if
+         s = s + change
+         panel%converged = maxval(abs(change)) <= tolerance*maxval(abs(s))
+         if (panel%converged) exit
       end do
 
+      ! F = S u - b, I = I_n + H F, J = J_n + H I
       u = hertz(s)
-      force = 0.0_wp
-      impulse = start%impulse
-      second_impulse = start%second_impulse + start%impulse*(time - start%time)
+      do m = 1, map%pairs
+         first = cmplx(sum(map%left_re(:, m)*u), sum(map%left_im(:, m)*u), wp)
+         spectrum(m) = stiffness(m)*first - memory(m)
+      end do
+      panel%time(0) = start%time
+      panel%indentation(0) = start%indentation
+      panel%force(0) = start%force
+      panel%impulse(0) = start%impulse
+      panel%second_impulse(0) = start%second_impulse
+      panel%time(1:) = time
+      panel%indentation(1:) = s
+      panel%alpha(1:) = alpha
+      panel%force(1:) = 0.0_wp
+      panel%impulse(1:) = start%impulse
+      panel%second_impulse(1:) = start%second_impulse + start%impulse*(time - start%time)
       panel%end_stiffness = 0.0_wp
       do m = 1, map%pairs
-         first(m) = stiffness(m)*cmplx(sum(map%left_re(m, :)*u), sum(map%left_im(m, :)*u), wp) &
-            - memory(m)
-         second(m) = lambda(m)*first(m)
-         force = force + map%right_re(:, m)*real(first(m), wp) - map%right_im(:, m)*aimag(first(m))
-         impulse = impulse + map%right_re(:, m)*real(second(m), wp) &
-            - map%right_im(:, m)*aimag(second(m))
-         second(m) = lambda(m)*second(m)
-         second_impulse = second_impulse + map%right_re(:, m)*real(second(m), wp) &
-            - map%right_im(:, m)*aimag(second(m))
-         panel%end_stiffness = panel%end_stiffness + real(cmplx(map%right_re(n, m), &
-            map%right_im(n, m), wp)*stiffness(m)*cmplx(map%left_re(m, n), map%left_im(m, n), wp), wp)
+         re = map%right_re(:, m)
+         im = map%right_im(:, m)
+         first = spectrum(m)
+         panel%force(1:) = panel%force(1:) + re*real(first, wp) - im*aimag(first)
+         first = lambda(m)*first
+         panel%impulse(1:) = panel%impulse(1:) + re*real(first, wp) - im*aimag(first)
+         first = lambda(m)*first
+         panel%second_impulse(1:) = panel%second_impulse(1:) + re*real(first, wp) - im*aimag(first)
+         first = stiffness(m)*cmplx(map%left_re(n, m), map%left_im(n, m), wp)
+         panel%end_stiffness = panel%end_stiffness + re(n)*real(first, wp) - im(n)*aimag(first)
       end do
-
-      panel%time(0) = start%time
-      panel%time(1:n) = time
-      panel%indentation(0) = start%indentation
-      panel%indentation(1:n) = s
-      panel%force(0) = start%force
-      panel%force(1:n) = force
-      panel%impulse(0) = start%impulse
-      panel%impulse(1:n) = impulse
-      panel%second_impulse(0) = start%second_impulse
-      panel%second_impulse(1:n) = second_impulse
-      panel%alpha(1:n) = alpha
    end subroutine solve_panel
 
    !> S and b as functions of an eigenvalue of H
@@ -221,14 +219,16 @@ contains
       type(start_t), intent(in) :: start
       !> Eigenvalues of H [s], shape (pairs)
       complex(wp), intent(in) :: lambda(:)
-      !> S [N/m^1.5], shape (pairs)
-      complex(wp), intent(out) :: stiffness(:)
-      !> b without the vector of ones [N], shape (pairs)
-      complex(wp), intent(out) :: memory(:)
+      !> S [N/m^1.5], shape (pairs), zero beyond
+      complex(wp), intent(out) :: stiffness(width)
+      !> b without the vector of ones [N], shape (pairs), zero beyond
+      complex(wp), intent(out) :: memory(width)
 
       real(wp) :: x, y, a, d, stiffness_re, stiffness_im, memory_re, memory_im
       integer :: m, k
 
+      stiffness = (0.0_wp, 0.0_wp)
+      memory = (0.0_wp, 0.0_wp)
       do m = 1, size(lambda)
          x = real(lambda(m), wp)
          y = aimag(lambda(m))
@@ -272,24 +272,24 @@ contains
       !> Internal variables: at the start on entry, at the end on return [m^1.5], shape (modes)
       real(wp), intent(inout) :: q(:)
 
-      complex(wp), dimension(map%pairs) :: from_u, from_q
-      real(wp) :: u(rule%stages), lag(size(q)), x, y, a, d
+      complex(wp) :: from_u, from_q
+      real(wp) :: u(width), lag(size(q)), x, y, a, d
       integer :: n, m, k
 
       n = rule%stages
-      u = hertz(panel%indentation(1:n))
+      u = hertz(panel%indentation(1:))
       lag = 0.0_wp
       do m = 1, map%pairs
-         from_q(m) = cmplx(map%right_re(n, m), map%right_im(n, m), wp)
-         from_u(m) = from_q(m)*cmplx(sum(map%left_re(m, :)*u), sum(map%left_im(m, :)*u), wp)
-         from_q(m) = from_q(m)*map%left_one(m)
+         from_q = cmplx(map%right_re(n, m), map%right_im(n, m), wp)
+         from_u = from_q*cmplx(sum(map%left_re(:, m)*u), sum(map%left_im(:, m)*u), wp)
+         from_q = from_q*map%left_one(m)
          x = scale*real(map%eigenvalue(m), wp)
          y = scale*aimag(map%eigenvalue(m))
          do k = 1, size(q)
             a = 1.0_wp + kernel%rates(k)*x
             d = kernel%rates(k)*y
-            lag(k) = lag(k) + ((real(from_u(m), wp) - q(k)*real(from_q(m), wp))*a &
-               + (aimag(from_u(m)) - q(k)*aimag(from_q(m)))*d)/(a*a + d*d)
+            lag(k) = lag(k) + ((real(from_u, wp) - q(k)*real(from_q, wp))*a &
+               + (aimag(from_u) - q(k)*aimag(from_q))*d)/(a*a + d*d)
          end do
       end do
       q = u(n) - lag
