@@ -7,7 +7,7 @@ module vcor_impact_plate
    private
 
    public :: plate_t, new_plate
-   public :: waves_none, waves_constant, waves_relaxing
+   public :: waves_none, waves_constant, waves_relaxing, waves_frozen
 
    !> Plate models: the plate does not move, U = 0
    integer, parameter :: waves_none = 0
@@ -15,6 +15,8 @@ module vcor_impact_plate
    integer, parameter :: waves_constant = 1
    !> U = alpha(t) I, Eqs. (2) and (3)
    integer, parameter :: waves_relaxing = 2
+   !> U' = int alpha F' dt, alpha' and alpha'' dropped from Eq. (2): behind the paper's Fig. 7
+   integer, parameter :: waves_frozen = 3
 
    !> Deflection U of the plate's mid-plane under the impulse I of the contact force
    type :: plate_t
@@ -34,6 +36,8 @@ module vcor_impact_plate
       procedure :: alpha
       !> d alpha/dt
       procedure :: alpha_rate
+      !> Whether the plate is the frozen one and differs from the relaxing one
+      procedure :: frozen
    end type plate_t
 
 contains
@@ -67,7 +71,7 @@ contains
       self%initial = self%coefficient/sqrt(self%factor*material%glassy())
       self%waves = waves
       ! an elastic plate is a constant one
-      if (waves == waves_relaxing .and. material%glassy() > material%rubbery()) &
+      if (waves /= waves_constant .and. material%glassy() > material%rubbery()) &
          allocate (self%material, source=material)
    end subroutine new_plate
 
@@ -88,6 +92,16 @@ contains
          value = self%initial
       end if
    end function alpha
+
+   !> Whether U' = int alpha F' dt instead of (alpha I)'
+   elemental function frozen(self)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Whether it does; with a constant alpha both are the same
+      logical :: frozen
+
+      frozen = self%waves == waves_frozen .and. allocated(self%material)
+   end function frozen
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
    elemental function alpha_rate(self, t) result(value)

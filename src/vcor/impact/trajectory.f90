@@ -45,7 +45,10 @@ module vcor_impact_trajectory
       integer :: steps = 0
       !> Node at which contact ended or the computation stopped
       integer :: last = 0
-      !> State at the nodes, shape (columns, 0:), used up to `last`
+      !> Last node of all: beyond `last` if the computation went on after the separation, as if the
+      !> bodies were glued together
+      integer :: final = 0
+      !> State at the nodes, shape (columns, 0:), used up to `final`
       real(wp), allocatable :: state(:, :)
       !> Weights of the nodes in integrals over the time of contact [s], shape (0:)
       real(wp), allocatable :: weight(:)
@@ -95,8 +98,8 @@ contains
          if (ubound(self%weight, 1) >= nodes) return
          room = max(nodes, 2*ubound(self%weight, 1))
          allocate (state(columns, 0:room), weight(0:room))
-         state(:, 0:self%last) = self%state(:, 0:self%last)
-         weight(0:self%last) = self%weight(0:self%last)
+         state(:, 0:self%final) = self%state(:, 0:self%final)
+         weight(0:self%final) = self%weight(0:self%final)
          call move_alloc(state, self%state)
          call move_alloc(weight, self%weight)
       else
@@ -142,7 +145,7 @@ contains
       end associate
    end function is_stuck
 
-   !> State at equal steps of time from first contact to the last node: interpolated by the
+   !> State at equal steps of time from first contact to the final node: interpolated by the
    !> collocation polynomials, or the nodes themselves where the solver works in equal steps
    pure subroutine sample(self, count, state)
       !> The trajectory
@@ -156,8 +159,8 @@ contains
       integer :: i, panel, first
 
       if (self%stages == 0) then
-         allocate (state(columns, 0:self%last))
-         state = self%state(:, 0:self%last)
+         allocate (state(columns, 0:self%final))
+         state = self%state(:, 0:self%final)
          return
       end if
 
@@ -166,9 +169,9 @@ contains
       panel = 1
       first = 0
       do i = 1, count - 1
-         time = self%state(col_time, self%last)*(real(i, wp)/real(count, wp))
+         time = self%state(col_time, self%final)*(real(i, wp)/real(count, wp))
          do while (time > self%state(col_time, first + self%stages) &
-                   .and. first + self%stages < self%last)
+                   .and. first + self%stages < self%final)
             first = first + self%stages
             panel = panel + 1
          end do
@@ -180,7 +183,7 @@ contains
          state(:, i) = matmul(self%state(:, first:first + self%stages), c)
          state(col_time, i) = time
       end do
-      state(:, count) = self%state(:, self%last)
+      state(:, count) = self%state(:, self%final)
    end subroutine sample
 
    !> Lagrange basis polynomials at an argument

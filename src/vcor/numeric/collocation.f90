@@ -36,6 +36,8 @@ module vcor_numeric_collocation
       real(wp) :: slope = 0.0_wp
       !> Quadratic coefficient of the map
       real(wp) :: bend = 0.0_wp
+      !> B itself
+      real(wp) :: matrix(width, width) = 0.0_wp
       !> Number of eigenvalues kept, between half and all of the stages
       integer :: pairs = 0
       !> Eigenvalues, `pairs` of them
@@ -168,6 +170,7 @@ contains
       do j = 1, n
          b(:, j) = matrix(:, j)*(slope + 2.0_wp*bend*node(j))
       end do
+      map%matrix(1:n, 1:n) = b
       call dgeev('N', 'V', n, b, n, wr, wi, vl, 1, vr, n, work, size(work), info)
       if (info == 0) then
          m = 0

@@ -21,6 +21,7 @@ module vcor_solver_ive
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, new_collocation
+   use vcor_solver_general_panel, only : solve_general_panel
    use vcor_solver_panel, only : advance_modes, hertz, panel_t, solve_panel, start_t
    use vcor_solver_step, only : step_t, step_to
    use vcor_solver_type, only : solver_t
@@ -51,6 +52,10 @@ module vcor_solver_ive
       real(wp) :: accuracy = 1.0e-8_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp) :: end_time = 0.0_wp
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> Go on after the separation
+      logical :: ghost = .false.
       !> Rule of the panels
       type(collocation_t) :: rule
       !> Rule of the finer solution
@@ -66,7 +71,7 @@ module vcor_solver_ive
 contains
 
    !> Build the solver
-   subroutine new_ive(self, accuracy, end_time, error)
+   subroutine new_ive(self, accuracy, end_time, error, second_coefficient, ghost)
       !> The solver
       type(ive_t), intent(out) :: self
       !> Wanted accuracy of the coefficient of restitution, > 0
@@ -75,12 +80,18 @@ contains
       real(wp), intent(in) :: end_time
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Coefficient of the second term of the Volterra series [m^-1.5]; absent: without it
+      real(wp), intent(in), optional :: second_coefficient
+      !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
+      logical, intent(in), optional :: ghost
 
       real(wp) :: unit(0:stages)
       integer :: i, j
 
       self%accuracy = accuracy
       self%end_time = end_time
+      if (present(second_coefficient)) self%second_coefficient = second_coefficient
+      if (present(ghost)) self%ghost = ghost
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
       call new_collocation(self%fine, fine_stages, most_steps, error)
@@ -143,11 +154,11 @@ contains
          last = start%time + step%duration() >= end_time
          if (last) step = step_to(start%time, end_time - start%time)
          call guess(self%rule, impact, previous, start, step, panel)
-         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
-            start, panel, newton_tolerance)
+         call solve_step(self, self%rule, step, impact, kernel, start, panel, newton_tolerance)
          ! while the indentation grows the force is positive: what is not is rounding
          ends = .false.
-         if (panel%converged) ends = any(panel%force(1:n) <= 0.0_wp &
+         if (panel%converged .and. .not. trajectory%status == contact_separated) &
+            ends = any(panel%force(1:n) <= 0.0_wp &
             .and. panel%indentation(1:n) < panel%indentation(0:n - 1))
          if (ends) call land(self, impact, kernel, start, step, panel)
          if (.not. panel%converged) then
@@ -170,16 +181,20 @@ contains
             cycle
          end if
 
-         call append(self%rule, impact, kernel, start, panel, trajectory)
+         call append(self, impact, kernel, start, panel, trajectory)
          if (ends) then
             trajectory%status = contact_separated
             trajectory%cor_error = error_of_cor(self%rule, impact, panel, fine)
-            return
+            if (.not. self%ghost) return
+            end_time = 2.0_wp*panel%time(n)
+            if (self%end_time > 0.0_wp) end_time = self%end_time
+         end if
+         if (trajectory%status == contact_separated) then
+            if (panel%time(n) >= end_time) return
          else if (trajectory%is_stuck(impact%mass)) then
             trajectory%status = contact_sticking
             return
          else if (last) then
-            trajectory%status = contact_lasting
             return
          end if
 
@@ -226,8 +241,38 @@ contains
          start%force = panel%force(n)
          start%impulse = panel%impulse(n)
          start%second_impulse = panel%second_impulse(n)
+         start%deflection = panel%deflection(n)
+         start%drift = panel%drift(n)
       end associate
    end subroutine advance
+
+   !> Solve the panel of a step
+   pure subroutine solve_step(self, rule, step, impact, kernel, start, panel, tolerance)
+      !> The solver
+      type(ive_t), intent(in) :: self
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Step
+      type(step_t), intent(in) :: step
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel; on entry its indentation is guessed
+      type(panel_t), intent(inout) :: panel
+      !> End of Newton's iteration
+      real(wp), intent(in) :: tolerance
+
+      if (abs(self%second_coefficient) > 0.0_wp .or. impact%plate%frozen()) then
+         call solve_general_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, &
+            self%second_coefficient, start, panel, tolerance)
+      else
+         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, &
+            panel, tolerance)
+      end if
+   end subroutine solve_step
 
    !> First node of a trajectory
    subroutine begin(rule, impact, trajectory)
@@ -288,7 +333,7 @@ contains
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
    subroutine land(self, impact, kernel, start, step, panel)
       !> The solver
-      class(ive_t), intent(in) :: self
+      type(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
@@ -331,11 +376,10 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
-            start, panel, newton_tolerance)
+         call solve_step(self, self%rule, step, impact, kernel, start, panel, newton_tolerance)
          if (.not. panel%converged) return
          last = panel
-         velocity = relative_velocity(impact, panel, n)
+         velocity = impact%velocity - panel%impulse(n)/impact%mass - plate_velocity(impact, panel, n)
          memory = kappa*hertz(panel%indentation(n)) - panel%force(n)
          if (abs(correction) > 0.0_wp) memory_rate = (memory - old_memory)/correction
          old_memory = memory
@@ -380,8 +424,9 @@ contains
       end do
    end subroutine look_ahead
 
-   !> Relative velocity s' = v0 - I/m - alpha F - alpha' I at a stage of a panel
-   pure function relative_velocity(impact, panel, j) result(velocity)
+   !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
+   !> drift of a frozen plate
+   pure function plate_velocity(impact, panel, j) result(velocity)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> The panel
@@ -391,14 +436,18 @@ contains
       !> Velocity [m/s]
       real(wp) :: velocity
 
-      velocity = impact%velocity - panel%impulse(j)/impact%mass - panel%alpha(j)*panel%force(j) &
-         - impact%plate%alpha_rate(panel%time(j))*panel%impulse(j)
-   end function relative_velocity
+      velocity = panel%alpha(j)*panel%force(j)
+      if (impact%plate%frozen()) then
+         velocity = velocity - panel%drift(j)
+      else
+         velocity = velocity + impact%plate%alpha_rate(panel%time(j))*panel%impulse(j)
+      end if
+   end function plate_velocity
 
    !> Add a panel to the trajectory
-   subroutine append(rule, impact, kernel, start, panel, trajectory)
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
+   subroutine append(self, impact, kernel, start, panel, trajectory)
+      !> The solver
+      type(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
@@ -410,38 +459,39 @@ contains
       !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
-      real(wp) :: alpha_rate(rule%stages)
-      integer :: n, first
+      integer :: n, first, j
 
-      n = rule%stages
-      call trajectory%reserve(trajectory%last + n)
+      n = panel%stages
+      call trajectory%reserve(trajectory%final + n)
       call trajectory%add_map(panel%map)
-      first = trajectory%last + 1
-      trajectory%last = trajectory%last + n
+      first = trajectory%final + 1
+      trajectory%final = trajectory%final + n
       trajectory%steps = trajectory%steps + 1
-      alpha_rate = impact%plate%alpha_rate(panel%time(1:n))
-      trajectory%weight(first:first + n - 1) = rule%weight(1:n) &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
-      associate (state => trajectory%state(:, first:first + n - 1))
-         state(col_time, :) = panel%time(1:n)
-         state(col_indentation, :) = panel%indentation(1:n)
-         state(col_force, :) = panel%force(1:n)
-         state(col_impulse, :) = panel%impulse(1:n)
-         state(col_sphere, :) = impact%velocity*panel%time(1:n) &
-            - panel%second_impulse(1:n)/impact%mass
-         state(col_sphere_velocity, :) = impact%velocity - panel%impulse(1:n)/impact%mass
-         state(col_plate, :) = panel%alpha(1:n)*panel%impulse(1:n)
-         state(col_plate_velocity, :) = panel%alpha(1:n)*panel%force(1:n) &
-            + alpha_rate*panel%impulse(1:n)
-         state(col_velocity, :) = state(col_sphere_velocity, :) - state(col_plate_velocity, :)
-      end associate
-      call find_peaks(rule, impact, kernel, start, panel, trajectory)
+      trajectory%weight(first:trajectory%final) = self%rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*self%rule%node(1:n))
+      do j = 1, n
+         associate (state => trajectory%state(:, first + j - 1))
+            state(col_time) = panel%time(j)
+            state(col_indentation) = panel%indentation(j)
+            state(col_force) = panel%force(j)
+            state(col_impulse) = panel%impulse(j)
+            state(col_sphere) = impact%velocity*panel%time(j) &
+               - panel%second_impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
+            state(col_plate) = state(col_sphere) - panel%indentation(j)
+            state(col_plate_velocity) = plate_velocity(impact, panel, j)
+            state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
+         end associate
+      end do
+      if (trajectory%status == contact_separated) return
+      trajectory%last = trajectory%final
+      call find_peaks(self, impact, kernel, start, panel, trajectory)
    end subroutine append
 
    !> Largest indentation and force so far
-   subroutine find_peaks(rule, impact, kernel, start, panel, trajectory)
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
+   subroutine find_peaks(self, impact, kernel, start, panel, trajectory)
+      !> The solver
+      type(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
@@ -456,7 +506,7 @@ contains
       type(panel_t) :: peak
       integer :: n, j
 
-      n = rule%stages
+      n = panel%stages
       if (rises_and_falls(panel%indentation(0:n))) then
          call solve_to_peak(panel%indentation(0:n))
          if (peak%converged .and. peak%indentation(n) > trajectory%max_indentation) then
@@ -491,8 +541,8 @@ contains
          !> Whether it rises at the start and falls at the end
          logical :: rises_and_falls
 
-         rises_and_falls = sum(rule%derivative(0, 0:n)*value) > 0.0_wp &
-            .and. sum(rule%derivative(n, 0:n)*value) < 0.0_wp
+         rises_and_falls = sum(self%rule%derivative(0, 0:n)*value) > 0.0_wp &
+            .and. sum(self%rule%derivative(n, 0:n)*value) < 0.0_wp
       end function rises_and_falls
 
       !> Solve the panel up to a maximum: inside, its polynomials are less accurate than at its end
@@ -503,18 +553,17 @@ contains
          type(step_t) :: step
          real(wp) :: theta
 
-         theta = rule%crossing(matmul(rule%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
+         theta = self%rule%crossing(matmul(self%rule%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
          step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
-         call guess(rule, impact, panel, start, step, peak)
-         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, &
-            peak, refinement_tolerance)
+         call guess(self%rule, impact, panel, start, step, peak)
+         call solve_step(self, self%rule, step, impact, kernel, start, peak, refinement_tolerance)
       end subroutine solve_to_peak
    end subroutine find_peaks
 
    !> Solve the panel of the finer solution, from its own start
    subroutine refine(self, impact, kernel, start, step, panel, fine)
       !> The solver
-      class(ive_t), intent(in) :: self
+      type(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
@@ -529,8 +578,7 @@ contains
       type(panel_t), intent(out) :: fine
 
       fine%indentation(1:fine_stages) = matmul(self%to_fine, panel%indentation(0:stages))
-      call solve_panel(self%fine, self%fine%map(step%index), step%map_scale(), impact, kernel, &
-         start, fine, refinement_tolerance)
+      call solve_step(self, self%fine, step, impact, kernel, start, fine, refinement_tolerance)
    end subroutine refine
 
    !> Rate of the force at the end of a panel
@@ -570,7 +618,8 @@ contains
          time_error = abs((fine%force(n + 1) - panel%force(n))/slope_at_end(rule, panel))
          alpha_rate = impact%plate%alpha_rate(panel%time(n))
          estimate = rounding + (impulse_error*(1.0_wp/impact%mass + alpha_rate) &
-            + time_error*alpha_rate*panel%impulse(n)/panel%time(n))/impact%velocity
+            + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs(fine%drift(n + 1) - panel%drift(n)))/impact%velocity
       end associate
    end function error_of_cor
 

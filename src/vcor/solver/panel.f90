@@ -21,7 +21,7 @@ module vcor_solver_panel
    private
 
    public :: panel_t, start_t
-   public :: solve_panel, advance_modes, hertz
+   public :: solve_panel, resolve_modes, advance_modes, hertz
 
    !> State at the start of a panel
    type :: start_t
@@ -35,6 +35,10 @@ module vcor_solver_panel
       real(wp) :: impulse = 0.0_wp
       !> Integral of the impulse J [N s2]
       real(wp) :: second_impulse = 0.0_wp
+      !> Deflection U of a frozen plate [m]
+      real(wp) :: deflection = 0.0_wp
+      !> What the velocity of a frozen plate falls behind alpha F [m/s]
+      real(wp) :: drift = 0.0_wp
       !> Internal variables q_k [m^1.5], shape (modes)
       real(wp), allocatable :: q(:)
    end type start_t
@@ -57,6 +61,10 @@ module vcor_solver_panel
       real(wp) :: second_impulse(0:width) = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(0:width) = 0.0_wp
+      !> Deflection U of a frozen plate [m]
+      real(wp) :: deflection(0:width) = 0.0_wp
+      !> What the velocity of a frozen plate falls behind alpha F [m/s]
+      real(wp) :: drift(0:width) = 0.0_wp
       !> Change of the force per change of u at the last stage alone [N/m^1.5]
       real(wp) :: end_stiffness = 0.0_wp
       !> Whether Newton's iteration converged

@@ -1,0 +1,205 @@
+!> One panel of the internal-variable method where the plain one does not do: with the second term of
+!> the Volterra series, whose force is quadratic in the internal variables, or with the frozen plate,
+!> whose deflection is no function of the integration matrix alone
+!>
+!> As in `vcor_solver_panel`, u - q_k = Z_k (u - q_k,n) with Z_k = (1 + l_k H)^-1, but the matrices
+!> are formed. With p_k = u - q_k and the constant c2 of the second term,
+!>
+!>     F = G_0 u + sum_k G_k p_k + c2 (G_0 u^2 + sum_k G_k p_k^2)
+!>
+!> since int int k(x + y) u'(t - x) u'(t - y) dx dy = G_0 u^2 + sum_k G_k p_k^2, Eq. (10). The frozen
+!> plate has U' = int alpha F' dt = alpha F - Z with Z' = alpha' F, hence
+!> U = U_n - Z_n (t - t_n) + H alpha F - H^2 alpha' F.
+module vcor_solver_general_panel
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
+   use vcor_numeric_linear, only : solve_linear
+   use vcor_solver_panel, only : hertz, panel_t, resolve_modes, start_t
+   implicit none
+   private
+
+   public :: solve_general_panel
+
+contains
+
+   !> Solve the collocation equations on a panel by Newton's method
+   pure subroutine solve_general_panel(rule, map, scale, impact, kernel, coefficient, start, panel, &
+                                       tolerance)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp), intent(in) :: coefficient
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> The panel; on entry `indentation` holds a guess at the stages
+      type(panel_t), intent(inout) :: panel
+      !> Newton's iteration ends with the first correction below this part of the largest
+      !> indentation
+      real(wp), intent(in) :: tolerance
+
+      integer, parameter :: most_iterations = 25
+      complex(wp), dimension(width) :: lambda, stiffness, memory
+      real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
+      real(wp), dimension(width) :: impulse, drift
+      real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian
+      real(wp) :: lag(width, width, size(kernel%rates))
+      complex(wp) :: factor
+      integer :: n, iteration, j, k, m
+      logical :: regular, frozen
+
+      n = rule%stages
+      frozen = impact%plate%frozen()
+      panel%stages = n
+      panel%map = scale*[map%slope, map%bend]
+      elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
+      time = start%time + elapsed
+      alpha = 0.0_wp
+      alpha(1:n) = impact%plate%alpha(time(1:n))
+      alpha_rate = 0.0_wp
+      if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(time(1:n))
+
+      h = scale*map%matrix
+      lambda = scale*map%eigenvalue
+      call resolve_modes(kernel, start, lambda(1:map%pairs), stiffness, memory)
+      s_matrix = 0.0_wp
+      b = 0.0_wp
+      do m = 1, map%pairs
+         call add_function(map, m, stiffness(m), s_matrix)
+         factor = memory(m)*map%left_one(m)
+         b = b + map%right_re(:, m)*real(factor, wp) - map%right_im(:, m)*aimag(factor)
+      end do
+      lag = 0.0_wp
+      if (abs(coefficient) > 0.0_wp) then
+         do k = 1, size(kernel%rates)
+            do m = 1, map%pairs
+               call add_function(map, m, 1.0_wp/(1.0_wp + kernel%rates(k)*lambda(m)), lag(:, :, k))
+            end do
+         end do
+      end if
+
+      ! s = right - response F
+      right = impact%velocity*time - (start%second_impulse + start%impulse*elapsed)/impact%mass
+      response = matmul(h, h)
+      if (frozen) then
+         right = right - start%deflection + start%drift*elapsed
+         do j = 1, width
+            response(:, j) = response(:, j)*(1.0_wp/impact%mass - alpha_rate(j)) + h(:, j)*alpha(j)
+         end do
+      else
+         right = right - alpha*start%impulse
+         do j = 1, width
+            response(:, j) = response(:, j)/impact%mass + alpha*h(:, j)
+         end do
+      end if
+
+      s = 0.0_wp
+      s(1:n) = panel%indentation(1:n)
+      right(n + 1:) = 0.0_wp
+      panel%converged = .false.
+      do iteration = 1, most_iterations
+         u = hertz(s)
+         force = matmul(s_matrix, u) - b
+         slope = s_matrix
+         call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
+         change = right - s - matmul(response, force)
+         jacobian = matmul(response, slope)
+         do j = 1, width
+            jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
+            jacobian(j, j) = jacobian(j, j) + 1.0_wp
+         end do
+         call solve_linear(jacobian, change, regular)
+         if (.not. regular) return
+         s = s + change
+         panel%converged = maxval(abs(change)) <= tolerance*maxval(abs(s))
+         if (panel%converged) exit
+      end do
+
+      u = hertz(s)
+      force = matmul(s_matrix, u) - b
+      slope = s_matrix
+      call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
+      impulse = start%impulse + matmul(h, force)
+      drift = start%drift + matmul(h, alpha_rate*force)
+      panel%time(0) = start%time
+      panel%time(1:) = time
+      panel%indentation(0) = start%indentation
+      panel%indentation(1:) = s
+      panel%force(0) = start%force
+      panel%force(1:) = force
+      panel%impulse(0) = start%impulse
+      panel%impulse(1:) = impulse
+      panel%second_impulse(0) = start%second_impulse
+      panel%second_impulse(1:) = start%second_impulse + matmul(h, impulse)
+      panel%drift(0) = start%drift
+      panel%drift(1:) = drift
+      panel%deflection(0) = start%deflection
+      panel%deflection(1:) = start%deflection + matmul(h, alpha*force - drift)
+      panel%alpha(1:) = alpha
+      panel%end_stiffness = slope(n, n)
+   end subroutine solve_general_panel
+
+   !> Add the second term of the Volterra series to the force and its derivative to the stiffness
+   pure subroutine add_second_term(kernel, coefficient, u, q, lag, force, slope)
+      !> The kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> Coefficient c2 [m^-1.5], 0 without the term
+      real(wp), intent(in) :: coefficient
+      !> u at the stages [m^1.5]
+      real(wp), intent(in) :: u(width)
+      !> Internal variables at the start of the panel [m^1.5], shape (modes)
+      real(wp), intent(in) :: q(:)
+      !> Matrices Z_k, shape (width, width, modes)
+      real(wp), intent(in) :: lag(:, :, :)
+      !> Force at the stages [N]
+      real(wp), intent(inout) :: force(width)
+      !> dF/du [N/m^1.5]
+      real(wp), intent(inout) :: slope(width, width)
+
+      real(wp) :: p(width)
+      integer :: j, k
+
+      if (.not. abs(coefficient) > 0.0_wp) return
+      force = force + coefficient*kernel%equilibrium*u**2
+      do j = 1, width
+         slope(j, j) = slope(j, j) + 2.0_wp*coefficient*kernel%equilibrium*u(j)
+      end do
+      do k = 1, size(kernel%rates)
+         p = matmul(lag(:, :, k), u - q(k))
+         force = force + coefficient*kernel%moduli(k)*p**2
+         do j = 1, width
+            slope(:, j) = slope(:, j) + 2.0_wp*coefficient*kernel%moduli(k)*p*lag(:, j, k)
+         end do
+      end do
+   end subroutine add_second_term
+
+   !> Add the part of one eigenvalue to the matrix f(H) = V f(lambda) V^-1
+   pure subroutine add_function(map, m, f, matrix)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Number of the eigenvalue
+      integer, intent(in) :: m
+      !> Value of the function
+      complex(wp), intent(in) :: f
+      !> The matrix
+      real(wp), intent(inout) :: matrix(width, width)
+
+      complex(wp) :: w
+      integer :: j
+
+      do j = 1, width
+         w = f*cmplx(map%left_re(j, m), map%left_im(j, m), wp)
+         matrix(:, j) = matrix(:, j) + map%right_re(:, m)*real(w, wp) - map%right_im(:, m)*aimag(w)
+      end do
+   end subroutine add_function
+
+end module vcor_solver_general_panel
