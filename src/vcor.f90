@@ -4,7 +4,8 @@ module vcor
       error_usage, raise
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, waves_none, &
+      waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
@@ -39,7 +40,7 @@ module vcor
    public :: prony_t, power_law_t, cerf_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
    public :: contact_modulus_t, new_contact_modulus
-   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing
+   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: impact_t, new_impact
    public :: solver_t, solver_settings_t, new_solver, method_for
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking

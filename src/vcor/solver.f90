@@ -24,6 +24,10 @@ module vcor_solver
       real(wp) :: end_time = 0.0_wp
       !> Wanted accuracy of the coefficient of restitution [-]; 0: that of the method
       real(wp) :: accuracy = 0.0_wp
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5]; 0: without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> Go on after the separation
+      logical :: ghost = .false.
    end type solver_settings_t
 
    !> Accuracy of ive where none is asked for
@@ -72,6 +76,18 @@ contains
       real(wp) :: accuracy
       logical :: exact
 
+      if (impact%kernel_viscosity() > 0.0_wp) then
+         if (abs(settings%second_coefficient) > 0.0_wp) then
+            call raise(error, error_input, 'the second term of the Volterra series has no ' &
+               //'meaning with a viscosity, whose kernel is a delta function')
+            return
+         else if (impact%plate%frozen()) then
+            call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
+               //"without a viscosity; use waves = 'relaxing'")
+            return
+         end if
+      end if
+
       accuracy = settings%accuracy
       select case (method_for(impact, settings%method))
       case ('ive')
@@ -83,7 +99,8 @@ contains
          end if
          if (.not. accuracy > 0.0_wp) accuracy = ive_accuracy
          allocate (ive)
-         call new_ive(ive, accuracy, settings%end_time, error)
+         call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &
+            settings%ghost)
          if (.not. allocated(error)) call move_alloc(ive, solver)
       case ('direct')
          if (settings%scheme /= 'product') then
@@ -92,7 +109,8 @@ contains
          end if
          if (.not. accuracy > 0.0_wp) accuracy = direct_accuracy
          allocate (product)
-         call new_product(product, settings%time_step, accuracy, settings%end_time)
+         call new_product(product, settings%time_step, accuracy, settings%end_time, &
+            settings%second_coefficient, settings%ghost)
          call move_alloc(product, solver)
       case default
          call raise(error, error_input, "unknown method '"//settings%method &

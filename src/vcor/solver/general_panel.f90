@@ -1,14 +1,14 @@
-!> One panel of the internal-variable method where the plain one does not do: with the second term of
-!> the Volterra series, whose force is quadratic in the internal variables, or with the frozen plate,
-!> whose deflection is no function of the integration matrix alone
+!> One panel of the internal-variable method where the plain one does not do: with the second term
+!> of the Volterra series, whose force is quadratic in the internal variables, or with the frozen
+!> plate, whose deflection is no function of the integration matrix alone
 !>
 !> As in `vcor_solver_panel`, u - q_k = Z_k (u - q_k,n) with Z_k = (1 + l_k H)^-1, but the matrices
 !> are formed. With p_k = u - q_k and the constant c2 of the second term,
 !>
 !>     F = G_0 u + sum_k G_k p_k + c2 (G_0 u^2 + sum_k G_k p_k^2)
 !>
-!> since int int k(x + y) u'(t - x) u'(t - y) dx dy = G_0 u^2 + sum_k G_k p_k^2, Eq. (10). The frozen
-!> plate has U' = int alpha F' dt = alpha F - Z with Z' = alpha' F, hence
+!> since int int k(x + y) u'(t - x) u'(t - y) dx dy = G_0 u^2 + sum_k G_k p_k^2, Eq. (10). The
+!> frozen plate has U' = int alpha F' dt = alpha F - Z with Z' = alpha' F, hence
 !> U = U_n - Z_n (t - t_n) + H alpha F - H^2 alpha' F.
 module vcor_solver_general_panel
    use vcor_impact_problem, only : impact_t
@@ -25,8 +25,8 @@ module vcor_solver_general_panel
 contains
 
    !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_general_panel(rule, map, scale, impact, kernel, coefficient, start, panel, &
-                                       tolerance)
+   pure subroutine solve_general_panel(rule, map, scale, impact, kernel, coefficient, start, &
+                                       panel, tolerance)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel

@@ -12,8 +12,8 @@ contains
 
    !> Weights W_i = w_i + v_i - v_{i-1}, i = 0 .. n - 1, with w_i the mean of the kernel over step i
    !> and v_i its moment int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta. By parts the moment is,
-   !> with K the integral of k, (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it
-   !> is (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 k'''
+   !> with K the integral of k, (mean of K over the step - mean of K at its ends)/dt; away from
+   !> t = 0 it is (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 k'''
    pure function history_weights(impact, dt, n) result(weight)
       !> The impact
       type(impact_t), intent(in) :: impact

@@ -11,18 +11,20 @@
 !> so that a singular kernel needs no care. Impulse and second impulse follow by the Adams-Moulton
 !> rule of third order, or by the trapezoidal rule where the plate or a dashpot makes a step stiff,
 !> which keeps the method stable for any step; a dashpot's impulse is viscosity*u exactly. What is
-!> left per step is one equation s + c s^1.5 = r. The error falls with dt^2.5, the start u ~ t^1.5
+!> left per step is one equation s + c s^1.5 + d s^3 = r, d = 0 without the second term of the
+!> Volterra series. The error falls with dt^2.5, the start u ~ t^1.5
 !> being what limits it. The history sum makes N^2/2 multiplications and additions in all, on
 !> contiguous arrays.
 module vcor_solver_product
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz_contact_time, impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
-      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
-      contact_lasting, contact_separated, contact_sticking, trajectory_t
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
+      contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_dot, only : dot
    use vcor_solver_history, only : history_weights
+   use vcor_solver_second_term, only : second_term_t
    use vcor_solver_series, only : end_of_contact, find_series_peaks, set_series_weights
    use vcor_solver_type, only : solver_t
    implicit none
@@ -42,6 +44,10 @@ module vcor_solver_product
       real(wp) :: accuracy = 1.0e-6_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp) :: end_time = 0.0_wp
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> Go on after the separation
+      logical :: ghost = .false.
    contains
       procedure :: solve
    end type product_t
@@ -49,7 +55,7 @@ module vcor_solver_product
 contains
 
    !> Build the solver
-   pure subroutine new_product(self, time_step, accuracy, end_time)
+   pure subroutine new_product(self, time_step, accuracy, end_time, second_coefficient, ghost)
       !> The solver
       type(product_t), intent(out) :: self
       !> Time step [s]; 0: refined until the accuracy is reached
@@ -58,10 +64,16 @@ contains
       real(wp), intent(in) :: accuracy
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp), intent(in) :: end_time
+      !> Coefficient of the second term of the Volterra series [m^-1.5]; absent: without it
+      real(wp), intent(in), optional :: second_coefficient
+      !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
+      logical, intent(in), optional :: ghost
 
       self%time_step = time_step
       self%accuracy = accuracy
       self%end_time = end_time
+      if (present(second_coefficient)) self%second_coefficient = second_coefficient
+      if (present(ghost)) self%ghost = ghost
    end subroutine new_product
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
@@ -76,11 +88,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: first_steps = 64
-      real(wp) :: dt, end_time, cor(3)
+      real(wp) :: dt, cor(3)
       integer :: level
 
-      end_time = self%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience()
       if (self%time_step > 0.0_wp) then
          dt = 4.0_wp*self%time_step
       else
@@ -90,7 +100,7 @@ contains
       level = 0
       do
          level = level + 1
-         call march(impact, dt, end_time, trajectory, error)
+         call march(self, impact, dt, trajectory, error)
          if (allocated(error)) return
          ! coarse steps can miss the end, so only the given step decides that there is none
          if (trajectory%status /= contact_separated .and. &
@@ -126,13 +136,13 @@ contains
    end function error_of_last
 
    !> One run with a given step
-   subroutine march(impact, dt, end_time, trajectory, error)
+   subroutine march(self, impact, dt, trajectory, error)
+      !> The solver
+      type(product_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> End of the computation [s]
-      real(wp), intent(in) :: end_time
       !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
@@ -145,12 +155,22 @@ contains
       real(wp), parameter :: stiff = 2.0_wp
       ! weights(room - i) = W_i: reversed, so that the history sum runs forward through both arrays
       real(wp), allocatable :: weights(:), du(:)
-      real(wp) :: rule(3), t, s, u, velocity, force, impulse, regular_impulse, second_impulse
-      real(wp) :: regular_force, previous_force, previous_impulse, before_force, before_impulse
-      real(wp) :: history, viscosity, stiffness, alpha, alpha_rate, old_u, start, response, right
+      type(second_term_t) :: second
+      ! integrals over time: value, and integrand at the last node and the one before, of the force
+      ! without a dashpot's, of the whole impulse, and for a frozen plate of alpha F, alpha' F and
+      ! the drift, the integral of alpha' F
+      real(wp), dimension(3) :: impulse, second_impulse, push, drift, lag
+      real(wp) :: rule(3), weight, t, s, u, velocity, force, whole_impulse, plate, plate_velocity
+      real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, per_force
+      real(wp) :: right, end_time, node(columns)
       integer :: n, room
+      logical :: frozen, two_terms
 
       viscosity = impact%kernel_viscosity()
+      frozen = impact%plate%frozen()
+      two_terms = abs(self%second_coefficient) > 0.0_wp
+      end_time = self%end_time
+      if (.not. end_time > 0.0_wp) end_time = impact%patience()
       room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1
       call make_room()
       stiffness = weights(room)
@@ -161,12 +181,11 @@ contains
       s = 0.0_wp
       u = 0.0_wp
       velocity = impact%velocity
-      regular_force = 0.0_wp
       impulse = 0.0_wp
-      regular_impulse = 0.0_wp
       second_impulse = 0.0_wp
-      before_force = 0.0_wp
-      before_impulse = 0.0_wp
+      push = 0.0_wp
+      drift = 0.0_wp
+      lag = 0.0_wp
       n = 0
       do
          n = n + 1
@@ -182,58 +201,84 @@ contains
          t = dt*real(n, wp)
          alpha = impact%plate%alpha(t)
          alpha_rate = impact%plate%alpha_rate(t)
-         history = dot(weights(room - n + 1:room - 1), du(1:n - 1))
-
-         rule = adams_moulton
+         rule = dt*adams_moulton
          if (n == 1 .or. 1.5_wp*sqrt(abs(s))*dt*(alpha*stiffness + viscosity/impact%mass) > stiff) &
-            rule = trapezoid
+            rule = dt*trapezoid
+         weight = rule(1)
 
-         ! F = stiffness*(u - old_u) + history + viscosity*u': impulse and second impulse of all
-         ! that is known, then the equation for u, then what u adds
-         old_u = u
-         previous_force = regular_force
-         previous_impulse = impulse
-         start = history - stiffness*old_u
-         regular_impulse = regular_impulse &
-            + dt*(rule(1)*start + rule(2)*previous_force + rule(3)*before_force)
-         second_impulse = second_impulse &
-            + dt*(rule(1)*regular_impulse + rule(2)*previous_impulse + rule(3)*before_impulse)
-         response = dt*rule(1)*stiffness + viscosity
-         right = impact%velocity*t - second_impulse/impact%mass - alpha*regular_impulse
-         call solve_step((dt*rule(1)/impact%mass + alpha)*response, right, s + dt*velocity, s, u)
+         ! F = known + linear*u + quadratic*u^2, and the dashpot's viscosity*u'
+         known = dot(weights(room - n + 1:room - 1), du(1:n - 1)) - stiffness*u
+         linear = stiffness
+         quadratic = 0.0_wp
+         if (two_terms) call second%add(n, du, u, known, linear, quadratic)
 
-         du(n) = u - old_u
-         regular_force = start + stiffness*u
-         regular_impulse = regular_impulse + dt*rule(1)*stiffness*u
-         impulse = regular_impulse + viscosity*u
-         second_impulse = second_impulse + dt*rule(1)*response*u
-         before_force = previous_force
-         before_impulse = previous_impulse
-         velocity = (impact%velocity - impulse/impact%mass - alpha*regular_force &
-            - alpha_rate*impulse)/(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
-         force = regular_force + 1.5_wp*viscosity*sqrt(abs(s))*velocity
+         ! integrals without the share of this node's force, then s + c u + d u^2 = right for u
+         impulse(1) = so_far(impulse)
+         second_impulse(1) = so_far(second_impulse)
+         right = impact%velocity*t - (second_impulse(1) + weight*impulse(1))/impact%mass
+         if (frozen) then
+            push(1) = so_far(push)
+            drift(1) = so_far(drift)
+            lag(1) = so_far(lag)
+            right = right - (push(1) - lag(1) - weight*drift(1))
+            per_force = weight*(weight/impact%mass + alpha - weight*alpha_rate)
+         else
+            right = right - alpha*impulse(1)
+            per_force = weight*(weight/impact%mass + alpha)
+         end if
+         right = right - per_force*known
+         du(n) = -u
+         call solve_step(per_force*linear + (weight/impact%mass + alpha)*viscosity, &
+            per_force*quadratic, right, s + dt*velocity, s, u)
+         du(n) = du(n) + u
+         if (two_terms) call second%accept(n, du)
 
-         associate (state => trajectory%state(:, n))
-            state(col_time) = t
-            state(col_indentation) = s
-            state(col_velocity) = velocity
-            state(col_force) = force
-            state(col_impulse) = impulse
-            state(col_sphere) = impact%velocity*t - second_impulse/impact%mass
-            state(col_sphere_velocity) = impact%velocity - impulse/impact%mass
-            state(col_plate) = alpha*impulse
-            state(col_plate_velocity) = alpha*force + alpha_rate*impulse
-         end associate
+         force = known + (linear + quadratic*u)*u
+         call take(impulse, force, weight*force)
+         whole_impulse = impulse(1) + viscosity*u
+         call take(second_impulse, whole_impulse, weight*whole_impulse)
+         if (frozen) then
+            call take(push, alpha*force, weight*alpha*force)
+            call take(drift, alpha_rate*force, weight*alpha_rate*force)
+            call take(lag, drift(1), weight*drift(1))
+            plate = push(1) - lag(1)
+            plate_velocity = -drift(1)
+         else
+            plate = alpha*whole_impulse
+            plate_velocity = alpha_rate*whole_impulse
+         end if
+         ! s' = v0 - I/m - U' with alpha F in U' and the dashpot's force in F
+         velocity = (impact%velocity - whole_impulse/impact%mass - plate_velocity - alpha*force) &
+            /(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
+         force = force + 1.5_wp*viscosity*sqrt(abs(s))*velocity
+
+         node(col_time) = t
+         node(col_indentation) = s
+         node(col_velocity) = velocity
+         node(col_force) = force
+         node(col_impulse) = whole_impulse
+         node(col_sphere) = impact%velocity*t - second_impulse(1)/impact%mass
+         node(col_sphere_velocity) = impact%velocity - whole_impulse/impact%mass
+         node(col_plate) = plate
+         node(col_plate_velocity) = plate_velocity + alpha*force
+         trajectory%final = trajectory%final + 1
+         trajectory%state(:, trajectory%final) = node
+         if (trajectory%status == contact_separated) then
+            if (t >= end_time) exit
+            cycle
+         end if
+
          trajectory%last = n
          trajectory%steps = n
-
          ! while the indentation grows the force is positive: what is not is rounding
          if (force <= 0.0_wp .and. velocity < 0.0_wp) then
-            call end_of_contact(impact, stiffness, trajectory)
+            trajectory%state(:, n) = end_of_contact(impact, stiffness, trajectory, n)
             trajectory%status = contact_separated
-            exit
+            if (.not. self%ghost) exit
+            trajectory%final = n + 1
+            trajectory%state(:, n + 1) = node
+            if (.not. self%end_time > 0.0_wp) end_time = 2.0_wp*t
          else if (t >= end_time) then
-            trajectory%status = contact_lasting
             exit
          else if (trajectory%is_stuck(impact%mass)) then
             trajectory%status = contact_sticking
@@ -249,20 +294,47 @@ contains
       subroutine make_room()
          real(wp), allocatable :: longer(:)
 
-         call trajectory%reserve(room)
+         ! one node more for the end of contact before ghost lines
+         call trajectory%reserve(room + 1)
          allocate (longer(room))
          if (allocated(du)) longer(:size(du)) = du
          call move_alloc(longer, du)
          allocate (longer(room))
          longer(room:1:-1) = history_weights(impact, dt, room)
          call move_alloc(longer, weights)
+         if (two_terms) call second%prepare(impact, self%second_coefficient, dt, room)
       end subroutine make_room
+
+      !> An integral up to this node without the share of the node itself
+      pure function so_far(integral) result(value)
+         !> Value, integrand at the last node and the one before
+         real(wp), intent(in) :: integral(3)
+         !> Value
+         real(wp) :: value
+
+         value = integral(1) + rule(2)*integral(2) + rule(3)*integral(3)
+      end function so_far
    end subroutine march
 
-   !> Solve s + c s^1.5 = r, odd in r, for y = sqrt(|s|): y^2 + c y^3 = |r| by Newton's method
-   pure subroutine solve_step(c, r, guess, s, u)
+   !> Complete an integral by the share of this node
+   pure subroutine take(integral, integrand, share)
+      !> Value, integrand at the last node and the one before
+      real(wp), intent(inout) :: integral(3)
+      !> Integrand at this node
+      real(wp), intent(in) :: integrand
+      !> Share of the node in the integral
+      real(wp), intent(in) :: share
+
+      integral = [integral(1) + share, integrand, integral(2)]
+   end subroutine take
+
+   !> Solve s + c u + d u^2 = r, u = s^1.5 with the sign of s, for y = sqrt(|s|):
+   !> y^2 + c y^3 +- d y^6 = |r| by Newton's method
+   pure subroutine solve_step(c, d, r, guess, s, u)
       !> Coefficient [m^-0.5], >= 0
       real(wp), intent(in) :: c
+      !> Coefficient [m^-2], small
+      real(wp), intent(in) :: d
       !> Right-hand side [m]
       real(wp), intent(in) :: r
       !> Guess at s [m]
@@ -272,17 +344,19 @@ contains
       !> s^1.5 with the sign of s [m^1.5]
       real(wp), intent(out) :: u
 
-      real(wp) :: y, correction
+      real(wp) :: y, e, correction
       integer :: iteration
 
       s = 0.0_wp
       u = 0.0_wp
       if (.not. abs(r) > 0.0_wp) return
-      ! the root lies below sqrt(|r|); from any start Newton's method descends to it
+      e = sign(d, r)
+      ! with d = 0 the root lies below sqrt(|r|), and from any start Newton's method descends to it
       y = sqrt(abs(r))
       if (abs(guess) > 0.0_wp) y = min(y, sqrt(abs(guess)))
       do iteration = 1, 60
-         correction = (y*y*(1.0_wp + c*y) - abs(r))/(y*(2.0_wp + 3.0_wp*c*y))
+         correction = (y*y*(1.0_wp + c*y + e*y**4) - abs(r)) &
+            /(y*(2.0_wp + 3.0_wp*c*y + 6.0_wp*e*y**4))
          y = y - correction
          if (abs(correction) <= 1.0e-9_wp*y) exit
       end do

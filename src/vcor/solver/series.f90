@@ -12,28 +12,32 @@ module vcor_solver_series
 
 contains
 
-   !> Move the last node, the first one with F <= 0, back to where F = 0. The indentation (by cubic
-   !> Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth there
-   !> even where s goes to zero with F
-   pure subroutine end_of_contact(impact, stiffness, trajectory)
+   !> State where F = 0 in the step before node n, the first one with F <= 0. The indentation (by
+   !> cubic Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth
+   !> there even where s goes to zero with F
+   pure function end_of_contact(impact, stiffness, trajectory, n) result(node)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> About dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
       !> The trajectory
-      type(trajectory_t), intent(inout) :: trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Node
+      integer, intent(in) :: n
+      !> State
+      real(wp) :: node(columns)
 
-      real(wp) :: a(columns), b(columns), memory(-1:1), dt, theta, lower, upper
-      real(wp) :: f, f_lower, f_upper, t, alpha, alpha_rate, impulse, second
-      integer :: n, j, iteration
+      real(wp) :: a(columns), b(columns), memory(-1:1), drift(-1:1), dt, theta, lower, upper
+      real(wp) :: f, f_lower, f_upper, t
+      integer :: j, iteration
 
-      n = trajectory%last
       b = trajectory%state(:, n)
       a = trajectory%state(:, n - 1)
       dt = b(col_time) - a(col_time)
       do j = -1, 1
-         associate (node => trajectory%state(:, max(n - 1 + j, 0)))
-            memory(j) = stiffness*hertz(node(col_indentation)) - node(col_force)
+         associate (near => trajectory%state(:, max(n - 1 + j, 0)))
+            memory(j) = stiffness*hertz(near(col_indentation)) - near(col_force)
+            drift(j) = impact%plate%alpha(near(col_time))*near(col_force) - near(col_plate_velocity)
          end associate
       end do
 
@@ -46,7 +50,7 @@ contains
          if (.not. f_upper < 0.0_wp .or. .not. f_lower > 0.0_wp) exit
          theta = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)
          if (mod(iteration, 3) == 0) theta = 0.5_wp*(lower + upper)
-         f = stiffness*hertz(hermite(col_indentation, col_velocity, theta)) &
+         f = stiffness*hertz(hermite(a, b, dt, col_indentation, col_velocity, theta)) &
             - parabola(memory, theta)
          if (abs(upper - lower) <= 1.0e-13_wp) exit
          if (f > 0.0_wp) then
@@ -60,39 +64,42 @@ contains
       if (.not. f_lower > 0.0_wp) theta = 0.0_wp
 
       t = a(col_time) + theta*dt
-      impulse = hermite(col_impulse, col_force, theta)
-      second = hermite(col_sphere, col_sphere_velocity, theta)
-      alpha = impact%plate%alpha(t)
-      alpha_rate = impact%plate%alpha_rate(t)
-      associate (node => trajectory%state(:, n))
-         node(col_time) = t
-         node(col_force) = 0.0_wp
-         node(col_impulse) = impulse
-         node(col_sphere) = second
-         node(col_sphere_velocity) = impact%velocity - impulse/impact%mass
-         node(col_plate) = alpha*impulse
-         node(col_plate_velocity) = alpha_rate*impulse
-         node(col_indentation) = node(col_sphere) - node(col_plate)
-         node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
-      end associate
+      node(col_time) = t
+      node(col_force) = 0.0_wp
+      node(col_impulse) = hermite(a, b, dt, col_impulse, col_force, theta)
+      node(col_sphere) = hermite(a, b, dt, col_sphere, col_sphere_velocity, theta)
+      node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
+      if (impact%plate%frozen()) then
+         node(col_plate) = hermite(a, b, dt, col_plate, col_plate_velocity, theta)
+         node(col_plate_velocity) = -parabola(drift, theta)
+      else
+         node(col_plate) = impact%plate%alpha(t)*node(col_impulse)
+         node(col_plate_velocity) = impact%plate%alpha_rate(t)*node(col_impulse)
+      end if
+      node(col_indentation) = node(col_sphere) - node(col_plate)
+      node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
+   end function end_of_contact
 
-   contains
+   !> Cubic through values and slopes at both ends of a step
+   pure function hermite(a, b, dt, value, slope, x) result(y)
+      !> State at the start
+      real(wp), intent(in) :: a(columns)
+      !> State at the end
+      real(wp), intent(in) :: b(columns)
+      !> Length of the step [s]
+      real(wp), intent(in) :: dt
+      !> Column of the values
+      integer, intent(in) :: value
+      !> Column of the slopes
+      integer, intent(in) :: slope
+      !> Position in the step, 0 .. 1
+      real(wp), intent(in) :: x
+      !> Interpolated value
+      real(wp) :: y
 
-      !> Cubic through values and slopes at both ends of the last step
-      pure function hermite(value, slope, x) result(y)
-         !> Column of the values
-         integer, intent(in) :: value
-         !> Column of the slopes
-         integer, intent(in) :: slope
-         !> Position in the step, 0 .. 1
-         real(wp), intent(in) :: x
-         !> Interpolated value
-         real(wp) :: y
-
-         y = a(value)*(1.0_wp + 2.0_wp*x)*(1.0_wp - x)**2 + b(value)*x**2*(3.0_wp - 2.0_wp*x) &
-            + dt*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
-      end function hermite
-   end subroutine end_of_contact
+      y = a(value)*(1.0_wp + 2.0_wp*x)*(1.0_wp - x)**2 + b(value)*x**2*(3.0_wp - 2.0_wp*x) &
+         + dt*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
+   end function hermite
 
    !> Parabola through values at -1, 0 and 1
    pure function parabola(value, x) result(y)

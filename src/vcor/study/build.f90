@@ -2,9 +2,10 @@
 module vcor_study_build
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_constants, only : pi
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
+      waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
@@ -50,11 +51,10 @@ contains
          model = waves_none
       case ('constant')
          model = waves_constant
-      case ('relaxing')
-         model = waves_relaxing
+      case ('frozen')
+         model = waves_frozen
       case default
-         call not_yet(case, 'plate', 'waves', error)
-         return
+         model = waves_relaxing
       end select
       call new_plate(plate, surface, number(case, 'plate', 'half_thickness'), model, error)
       if (allocated(error)) then
@@ -83,18 +83,16 @@ contains
 
       type(solver_settings_t) :: settings
       integer :: order
-      logical :: ghost
 
-      call case%get('solver', 'volterra_order', order)
-      call case%get('solver', 'continue_after_separation', ghost)
-      if (order > 1) call not_yet(case, 'solver', 'volterra_order', error)
-      if (ghost) call not_yet(case, 'solver', 'continue_after_separation', error)
-      if (allocated(error)) return
       call case%get('solver', 'method', settings%method)
       call case%get('solver', 'scheme', settings%scheme)
       settings%time_step = number(case, 'solver', 'time_step')
       settings%end_time = number(case, 'solver', 'end_time')
       settings%accuracy = number(case, 'solver', 'accuracy')
+      call case%get('solver', 'volterra_order', order)
+      if (order == 2) &
+         settings%second_coefficient = number(case, 'solver', 'volterra_coefficient')
+      call case%get('solver', 'continue_after_separation', settings%ghost)
       call new_solver(solver, settings, impact, error)
       if (allocated(error)) call locate(case, 'solver', 'method', error)
    end subroutine build_solver
@@ -173,21 +171,6 @@ contains
       call case%get(group, key, value, item)
       if (ieee_is_nan(value)) value = 0.0_wp
    end function number
-
-   !> Refuse what the catalogue knows but no solver does yet
-   subroutine not_yet(case, group, key, error)
-      !> A case
-      type(case_t), intent(in) :: case
-      !> Group
-      character(len=*), intent(in) :: group
-      !> Key
-      character(len=*), intent(in) :: key
-      !> The error
-      type(error_t), allocatable, intent(inout) :: error
-
-      call raise(error, error_input, 'this value of '//key//' is not available yet')
-      call locate(case, group, key, error)
-   end subroutine not_yet
 
    !> Say in an error where in the case its cause stands
    subroutine locate(case, group, key, error, item)

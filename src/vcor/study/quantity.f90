@@ -25,7 +25,7 @@ module vcor_study_quantity
    !> Numbers of a summary, in the order of its columns; steps and status follow
    type(quantity_t), parameter :: quantities(*) = [ &
       quantity_t('cor', 'e', '1', 'coefficient of restitution, relative velocity'), &
-      quantity_t('cor_sphere', 'e_a', '1', 'coefficient of restitution, velocity of the sphere'), &
+      quantity_t('cor_sphere', 'e_a', '1', 'coefficient of restitution, sphere alone'), &
       quantity_t('contact_time', 't0', 's', 'contact time'), &
       quantity_t('max_indentation', 's_max', 'm', 'largest indentation'), &
       quantity_t('max_force', 'F_max', 'N', 'largest contact force'), &

@@ -1,0 +1,114 @@
+!> End of the contact in the internal-variable method
+module vcor_solver_landing
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_solver_collocator, only : collocator_t, guess, newton_tolerance, plate_velocity, &
+      solve_step
+   use vcor_solver_panel, only : hertz, panel_t, start_t
+   use vcor_solver_step, only : step_t, step_to
+   implicit none
+   private
+
+   public :: land
+
+contains
+
+   !> Cut a panel in which the force changes its sign so that it ends where the force is zero
+   subroutine land(self, impact, kernel, start, accuracy, step, panel)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      !> The step, on return the one that ends at the zero
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the zero; not converged on failure
+      type(panel_t), intent(inout) :: panel
+
+      integer, parameter :: most_iterations = 40
+      type(panel_t) :: crossing, last
+      real(wp) :: theta, time, correction, tolerance, velocity
+      real(wp) :: kappa, memory_rate, old_memory, memory
+      integer :: iteration, n, k
+
+      n = self%rule%stages
+      crossing = panel
+      k = 1
+      do while (crossing%force(k) > 0.0_wp &
+                .or. crossing%indentation(k) >= crossing%indentation(k - 1))
+         k = k + 1
+      end do
+      theta = self%rule%point(k - 1)
+      if (k > 1) theta = self%rule%crossing(crossing%force(0:n), theta, self%rule%point(k))
+      time = theta*(crossing%map(1) + crossing%map(2)*theta)
+
+      ! Write F = kappa u - M with any kappa that is about dF/du: the indentation s and the memory
+      ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
+      ! kappa u(s) = M with s and M linear in time, the slope of M from the last two iterations
+      tolerance = 1.0e-3_wp*min(accuracy, 1.0e-7_wp)
+      kappa = crossing%end_stiffness
+      memory_rate = 0.0_wp
+      old_memory = 0.0_wp
+      correction = 0.0_wp
+      panel%converged = .false.
+      last = crossing
+      do iteration = 1, most_iterations
+         if (.not. time > 0.0_wp) return
+         step = step_to(start%time, time)
+         call guess(self%rule, impact, last, start, step, panel)
+         call solve_step(self, self%rule, step, impact, kernel, start, panel, newton_tolerance)
+         if (.not. panel%converged) return
+         last = panel
+         velocity = impact%velocity - panel%impulse(n)/impact%mass &
+            - plate_velocity(impact, panel, n)
+         memory = kappa*hertz(panel%indentation(n)) - panel%force(n)
+         if (abs(correction) > 0.0_wp) memory_rate = (memory - old_memory)/correction
+         old_memory = memory
+         call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
+            panel%converged)
+         if (.not. panel%converged) return
+         if (abs(correction) <= tolerance*(start%time + time)) return
+         time = time + correction
+      end do
+      panel%converged = .false.
+   end subroutine land
+
+   !> Solve kappa hertz(s + v x) = memory + rate x for x near 0 by Newton's method
+   pure subroutine look_ahead(kappa, s, v, memory, rate, x, found)
+      !> Stiffness kappa [N/m^1.5], > 0
+      real(wp), intent(in) :: kappa
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> Its rate [m/s]
+      real(wp), intent(in) :: v
+      !> Memory [N]
+      real(wp), intent(in) :: memory
+      !> Its rate [N/s]
+      real(wp), intent(in) :: rate
+      !> Time [s]
+      real(wp), intent(out) :: x
+      !> Whether the force falls to zero there
+      logical, intent(out) :: found
+
+      real(wp) :: correction, slope
+      integer :: iteration
+
+      x = 0.0_wp
+      found = .false.
+      do iteration = 1, 50
+         slope = 1.5_wp*kappa*sqrt(abs(s + v*x))*v - rate
+         if (.not. slope < 0.0_wp) return
+         correction = (memory + rate*x - kappa*hertz(s + v*x))/slope
+         x = x + correction
+         found = abs(correction) <= 1.0e-3_wp*abs(x)
+         if (found) return
+      end do
+   end subroutine look_ahead
+
+end module vcor_solver_landing
