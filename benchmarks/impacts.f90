@@ -1,0 +1,155 @@
+!> Times of the solvers on the paper's impacts, on one core: a table to be read by hand. Each time is
+!> the median of several batches, so that a disturbed batch does not count
+program impacts
+   use, intrinsic :: iso_fortran_env, only : int64, output_unit
+   use vcor, only : build_impact, build_solver, case_t, error_t, evaluate, impact_t, outcome_t, &
+      override, read_case, solver_t, trajectory_t, wp
+   use vcor_numeric_dot, only : dot
+   implicit none
+
+   integer, parameter :: batches = 9
+   character(len=*), parameter :: folder = 'examples/paper/'
+
+   write (output_unit, '(a)') 'impact                          settings                        ' &
+      //'us per impact   steps   error of cor'
+   call report('sls', [character(len=40) :: 'solver.accuracy=1e-8'])
+   call report('sls', [character(len=40) :: 'solver.accuracy=1e-6'])
+   call report('sls', [character(len=40) :: 'solver.accuracy=1e-11'])
+   call report('elastic', [character(len=40) :: 'solver.accuracy=1e-8'])
+   call report('butyl_prony', [character(len=40) :: 'solver.accuracy=1e-8'])
+   call report('sls', [character(len=40) :: 'solver.accuracy=1e-8', 'solver.volterra_order=2'])
+   call report('sls', [character(len=40) :: 'solver.method=direct', 'solver.time_step=8.9436e-7'])
+   call report('sls', [character(len=40) :: 'solver.method=direct', 'solver.time_step=8.9436e-7', &
+      'solver.volterra_order=2'])
+   call report('butyl_cerf', [character(len=40) :: 'solver.time_step=5e-7'])
+   call report('butyl_power_law', [character(len=40) :: 'solver.time_step=5e-7'])
+   call report('butyl_power_law', [character(len=40) :: 'solver.accuracy=1e-6'])
+   call history_sum(1500)
+
+contains
+
+   !> Time one example with some settings
+   subroutine report(name, settings)
+      !> Name of the example
+      character(len=*), intent(in) :: name
+      !> Overrides, group.key=value
+      character(len=*), intent(in) :: settings(:)
+
+      type(case_t) :: case
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      class(solver_t), allocatable :: solver
+      type(error_t), allocatable :: error
+      real(wp) :: time(batches)
+      character(len=32) :: label
+      integer :: i, j, repeats
+
+      call read_case(case, folder//name//'.nml', error)
+      call stop_on(error)
+      label = ''
+      do i = 1, size(settings)
+         call override(case, trim(settings(i)), error)
+         call stop_on(error)
+         label = trim(label)//' '//settings(i)(index(settings(i), '.') + 1:)
+      end do
+      call case%validate(error)
+      call stop_on(error)
+      call build_impact(case, impact, error)
+      call stop_on(error)
+      call build_solver(case, impact, solver, error)
+      call stop_on(error)
+
+      repeats = 1
+      do
+         time(1) = seconds()
+         do j = 1, repeats
+            call solver%solve(impact, trajectory, error)
+         end do
+         time(1) = seconds() - time(1)
+         call stop_on(error)
+         if (time(1) > 0.02_wp) exit
+         repeats = 2*repeats
+      end do
+      do i = 1, batches
+         time(i) = seconds()
+         do j = 1, repeats
+            call solver%solve(impact, trajectory, error)
+         end do
+         time(i) = (seconds() - time(i))/real(repeats, wp)
+      end do
+      outcome = evaluate(impact, trajectory)
+      write (output_unit, '(a20, 12x, a32, f13.1, i8, es15.1)') name, adjustl(label), &
+         1.0e6_wp*median(time), outcome%steps, outcome%cor_error
+   end subroutine report
+
+   !> The history sum of product integration against plain dot products of the same lengths
+   subroutine history_sum(n)
+      !> Number of steps
+      integer, intent(in) :: n
+
+      real(wp), allocatable :: a(:), b(:)
+      real(wp) :: ours(batches), plain(batches), total
+      integer :: i, j
+
+      allocate (a(n), b(n))
+      call random_number(a)
+      call random_number(b)
+      total = 0.0_wp
+      do i = 1, batches
+         ours(i) = seconds()
+         do j = 1, n
+            total = total + dot(a(n - j + 1:n), b(1:j))
+         end do
+         ours(i) = seconds() - ours(i)
+         plain(i) = seconds()
+         do j = 1, n
+            total = total + dot_product(a(1:j), b(1:j))
+         end do
+         plain(i) = seconds() - plain(i)
+      end do
+      write (output_unit, '(/, a, i0, a, 2(f8.1, a), f6.2, a)') 'history sum of ', n, ' steps: ', &
+         1.0e6_wp*median(ours), ' us; intrinsic dot_product: ', 1.0e6_wp*median(plain), &
+         ' us;', real(n, wp)**2/2.0e9_wp/median(ours), ' multiply-adds per ns'
+      ! the sums are used, so that none is optimised away
+      if (.not. total > 0.0_wp) write (output_unit, '(a)') 'impossible'
+   end subroutine history_sum
+
+   !> Wall time
+   function seconds() result(time)
+      !> Time [s]
+      real(wp) :: time
+
+      integer(int64) :: count, rate
+
+      call system_clock(count, rate)
+      time = real(count, wp)/real(rate, wp)
+   end function seconds
+
+   !> Median of an odd number of values
+   pure function median(values) result(middle)
+      !> Values, shape (n)
+      real(wp), intent(in) :: values(:)
+      !> Median
+      real(wp) :: middle
+
+      real(wp) :: rest(size(values))
+      integer :: i
+
+      rest = values
+      do i = 1, size(values)/2
+         rest(maxloc(rest, 1)) = -1.0_wp
+      end do
+      middle = maxval(rest)
+   end function median
+
+   !> A benchmark has no use for errors
+   subroutine stop_on(error)
+      !> The error
+      type(error_t), allocatable, intent(in) :: error
+
+      if (.not. allocated(error)) return
+      write (output_unit, '(a)') 'impacts: '//error%message
+      error stop
+   end subroutine stop_on
+end program impacts
