@@ -1,6 +1,6 @@
 !> The command line as a request
 module vcor_app_cli
-   use vcor_app_argument, only : argument_t
+   use vcor_app_argument, only : append_word, argument_t, has_word
    use vcor, only : error_t, error_usage, printable, quantity_names, raise, suggestion
    implicit none
    private
@@ -63,10 +63,12 @@ contains
          known = help_options
       case ('--version')
          request%command = 'version'
+         if (size(words) > 1) call raise(error, error_usage, '--version takes nothing, found ' &
+            //"'"//printable(words(2)%text)//"'")
          return
       case default
          call raise(error, error_usage, "unknown command '"//printable(words(1)%text)//"'; " &
-            //suggestion(words(1)%text, commands))
+            //suggestion(words(1)%text, commands//' '//help_options))
          return
       end select
       request%command = words(1)%text
@@ -78,7 +80,7 @@ contains
          i = i + 1
          name = words(i)%text
          if (plain .or. index(name, '-') /= 1 .or. name == '-') then
-            request%files = [request%files, words(i)]
+            call append_word(request%files, name)
             cycle
          end if
          if (name == '--') then
@@ -90,16 +92,16 @@ contains
          ! --option=value, or the value is the next word
          mark = index(name, '=')
          if (mark > 0) name = name(:mark - 1)
-         if (index(' '//known//' ', ' '//name//' ') == 0) then
+         if (.not. has_word(known, name)) then
             call raise(error, error_usage, "unknown option '"//printable(name)//"' of " &
                //request%command//'; '//suggestion(name, known))
             return
          end if
          select case (name)
          case ('--help')
-            request%files = [argument_t(request%command)]
-            if (request%command == 'help') deallocate (request%files)
-            if (.not. allocated(request%files)) allocate (request%files(0))
+            deallocate (request%files)
+            allocate (request%files(0))
+            if (request%command /= 'help') call append_word(request%files, request%command)
             request%command = 'help'
             return
          case ('--version')
@@ -116,11 +118,14 @@ contains
          end select
 
          if (mark == 0) then
-            if (i == size(words)) then
+            i = i + 1
+            if (i <= size(words)) then
+               if (index(words(i)%text, '--') == 1) i = size(words) + 1
+            end if
+            if (i > size(words)) then
                call raise(error, error_usage, 'option '//name//' needs a value')
                return
             end if
-            i = i + 1
          end if
          call apply(name, words(i)%text(mark + 1:), request, error)
          if (allocated(error)) return
@@ -129,6 +134,9 @@ contains
       if (request%command /= 'help' .and. size(request%files) == 0) &
          call raise(error, error_usage, 'no case file; expected vcor '//request%command &
          //' CASE.nml')
+      if (request%command == 'help' .and. size(request%files) > 1) &
+         call raise(error, error_usage, "help takes one topic, found '" &
+         //printable(request%files(2)%text)//"' as well")
    end subroutine parse
 
    !> Take the value of an option
@@ -148,7 +156,7 @@ contains
       end if
       select case (option)
       case ('--set')
-         request%settings = [request%settings, argument_t(value)]
+         call append_word(request%settings, value)
       case ('--output')
          request%directory = value
       case default
@@ -185,11 +193,11 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (len(name) == 0 .or. index(' '//quantity_names()//' ', ' '//name//' ') == 0) then
+      if (.not. has_word(quantity_names(), name)) then
          call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
             //suggestion(name, quantity_names()))
       else
-         request%names = [request%names, argument_t(name)]
+         call append_word(request%names, name)
       end if
    end subroutine add_name
 

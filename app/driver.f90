@@ -4,12 +4,12 @@ module vcor_app_driver
    use vcor_app_argument, only : argument_t
    use vcor_app_cli, only : request_t
    use vcor_app_help, only : help_text
-   use vcor_app_screen, only : report
+   use vcor_app_screen, only : report, short
    use vcor, only : build_impact, build_solver, case_t, contact_lasting, contact_separated, &
       error_input, error_numerical, error_t, evaluate, history_table, impact_t, integer_text, &
       join_path, make_directory, method_for, outcome_t, override, quantities, quantity_value, &
-      raise, read_case, real_text, solver_t, status_name, summary_table, table_t, trajectory_t, &
-      version, write_csv, write_hdf5, write_stdout
+      raise, read_case, real_text, same_file, solver_t, status_name, summary_table, table_t, &
+      trajectory_t, version, write_csv, write_hdf5, write_stdout
    implicit none
    private
 
@@ -27,9 +27,12 @@ module vcor_app_driver
       character(len=:), allocatable :: method
       !> Directory and stem of its files
       character(len=:), allocatable :: path
-      !> Whether it writes any file
-      logical :: writes = .true.
+      !> Which of its files it writes, in the order of `endings`
+      logical :: writes(3) = .true.
    end type job_t
+
+   !> What the names of the files end with
+   character(len=*), parameter :: endings(3) = [character(len=12) :: '_summary.csv', '.csv', '.h5']
 
 contains
 
@@ -131,8 +134,8 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: directory, stem, method
-      logical :: csv, hdf5
+      character(len=:), allocatable :: directory, stem, method, scheme
+      logical :: csv, hdf5, history
       integer :: i, j
 
       allocate (jobs(size(request%files)))
@@ -152,26 +155,61 @@ contains
             if (allocated(error)) return
 
             call job%case%get('solver', 'method', method)
-            job%method = method_for(job%impact, method)
+            call job%case%get('solver', 'scheme', scheme)
+            job%method = method_for(job%impact, method, scheme)
             call job%case%get('output', 'directory', directory)
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)
             job%path = join_path(directory, stem)
             call job%case%get('output', 'csv', csv)
             call job%case%get('output', 'hdf5', hdf5)
+            call job%case%get('output', 'history', history)
+            job%writes = [csv, csv .and. history, hdf5]
             ! bare numbers are for scripts, which would be surprised by files
-            job%writes = (csv .or. hdf5) &
-               .and. (size(request%names) == 0 .or. allocated(request%directory))
+            if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
+               job%writes = .false.
          end associate
-         do j = 1, i - 1
-            if (jobs(j)%path == jobs(i)%path .and. jobs(i)%writes) then
-               call raise(error, error_input, request%files(i)%text//': its files would replace ' &
-                  //'those of '//request%files(j)%text//': give one of them another output.stem')
+         do j = 1, i
+            call refuse_clash(request, jobs, i, j, error)
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine prepare
+
+   !> No file of one case may be a file of another, nor a case file itself
+   subroutine refuse_clash(request, jobs, new, old, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The cases
+      type(job_t), intent(in) :: jobs(:)
+      !> A case
+      integer, intent(in) :: new
+      !> A case that comes no later
+      integer, intent(in) :: old
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i, j
+
+      do i = 1, size(endings)
+         if (.not. jobs(new)%writes(i)) cycle
+         if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
+            call raise(error, error_input, request%files(new)%text//': its results would replace ' &
+               //'the case file '//request%files(old)%text//': give it another output.stem')
+            return
+         end if
+         if (old == new) cycle
+         do j = 1, size(endings)
+            if (.not. jobs(old)%writes(j)) cycle
+            if (same_file(jobs(new)%path//trim(endings(i)), jobs(old)%path//trim(endings(j)))) then
+               call raise(error, error_input, request%files(new)%text//': its files would ' &
+                  //'replace those of '//request%files(old)%text//': give one of them another ' &
+                  //'output.stem')
                return
             end if
          end do
       end do
-   end subroutine prepare
+   end subroutine refuse_clash
 
    !> Run one case
    subroutine run_job(request, job, error)
@@ -196,7 +234,7 @@ contains
       call end_of(job, outcome, trajectory, error)
 
       files = ''
-      if (job%writes) then
+      if (any(job%writes)) then
          call write_files(request, job, outcome, trajectory, files, trouble)
          if (allocated(trouble)) then
             call move_alloc(trouble, error)
@@ -207,7 +245,8 @@ contains
       if (size(request%names) > 0) then
          call write_stdout(numbers(request%names, outcome)//new_line('a'), trouble)
       else if (.not. request%quiet) then
-         call write_stdout(report(job%case%source, title, job%method, outcome, files), trouble)
+         call write_stdout(report(job%case%source, title, job%method, outcome, &
+            trajectory%state(1, trajectory%last), files), trouble)
       end if
       if (allocated(trouble)) call move_alloc(trouble, error)
    end subroutine run_job
@@ -226,10 +265,11 @@ contains
       character(len=:), allocatable :: time
 
       if (outcome%status == contact_separated) return
-      time = real_text(trajectory%state(1, trajectory%last))
+      time = short(trajectory%state(1, trajectory%last))
       if (outcome%status == contact_lasting) then
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
-            //'within '//time//' s: give a longer solver.end_time')
+            //'within '//time//' s: give a longer solver.end_time, with method direct a longer ' &
+            //'solver.time_step as well')
       else
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
             //time//' s all motion has died out in contact, a material without equilibrium ' &
@@ -247,17 +287,16 @@ contains
       type(outcome_t), intent(in) :: outcome
       !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
-      !> Files written, separated by commas
+      !> Files written, one to a line
       character(len=:), allocatable, intent(out) :: files
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(table_t) :: summary, course
       character(len=:), allocatable :: title, text, directory
-      logical :: csv, hdf5, history
+      integer :: i
+      logical :: history
 
-      call job%case%get('output', 'csv', csv)
-      call job%case%get('output', 'hdf5', hdf5)
       call job%case%get('output', 'history', history)
       call job%case%get('case', 'title', title)
       text = job%case%to_text(complete=.true.)
@@ -269,26 +308,21 @@ contains
       files = ''
       call make_directory(directory, error)
       if (allocated(error)) return
-      if (csv) then
-         call write_csv(job%path//'_summary.csv', summary, error)
-         if (allocated(error)) return
-         files = files//', '//job%path//'_summary.csv'
+      if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
+      if (allocated(error)) return
+      if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
+      if (allocated(error)) return
+      if (job%writes(3)) then
          if (history) then
-            call write_csv(job%path//'.csv', course, error)
-            if (allocated(error)) return
-            files = files//', '//job%path//'.csv'
-         end if
-      end if
-      if (hdf5) then
-         if (history) then
-            call write_hdf5(job%path//'.h5', summary, course, error)
+            call write_hdf5(job%path//trim(endings(3)), summary, course, error)
          else
-            call write_hdf5(job%path//'.h5', summary, error=error)
+            call write_hdf5(job%path//trim(endings(3)), summary, error=error)
          end if
          if (allocated(error)) return
-         files = files//', '//job%path//'.h5'
       end if
-      files = files(3:)
+      do i = 1, size(endings)
+         if (job%writes(i)) files = files//'  written '//job%path//trim(endings(i))//new_line('a')
+      end do
    end subroutine write_files
 
    !> Bare numbers for --print

@@ -109,7 +109,13 @@ contains
                   note = note//', default '//trim(key%default)
                end if
                if (key%models /= '') note = note//'; '//trim(key%models)
-               text = text//'   '//name//trim(key%meaning)//note//nl
+               ! a line fits a screen
+               if (len_trim(key%meaning) + len(note) > 66) then
+                  text = text//'   '//name//trim(key%meaning)//nl//repeat(' ', 31) &
+                     //note(verify(note, ' ,'):)//nl
+               else
+                  text = text//'   '//name//trim(key%meaning)//note//nl
+               end if
             end associate
          end do
       end do
@@ -132,8 +138,8 @@ contains
       name = 'steps'
       text = text//'   '//name//'number of time steps'//nl
       name = 'status'
-      text = text//'   '//name//'separated, no_separation or sticks; the numbers are nan ' &
-         //'unless separated'//nl
+      text = text//'   '//name//'separated, or no_separation or sticks with nan for ' &
+         //'the numbers'//nl
    end function output_page
 
 end module vcor_app_help

@@ -5,7 +5,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report
+   public :: report, short
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -17,7 +17,7 @@ module vcor_app_screen
 contains
 
    !> Report of one impact
-   function report(filename, title, method, outcome, files) result(text)
+   function report(filename, title, method, outcome, time, files) result(text)
       !> Case file
       character(len=*), intent(in) :: filename
       !> Title of the case
@@ -26,7 +26,9 @@ contains
       character(len=*), intent(in) :: method
       !> Outcome
       type(outcome_t), intent(in) :: outcome
-      !> Files written, separated by commas
+      !> Time at which the computation ended [s]
+      real(wp), intent(in) :: time
+      !> Files written, one to a line
       character(len=*), intent(in) :: files
       !> Text of several lines
       character(len=:), allocatable :: text
@@ -37,24 +39,61 @@ contains
       if (len_trim(title) > 0) text = text//trim(title)//nl
       text = text//nl
       if (outcome%status /= contact_separated) then
-         text = text//'  '//status_name(outcome%status)//' after '//integer_text(outcome%steps) &
-            //' steps of method '//method//nl
+         text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
+            //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
       else
          do i = 1, size(shown)
             do j = 1, size(quantities)
-               if (quantities(j)%name /= shown(i)) cycle
-               text = text//'  '//quantities(j)%meaning(1:50)//quantities(j)%symbol &
-                  //significant(quantity_value(outcome, j))//'  '//unit_text(quantities(j)%unit)
-               if (quantities(j)%name == 'cor') &
-                  text = text//'  +- '//short(outcome%cor_error)
-               text = trimmed(text)//nl
+               if (quantities(j)%name == shown(i)) text = text//line(quantities(j)%meaning, &
+                  quantities(j)%symbol, quantity_value(outcome, j), &
+                  merge('        ', quantities(j)%unit, quantities(j)%unit == '1'), &
+                  remark(quantities(j)%name))
             end do
          end do
-         text = text//nl//budget(outcome)//nl//'  method '//method//', ' &
+         text = text//nl//budget(outcome)//nl//'  '//method//', ' &
             //integer_text(outcome%steps)//' steps'//nl
       end if
-      if (len(files) > 0) text = text//'  written '//files//nl
+      text = text//files//nl
+
+   contains
+
+      !> What stands behind a number
+      function remark(name)
+         !> Name of the quantity
+         character(len=*), intent(in) :: name
+         !> Remark
+         character(len=:), allocatable :: remark
+
+         remark = ''
+         if (name == 'cor') remark = '+- '//short(outcome%cor_error)
+      end function remark
    end function report
+
+   !> One line of a table
+   function line(meaning, symbol, value, unit, remark) result(text)
+      !> What it is
+      character(len=*), intent(in) :: meaning
+      !> Its symbol
+      character(len=*), intent(in) :: symbol
+      !> Its value
+      real(wp), intent(in) :: value
+      !> Its unit
+      character(len=*), intent(in) :: unit
+      !> What stands behind it
+      character(len=*), intent(in) :: remark
+      !> The line
+      character(len=:), allocatable :: text
+
+      character(len=48) :: wide
+      character(len=8) :: narrow
+      character(len=7) :: short_unit
+
+      wide = meaning
+      narrow = symbol
+      short_unit = unit
+      text = '  '//wide//narrow//significant(value)//' '//short_unit//remark
+      text = text(:len_trim(text))//nl
+   end function line
 
    !> Energy budget
    function budget(outcome) result(text)
@@ -63,35 +102,38 @@ contains
       !> Lines
       character(len=:), allocatable :: text
 
-      text = '  energy before the impact                          KE_0    ' &
-         //significant(outcome%initial_energy)//'  J'//nl &
-         //share('  lost in the contact (hysteresis)', 'W_h', outcome%hysteresis_energy) &
-         //share('  radiated into the plate', 'W_wave', outcome%wave_energy) &
-         //share('  left to the sphere', 'KE_1', outcome%final_energy) &
-         //'  imbalance                                         dW      ' &
-         //significant(outcome%energy_imbalance)//'  J'//nl
+      text = line('energy before the impact', 'KE_0', outcome%initial_energy, 'J', '') &
+         //line('  lost in the contact (hysteresis)', 'W_h', &
+         visible(outcome%hysteresis_energy), 'J', share(outcome%hysteresis_energy)) &
+         //line('  radiated into the plate', 'W_wave', visible(outcome%wave_energy), 'J', &
+         share(outcome%wave_energy)) &
+         //line('  left to the sphere', 'KE_1', outcome%final_energy, 'J', &
+         share(outcome%final_energy)) &
+         //line('  missing from the budget', 'dW', outcome%energy_imbalance, 'J', '')
 
    contains
 
-      !> One part of the budget
-      function share(name, symbol, energy) result(line)
-         !> What it is
-         character(len=*), intent(in) :: name
-         !> Its symbol
-         character(len=*), intent(in) :: symbol
+      !> An energy, 0 if it is below what rounding and the error leave of the budget
+      pure function visible(energy)
          !> Energy [J]
          real(wp), intent(in) :: energy
-         !> Line
-         character(len=:), allocatable :: line
+         !> Energy [J]
+         real(wp) :: visible
 
-         character(len=50) :: wide
-         character(len=8) :: narrow, percent
+         visible = energy
+         if (abs(energy) <= 1.0e-8_wp*outcome%initial_energy) visible = 0.0_wp
+      end function visible
 
-         wide = name
-         narrow = symbol
+      !> Share of the kinetic energy
+      pure function share(energy) result(percent)
+         !> Energy [J]
+         real(wp), intent(in) :: energy
+         !> Its share
+         character(len=10) :: percent
+
          ! a thousandth of a percent is the last digit shown; zero has no sign
-         write (percent, '(f8.3)') 1.0e-3_wp*max(0, nint(1.0e5_wp*energy/outcome%initial_energy))
-         line = '  '//wide//narrow//significant(energy)//'  J  '//percent//' %'//nl
+         write (percent, '(f8.3, a)') &
+            1.0e-3_wp*max(0, nint(1.0e5_wp*energy/outcome%initial_energy)), ' %'
       end function share
    end function budget
 
@@ -129,26 +171,5 @@ contains
       write (buffer, '(es9.1)') value
       text = trim(adjustl(buffer))
    end function short
-
-   !> Unit, - for a pure number
-   pure function unit_text(unit) result(text)
-      !> Unit, 1 for a pure number
-      character(len=*), intent(in) :: unit
-      !> Its text
-      character(len=:), allocatable :: text
-
-      text = trim(unit)
-      if (text == '1') text = '-'
-   end function unit_text
-
-   !> Text without blanks at its end
-   pure function trimmed(line) result(text)
-      !> The text
-      character(len=*), intent(in) :: line
-      !> Without trailing blanks
-      character(len=:), allocatable :: text
-
-      text = trim(line)
-   end function trimmed
 
 end module vcor_app_screen

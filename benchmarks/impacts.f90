@@ -1,5 +1,5 @@
-!> Times of the solvers on the paper's impacts, on one core: a table to be read by hand. Each time is
-!> the median of several batches, so that a disturbed batch does not count
+!> Times of the solvers on the paper's impacts, on one core: a table to be read by hand. Each time
+!> is the median of several batches, so that a disturbed batch does not count
 program impacts
    use, intrinsic :: iso_fortran_env, only : int64, output_unit
    use vcor, only : build_impact, build_solver, case_t, error_t, evaluate, impact_t, outcome_t, &
@@ -10,7 +10,7 @@ program impacts
    integer, parameter :: batches = 9
    character(len=*), parameter :: folder = 'examples/paper/'
 
-   write (output_unit, '(a)') 'impact                          settings                        ' &
+   write (output_unit, '(a)') 'impact          settings                                        ' &
       //'us per impact   steps   error of cor'
    call report('sls', [character(len=40) :: 'solver.accuracy=1e-8'])
    call report('sls', [character(len=40) :: 'solver.accuracy=1e-6'])
@@ -42,7 +42,7 @@ contains
       class(solver_t), allocatable :: solver
       type(error_t), allocatable :: error
       real(wp) :: time(batches)
-      character(len=32) :: label
+      character(len=48) :: label
       integer :: i, j, repeats
 
       call read_case(case, folder//name//'.nml', error)
@@ -79,7 +79,7 @@ contains
          time(i) = (seconds() - time(i))/real(repeats, wp)
       end do
       outcome = evaluate(impact, trajectory)
-      write (output_unit, '(a20, 12x, a32, f13.1, i8, es15.1)') name, adjustl(label), &
+      write (output_unit, '(a16, a48, f13.1, i8, es15.1)') name//repeat(' ', 16), adjustl(label), &
          1.0e6_wp*median(time), outcome%steps, outcome%cor_error
    end subroutine report
 

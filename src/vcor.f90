@@ -11,7 +11,7 @@ module vcor
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_csv, only : write_csv
-   use vcor_io_file, only : join_path, make_directory, write_stdout
+   use vcor_io_file, only : join_path, make_directory, same_file, write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_results, only : history_table, summary_table
@@ -50,7 +50,7 @@ module vcor
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
-   public :: write_stdout, make_directory, join_path
+   public :: write_stdout, make_directory, join_path, same_file
    public :: real_text, integer_text, printable, suggestion
 
 end module vcor

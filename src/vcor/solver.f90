@@ -37,12 +37,15 @@ module vcor_solver
 
 contains
 
-   !> The method for an impact: `auto` is ive where the kernel is a sum of exponentials
-   pure function method_for(impact, method) result(name)
+   !> The method for an impact: `auto` is direct where a scheme other than product is asked for,
+   !> ive where the kernel is a sum of exponentials, direct elsewhere
+   pure function method_for(impact, method, scheme) result(name)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> What the user asks for: auto, ive or direct
       character(len=*), intent(in) :: method
+      !> Scheme of the direct method that the user asks for
+      character(len=*), intent(in) :: scheme
       !> ive or direct
       character(len=:), allocatable :: name
 
@@ -52,7 +55,7 @@ contains
       name = method
       if (method /= 'auto') return
       call impact%kernel_exponentials(terms, exact)
-      if (exact) then
+      if (exact .and. scheme == 'product') then
          name = 'ive'
       else
          name = 'direct'
@@ -89,7 +92,7 @@ contains
       end if
 
       accuracy = settings%accuracy
-      select case (method_for(impact, settings%method))
+      select case (method_for(impact, settings%method, settings%scheme))
       case ('ive')
          call impact%kernel_exponentials(terms, exact)
          if (.not. exact) then

@@ -19,7 +19,7 @@ module vcor_impact_problem
 
    !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
    !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
-   real(wp), parameter :: hertz_contact_time = 3.2180654603_wp
+   real(wp), parameter :: hertz_contact_time = 3.2180654597190435_wp
 
    !> An impact; immutable once built
    type :: impact_t
@@ -75,6 +75,8 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      ! energies and their products stay far inside the range of the numbers
+      real(wp), parameter :: decades = 60.0_wp
       real(wp) :: hertz_radius
 
       if (.not. (velocity > 0.0_wp .and. mass > 0.0_wp .and. radius > 0.0_wp)) then
@@ -82,6 +84,9 @@ contains
       else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
          call raise(error, error_input, &
             'a concave surface must have a larger radius than the sphere, or Hertz does not apply')
+      else if (max(abs(log10(velocity)), abs(log10(mass)), abs(log10(radius))) > decades) then
+         call raise(error, error_input, &
+            'velocity, mass or radius of the sphere are beyond all that can be computed')
       end if
       if (allocated(error)) return
 

@@ -20,13 +20,15 @@ module vcor_io_file
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : access_exists, all_permissions, c_access, c_fclose, c_fflush, &
       & c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, c_rename, c_text, c_write, errno_exists, &
-      & errno_interrupted, is_regular, last_errno, standard_output, system_reason
+      & errno_interrupted, is_regular, last_errno, resolved_path, standard_output, &
+      & system_reason
    implicit none
    private
 
    public :: output_file_t, create_file, put, commit, discard
    public :: write_file, write_stdout
    public :: file_exists, directory_exists, make_directory, join_path, quoted_path
+   public :: same_file
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
    !>
@@ -264,6 +266,40 @@ contains
       if (path(len(path):) /= "/") path = path//"/"
       path = path//trim(name)
    end function join_path
+
+   !> Whether two paths lead to one file, by the folders they are in, links resolved, and the names
+   function same_file(one, other) result(same)
+      !> A path
+      character(len=*), intent(in) :: one
+      !> Another path
+      character(len=*), intent(in) :: other
+      !> Whether both are the same
+      logical :: same
+      integer :: a, b
+
+      a = index(one, "/", back=.true.)
+      b = index(other, "/", back=.true.)
+      same = one(a+1:) == other(b+1:)
+      if (same) same = folder_of(one, a) == folder_of(other, b)
+
+   contains
+
+      !> Folder of a path, resolved
+      function folder_of(path, slash) result(folder)
+         !> The path
+         character(len=*), intent(in) :: path
+         !> Place of its last slash, 0 if it has none
+         integer, intent(in) :: slash
+         !> The folder
+         character(len=:), allocatable :: folder
+
+         if (slash == 0) then
+            folder = resolved_path(".")
+         else
+            folder = resolved_path(path(:slash))
+         end if
+      end function folder_of
+   end function same_file
 
    !> A path as it stands in a message: between quotes, on one line
    pure function quoted_path(path) result(quoted)

@@ -6,14 +6,14 @@
 !> `__errno_location` (its name is `__error` on macOS) and `statx`. The preprocessor of gfortran
 !> does not know the system it runs on, so another system takes an edit of this file.
 module vcor_io_posix
-   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int16_t, c_null_char, &
-      & c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int16_t, &
+      & c_null_char, c_ptr, c_size_t
    implicit none
    private
 
    public :: c_access, c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, &
       & c_rename, c_write
-   public :: c_text, is_regular, last_errno, system_reason
+   public :: c_text, is_regular, last_errno, resolved_path, system_reason
    public :: access_exists, all_permissions, errno_exists, errno_interrupted, standard_output
 
    !> Mode of `c_access`: does something of that name exist (F_OK)
@@ -146,6 +146,17 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_statx
 
+      !> A path without links, dots and double slashes
+      function c_realpath(path, resolved) result(place) bind(c, name="realpath")
+         import :: c_char, c_ptr
+         !> Path of something that exists, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> The resolved path, at least 4096 characters, ends with NUL
+         character(kind=c_char), intent(out) :: resolved(*)
+         !> Null if it failed
+         type(c_ptr) :: place
+      end function c_realpath
+
       !> Number of this process
       function c_getpid() result(process) bind(c, name="getpid")
          import :: c_int
@@ -237,5 +248,29 @@ contains
          reason(i:i) = letters(i)
       end do
    end function system_reason
+
+   !> A path without links, dots and double slashes; as it is if there is nothing of that name
+   function resolved_path(path) result(resolved)
+      !> The path
+      character(len=*), intent(in) :: path
+      !> The resolved path
+      character(len=:), allocatable :: resolved
+      ! PATH_MAX of Linux
+      integer, parameter :: longest = 4096
+      character(kind=c_char) :: buffer(longest)
+      integer :: i, length
+
+      resolved = path
+      if (.not. c_associated(c_realpath(c_text(path), buffer))) return
+      length = 0
+      do while (length < longest)
+         if (buffer(length + 1) == c_null_char) exit
+         length = length + 1
+      end do
+      resolved = repeat(" ", length)
+      do i = 1, length
+         resolved(i:i) = buffer(i)
+      end do
+   end function resolved_path
 
 end module vcor_io_posix

@@ -86,7 +86,8 @@ contains
          ! the two terms cancel: asymptotic series of Eq. (29) without its first term
          y = 1.0_wp/(2.0_wp*x**2)
          value = -self%relaxing*self%beta**2/(x*sqrt_pi)*y &
-            *(1.0_wp - 3.0_wp*y*(1.0_wp - 5.0_wp*y*(1.0_wp - 7.0_wp*y*(1.0_wp - 9.0_wp*y))))
+            *(1.0_wp - 3.0_wp*y*(1.0_wp - 5.0_wp*y*(1.0_wp - 7.0_wp*y*(1.0_wp - 9.0_wp*y &
+            *(1.0_wp - 11.0_wp*y*(1.0_wp - 13.0_wp*y*(1.0_wp - 15.0_wp*y*(1.0_wp - 17.0_wp*y))))))))
       else if (x > 0.0_wp) then
          value = self%relaxing*self%beta**2*(erfc_scaled(x) - 1.0_wp/(x*sqrt_pi))
       else

@@ -46,25 +46,38 @@ contains
       !> Weights of the cosine rule, cos(x) included, shape (n)
       real(wp), allocatable, intent(out) :: cosine_weight(:)
 
-      integer, parameter :: half = 100
-      real(wp), parameter :: h = 0.05_wp, m = pi/h
-      real(wp) :: phi, slope
+      ! towards x = 0 only phi itself falls, as exp(-b exp(-y)), and slowly: the cosine rule needs
+      ! nodes down to 1e-200 for a power law of exponent 0.9
+      integer, parameter :: first = -110, last = 60
+      real(wp), parameter :: h = 0.08_wp, m = pi/h
+      real(wp) :: y, phi, slope, excess
       integer :: i
 
-      allocate (sine_node(-half:half), sine_weight(-half:half))
-      allocate (cosine_node(-half:half), cosine_weight(-half:half))
-      do i = -half, half
-         call substitution(h*real(i, wp), m, phi, slope)
+      allocate (sine_node(first:last), sine_weight(first:last))
+      allocate (cosine_node(first:last), cosine_weight(first:last))
+      do i = first, last
+         y = h*real(i, wp)
+         call substitution(y, m, phi, slope, excess)
          sine_node(i) = m*phi
-         sine_weight(i) = m*h*slope*sin(m*phi)
-         call substitution(h*(real(i, wp) - 0.5_wp), m, phi, slope)
+         ! m y is a multiple of pi: what is left of the sine at large x is that of the excess
+         if (y > 0.0_wp) then
+            sine_weight(i) = m*h*slope*real(1 - 2*modulo(i, 2), wp)*sin(m*excess)
+         else
+            sine_weight(i) = m*h*slope*sin(m*phi)
+         end if
+         y = h*(real(i, wp) - 0.5_wp)
+         call substitution(y, m, phi, slope, excess)
          cosine_node(i) = m*phi
-         cosine_weight(i) = m*h*slope*cos(m*phi)
+         if (y > 0.0_wp) then
+            cosine_weight(i) = m*h*slope*real(1 - 2*modulo(i, 2), wp)*sin(m*excess)
+         else
+            cosine_weight(i) = m*h*slope*cos(m*phi)
+         end if
       end do
    end subroutine fourier_rule
 
-   !> phi(y) = y/(1 - exp(-2 y - a (1 - exp(-y)) - b (exp(y) - 1))) and its derivative
-   pure subroutine substitution(y, m, phi, slope)
+   !> phi(y) = y/(1 - exp(-2 y - a (1 - exp(-y)) - b (exp(y) - 1))), its derivative and phi - y
+   pure subroutine substitution(y, m, phi, slope, excess)
       !> Argument
       real(wp), intent(in) :: y
       !> Scale of the rule, pi over its step
@@ -73,24 +86,30 @@ contains
       real(wp), intent(out) :: phi
       !> Derivative
       real(wp), intent(out) :: slope
+      !> phi - y, without cancellation for y > 0
+      real(wp), intent(out) :: excess
 
       real(wp), parameter :: b = 0.25_wp
-      real(wp) :: a, g, dg, ddg, e
+      real(wp) :: a, g, dg, e
 
       a = b/sqrt(1.0_wp + m*log(1.0_wp + m)/(4.0_wp*pi))
       g = 2.0_wp*y + a*(1.0_wp - exp(-y)) + b*(exp(y) - 1.0_wp)
       dg = 2.0_wp + a*exp(-y) + b*exp(y)
+      ! with exp(-|g|), which cannot overflow
       if (abs(y) < 1.0e-8_wp) then
-         ddg = b - a
          phi = 1.0_wp/dg
-         slope = 0.5_wp - 0.5_wp*ddg/dg**2
-      else if (g < -600.0_wp) then
-         phi = 0.0_wp
-         slope = 0.0_wp
-      else
+         slope = 0.5_wp - 0.5_wp*(b - a)/dg**2
+         excess = phi - y
+      else if (y > 0.0_wp) then
          e = exp(-g)
          phi = y/(1.0_wp - e)
          slope = (1.0_wp - e - y*dg*e)/(1.0_wp - e)**2
+         excess = phi*e
+      else
+         e = exp(g)
+         phi = -y*e/(1.0_wp - e)
+         slope = -e*(1.0_wp - e + y*dg)/(1.0_wp - e)**2
+         excess = phi - y
       end if
    end subroutine substitution
 

@@ -21,7 +21,7 @@ module vcor_solver_ive
    use vcor_numeric_collocation, only : collocation_t
    use vcor_solver_collocator, only : advance, collocator_t, guess, most_steps, new_collocator, &
       newton_tolerance, refine, solve_step
-   use vcor_solver_landing, only : land
+   use vcor_solver_landing, only : first_without_force, land
    use vcor_solver_panel, only : panel_t, start_t
    use vcor_solver_recording, only : append, begin
    use vcor_solver_step, only : step_t, step_to
@@ -126,11 +126,9 @@ contains
          call guess(self%collocator%rule, impact, previous, start, step, panel)
          call solve_step(self%collocator, self%collocator%rule, step, impact, kernel, start, &
             panel, newton_tolerance)
-         ! while the indentation grows the force is positive: what is not is rounding
          ends = .false.
-         if (panel%converged .and. .not. trajectory%status == contact_separated) &
-            ends = any(panel%force(1:n) <= 0.0_wp &
-            .and. panel%indentation(1:n) < panel%indentation(0:n - 1))
+         if (panel%converged .and. trajectory%status /= contact_separated) &
+            ends = first_without_force(panel) > 0
          if (ends) call land(self%collocator, impact, kernel, start, self%accuracy, step, panel)
          if (.not. panel%converged) then
             call step%shorten(0.5_wp*step%duration())

@@ -10,9 +10,26 @@ module vcor_solver_landing
    implicit none
    private
 
-   public :: land
+   public :: first_without_force, land
 
 contains
+
+   !> First stage of a panel at which the force is gone; 0 if there is none. While the indentation
+   !> grows, or stands still, the force is positive: what is not is rounding
+   pure function first_without_force(panel) result(stage)
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage
+      integer :: stage
+
+      real(wp), parameter :: noticeable = 1.0e-12_wp
+
+      do stage = 1, panel%stages
+         if (panel%force(stage) <= 0.0_wp .and. panel%indentation(stage) &
+             < panel%indentation(stage - 1) - noticeable*abs(panel%indentation(stage - 1))) return
+      end do
+      stage = 0
+   end function first_without_force
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
    subroutine land(self, impact, kernel, start, accuracy, step, panel)
@@ -39,11 +56,7 @@ contains
 
       n = self%rule%stages
       crossing = panel
-      k = 1
-      do while (crossing%force(k) > 0.0_wp &
-                .or. crossing%indentation(k) >= crossing%indentation(k - 1))
-         k = k + 1
-      end do
+      k = first_without_force(crossing)
       theta = self%rule%point(k - 1)
       if (k > 1) theta = self%rule%crossing(crossing%force(0:n), theta, self%rule%point(k))
       time = theta*(crossing%map(1) + crossing%map(2)*theta)

@@ -123,15 +123,22 @@ contains
       u = s*sqrt(abs(s))
    end function hertz
 
-   !> Weights for integrals over the contact: Gregory's rule of third order on the equal steps, the
-   !> parabola through the last three nodes on the last one, which is shorter
-   pure subroutine set_series_weights(dt, trajectory)
+   !> Weights for integrals over the contact: trapezoids on the equal steps with both ends corrected
+   !> by the first difference, with a dashpot the start for integrands in powers of t^(1/2); on the
+   !> last step, which is shorter, the parabola through the last three nodes
+   pure subroutine set_series_weights(dt, dashpot, trajectory)
       !> Time step [s]
       real(wp), intent(in) :: dt
+      !> Whether the force has a dashpot's part, which grows as t^(1/2)
+      logical, intent(in) :: dashpot
       !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
-      real(wp), parameter :: correction(0:1) = [-1.0_wp, 1.0_wp]/12.0_wp
+      ! a sum over t^p misses zeta(-p) dt^(p+1): what the first four nodes must add for
+      ! p = 0, 1/2, 1 and 3/2
+      real(wp), parameter :: start(0:3) = [-0.3442526640259193_wp, 0.8987100175331462_wp, &
+         -0.8479953763218676_wp, 0.2935380228146408_wp]
+      real(wp), parameter :: difference = 1.0_wp/12.0_wp
       real(wp) :: h
       integer :: n
 
@@ -139,13 +146,20 @@ contains
       associate (w => trajectory%weight)
          w(0:n) = 0.0_wp
          if (n >= 2) then
-            ! trapezoids up to node n - 1, each end corrected by its first difference
+            ! trapezoids up to node n - 1
             w(0:n - 1) = dt
             w(0) = 0.5_wp*dt
             w(n - 1) = 0.5_wp*dt
-            w(0:1) = w(0:1) + dt*correction
-            w(n - 1) = w(n - 1) + dt*correction(0)
-            w(n - 2) = w(n - 2) + dt*correction(1)
+            if (n >= 6) then
+               if (dashpot) then
+                  w(0:3) = w(0:3) + dt*start
+               else
+                  w(0) = w(0) - dt*difference
+                  w(1) = w(1) + dt*difference
+               end if
+               w(n - 1) = w(n - 1) - dt*difference
+               w(n - 2) = w(n - 2) + dt*difference
+            end if
             h = trajectory%state(col_time, n) - trajectory%state(col_time, n - 1)
             w(n - 2) = w(n - 2) - h**3/(6.0_wp*dt*(dt + h))
             w(n - 1) = w(n - 1) + h*(h + 3.0_wp*dt)/(6.0_wp*dt)

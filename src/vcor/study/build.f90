@@ -94,7 +94,12 @@ contains
          settings%second_coefficient = number(case, 'solver', 'volterra_coefficient')
       call case%get('solver', 'continue_after_separation', settings%ghost)
       call new_solver(solver, settings, impact, error)
-      if (allocated(error)) call locate(case, 'solver', 'method', error)
+      if (.not. allocated(error)) return
+      if (settings%scheme == 'product') then
+         call locate(case, 'solver', 'method', error)
+      else
+         call locate(case, 'solver', 'scheme', error)
+      end if
    end subroutine build_solver
 
    !> The material that a body names

@@ -30,7 +30,29 @@ contains
       call check_bodies(self, error)
       if (allocated(error)) return
       call check_times(self, error)
+      if (allocated(error)) return
+      call check_choices(self, error)
    end subroutine check_consistency
+
+   !> Check the scheme against the method, and the name of the files
+   subroutine check_choices(self, error)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: method, scheme, stem
+
+      call self%get("solver", "method", method)
+      call self%get("solver", "scheme", scheme)
+      call self%get("output", "stem", stem)
+      if (method == "ive" .and. scheme /= "product") then
+         call raise(error, error_input, self%location("solver", "scheme")//": scheme = '" &
+            & //scheme//"' is one of method = 'direct', found method = 'ive'")
+      else if (index(stem, "/") > 0 .or. stem == "." .or. stem == "..") then
+         call raise(error, error_input, self%location("output", "stem")//": found stem = '" &
+            & //shortened(stem)//"', expected a name without a folder (that is output.directory)")
+      end if
+   end subroutine check_choices
 
    !> Raise an error about a key of a material
    subroutine fail(self, key, item, message, error)

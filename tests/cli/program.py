@@ -1,0 +1,135 @@
+"""The program as its users see it: words in, exit code, screen and files out."""
+
+import os
+import subprocess
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = sorted((ROOT / "examples").glob("**/*.nml"))
+PAPER = ROOT / "examples" / "paper"
+
+# Exit codes
+SUCCESS, USAGE, INPUT, FILE, NUMERICAL = 0, 2, 3, 4, 5
+
+# All columns of a summary, in their order
+NAMES = [
+    "cor",
+    "cor_sphere",
+    "contact_time",
+    "max_indentation",
+    "max_force",
+    "residual_indentation",
+    "residual_ratio",
+    "hysteresis_energy",
+    "wave_energy",
+    "initial_energy",
+    "energy_imbalance",
+    "min_frequency",
+    "inelasticity",
+    "loss_tangent",
+    "cor_error",
+    "steps",
+    "status",
+]
+ALL = ",".join(NAMES)
+
+# Seconds after which a run counts as one that does not end
+LIMIT = 30
+
+
+def program():
+    """Path of the program, which the environment has to say."""
+    path = os.environ.get("VCOR")
+    assert path, "the environment variable VCOR is not set, expected the path of the program"
+    return str(Path(path).absolute())
+
+
+@dataclass
+class Done:
+    """What a run left behind."""
+
+    code: int
+    out: str
+    err: str
+
+
+def contents(folder):
+    """All files below a folder: their bytes and when they were written."""
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        if path.is_file():
+            found[path] = (path.read_bytes(), path.stat().st_mtime_ns)
+        else:
+            found[path] = path.is_dir()
+    return found
+
+
+class Vcor:
+    """The program in a folder of its own."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def write(self, text, name="case.nml"):
+        """Write a case file; its name, as the program is told it."""
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(text, bytes):
+            path.write_bytes(text)
+        else:
+            path.write_text(text, encoding="utf-8")
+        return str(name)
+
+    def __call__(self, *words, **options):
+        """Run the program."""
+        options.setdefault("cwd", self.folder)
+        options.setdefault("stdout", subprocess.PIPE)
+        options.setdefault("timeout", LIMIT)
+        if "input" not in options:
+            options.setdefault("stdin", subprocess.DEVNULL)
+        done = subprocess.run(
+            [program(), *map(str, words)],
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            check=False,
+            **options,
+        )
+        return Done(done.returncode, done.stdout or "", done.stderr)
+
+    def succeeds(self, *words, **options):
+        """Run the program, which says nothing on stderr; what it prints."""
+        done = self(*words, **options)
+        assert (done.code, done.err) == (SUCCESS, "")
+        return done.out
+
+    def numbers(self, *words, **options):
+        """All columns of the summary as text, by name."""
+        values = self.succeeds("run", *words, "--print", ALL, **options).split()
+        assert len(values) == len(NAMES)
+        return dict(zip(NAMES, values, strict=True))
+
+    def refuses(self, *words, code, says=(), at="", **options):
+        """Run the program, which complains and leaves everything as it was; what it says."""
+        before = contents(self.folder)
+        done = self(*words, **options)
+        assert done.out == ""
+        line = complaint(done, code, says, at)
+        assert contents(self.folder) == before
+        return line
+
+
+def complaint(done, code, says=(), at=""):
+    """The one line of an error, without its end."""
+    assert done.code == code, done.err
+    assert done.err.endswith("\n")
+    line = done.err[:-1]
+    assert "\n" not in line
+    assert line.isprintable()
+    assert line.startswith(f"vcor: error: {at}: " if at else "vcor: error: ")
+    assert len(line) < 500
+    for word in [says] if isinstance(says, str) else says:
+        assert word in line
+    for word in ("backtrace", "Fortran runtime", "At line", "HDF5-DIAG"):
+        assert word.lower() not in line.lower()
+    return line

@@ -1,0 +1,76 @@
+"""Help, and the version."""
+
+import tomllib
+
+import pytest
+from program import NAMES, ROOT, USAGE
+
+TOPICS = ["run", "check", "help", "input", "output"]
+
+
+def test_version_is_that_of_the_package(vcor):
+    version = tomllib.loads((ROOT / "fpm.toml").read_text())["version"]
+    assert vcor.succeeds("--version") == f"vcor {version}\n"
+
+
+@pytest.mark.parametrize(
+    "words", [["help"], ["--help"], ["-h"], ["help", "--help"], ["help", "help"]]
+)
+def test_overview(vcor, words):
+    page = vcor.succeeds(*words)
+    assert page == vcor.succeeds("help")
+    for word in ("vcor run", "vcor check", "vcor help", "--version", "exit codes"):
+        assert word in page
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_topics(vcor, topic):
+    page = vcor.succeeds("help", topic)
+    assert page.endswith("\n") and not page.endswith("\n\n")
+    assert page.isascii()
+    assert not any(line.endswith(" ") for line in page.splitlines())
+    assert vcor.succeeds("--help", topic) == page
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_the_overview_names_every_topic(vcor, topic):
+    assert topic in vcor.succeeds("help")
+
+
+@pytest.mark.parametrize("command", ["run", "check"])
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help_after_a_command(vcor, command, option):
+    page = vcor.succeeds("help", command)
+    assert vcor.succeeds(command, option) == page
+    assert vcor.succeeds(command, "no.nml", option) == page
+
+
+@pytest.mark.parametrize("option", ["--set", "--output", "--print", "--quiet"])
+def test_page_of_run(vcor, option):
+    assert option in vcor.succeeds("help", "run")
+
+
+def test_page_of_check(vcor):
+    assert "--set" in vcor.succeeds("help", "check")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_page_of_the_output(vcor, name):
+    assert f"\n   {name} " in vcor.succeeds("help", "output")
+
+
+@pytest.mark.parametrize(
+    "group", ["case", "impact", "sphere", "plate", "material", "solver", "output"]
+)
+def test_page_of_the_input(vcor, group):
+    assert f"\n&{group} " in vcor.succeeds("help", "input")
+
+
+def test_pages_fit_the_screen(vcor):
+    for topic in TOPICS:
+        assert all(len(line) <= 100 for line in vcor.succeeds("help", topic).splitlines())
+
+
+@pytest.mark.parametrize("topic, nearest", [("inptu", "input"), ("rum", "run"), ("chek", "check")])
+def test_unknown_topic(vcor, topic, nearest):
+    vcor.refuses("help", topic, code=USAGE, says=[f"'{topic}'", f"'{nearest}'"])

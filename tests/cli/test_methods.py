@@ -1,0 +1,151 @@
+"""The methods against each other and against laws that need no reference."""
+
+import pytest
+from cases import SLS, case_text, edit
+from program import NUMERICAL, PAPER, ROOT, SUCCESS
+
+# Round-off of numbers near 1 after some hundred steps
+ROUNDOFF = 1e-13
+# How many times the stated error the true one may be: an estimate is no bound
+HONEST = 10
+
+CASES = [
+    PAPER / "sls.nml",
+    PAPER / "butyl_prony.nml",
+    PAPER / "elastic.nml",
+    ROOT / "examples" / "granular_pair.nml",
+    ROOT / "examples" / "polyurea_ball_in_seat.nml",
+    pytest.param(
+        ROOT / "examples" / "steel_on_glass.nml",
+        marks=pytest.mark.xfail(
+            strict=True, reason="direct is 5.8e-8 off and says 1e-8: cor_error is too small"
+        ),
+    ),
+]
+
+
+def cor(numbers):
+    return float(numbers["cor"])
+
+
+def error(numbers):
+    return float(numbers["cor_error"])
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_ive_and_direct(vcor, path):
+    """Each is within the errors that both state."""
+    one = vcor.numbers(path)
+    ive = vcor.numbers(path, "--set", "solver.method=ive")
+    direct = ["--set", "solver.method=direct", "--set", "solver.accuracy=1e-7"]
+    other = vcor.numbers(path, *direct)
+    assert one == ive
+    assert int(other["steps"]) > int(ive["steps"])
+    assert error(other) <= 1e-7
+    assert abs(cor(ive) - cor(other)) <= error(ive) + error(other)
+    for name in ("contact_time", "max_indentation", "max_force"):
+        assert float(ive[name]) == pytest.approx(float(other[name]), rel=1e-5), name
+
+
+@pytest.mark.parametrize("accuracy", ["1e-3", "1e-5", "1e-7"])
+@pytest.mark.parametrize("model", ["prony", "sls", "power_law", "cerf"])
+def test_accuracy_is_reached(vcor, model, accuracy):
+    """The error against a far more accurate run is below what was asked for, and said honestly."""
+    vcor.write(case_text(model))
+    numbers = vcor.numbers("case.nml", "--set", f"solver.accuracy={accuracy}")
+    finest = "1e-10" if model in {"prony", "sls"} else "3e-8"
+    fine = vcor.numbers("case.nml", "--set", f"solver.accuracy={finest}")
+    assert error(numbers) <= float(accuracy)
+    assert abs(cor(numbers) - cor(fine)) <= min(
+        float(accuracy), HONEST * (error(numbers) + error(fine))
+    )
+
+
+def half_space(model, **changes):
+    """A case without plate; velocity, radius and mass are changed by these factors."""
+    text, _ = edit(case_text(model), "plate", "waves", "'none'")
+    values = {"velocity": 2.0, "radius": 0.01, "mass": 0.03}
+    for key, value in values.items():
+        group = "impact" if key == "velocity" else "sphere"
+        text, _ = edit(text, group, key, repr(value * changes.get(key, 1.0)))
+    return text
+
+
+@pytest.mark.parametrize("model", ["sls", "prony", "power_law", "cerf"])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"velocity": 4.0, "mass": 2.0},
+        {"radius": 4.0, "mass": 2.0},
+        {"velocity": 4.0, "radius": 0.25},
+        {"velocity": 0.0625, "radius": 64.0, "mass": 4.0**0.5},
+    ],
+    ids=lambda changes: "-".join(changes),
+)
+def test_scaling(vcor, model, changes):
+    """Without plate waves cor depends on one time only, T^(5/2) ~ m/sqrt(r v0).
+
+    All else being equal, m^2/(r v0) is kept here, so cor has to be the same.
+    """
+    change = changes.get
+    product = change("mass", 1.0) ** 2 / (change("radius", 1.0) * change("velocity", 1.0))
+    assert product == 1.0
+    vcor.write(half_space(model))
+    vcor.write(half_space(model, **changes), "scaled.nml")
+    one, other = vcor.numbers("case.nml"), vcor.numbers("scaled.nml")
+    assert abs(cor(one) - cor(other)) <= ROUNDOFF
+    assert float(one["contact_time"]) == pytest.approx(float(other["contact_time"]), rel=1e-11)
+    # ... and that it is this time which matters, not nothing
+    vcor.write(half_space(model, velocity=2.0), "faster.nml")
+    assert abs(cor(vcor.numbers("faster.nml")) - cor(one)) > 1e-3
+
+
+def test_no_plate_no_wave(vcor):
+    """Then cor and cor_sphere are the same, and nothing is radiated."""
+    vcor.write(half_space("sls"))
+    numbers = vcor.numbers("case.nml")
+    assert cor(numbers) == pytest.approx(float(numbers["cor_sphere"]), rel=1e-12)
+    assert float(numbers["wave_energy"]) == 0.0
+
+
+def test_elastic_half_space_gives_all_back(vcor):
+    vcor.write(half_space("elastic"))
+    numbers = vcor.numbers("case.nml")
+    assert abs(cor(numbers) - 1.0) <= min(1e-8, HONEST * error(numbers))
+
+
+@pytest.mark.parametrize("rate, modulus", [("1e-6", "15.0e6"), ("1e9", "3.75e6")])
+def test_limits_of_the_sls(vcor, rate, modulus):
+    """Very slow or very fast relaxation is elastic, with the glassy or the rubbery modulus."""
+    vcor.write(case_text("elastic"))
+    elastic = vcor.numbers("case.nml", "--set", f"rubber.modulus={modulus}")
+    vcor.write(SLS)
+    rates = ["--set", f"rubber.beta={rate}", "--set", f"rubber.alpha={float(rate) / 4}"]
+    numbers = vcor.numbers("case.nml", "--set", "plate.waves=constant", *rates)
+    if rate == "1e-6":
+        assert abs(cor(numbers) - cor(elastic)) <= 1e-7
+    else:
+        relaxing = vcor.numbers("case.nml", *rates)
+        assert abs(cor(relaxing) - cor(elastic)) <= 1e-4
+
+
+def test_stiff_material_without_equilibrium_modulus(vcor):
+    """The default method comes to the end that direct comes to."""
+    text, _ = edit(case_text("prony"), "plate", "waves", "'constant'")
+    for key, value in {
+        "equilibrium_modulus": "0.0",
+        "moduli": "1.0e6, 3.0e10",
+        "rates": "3.0e6, 3.0e6",
+        "viscosity": "2.0e4",
+    }.items():
+        text, _ = edit(text, "material", key, value)
+    vcor.write(text)
+    ends = {}
+    for method in ("auto", "direct"):
+        done = vcor(
+            *["run", "case.nml", "--print", "status"],
+            *["--set", f"solver.method={method}", "--set", "plate.half_thickness=0.1"],
+        )
+        assert done.code in {SUCCESS, NUMERICAL}
+        ends[method] = done.out
+    assert ends["auto"] == ends["direct"] != ""

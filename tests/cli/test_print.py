@@ -1,0 +1,106 @@
+"""--print: bare numbers for scripts."""
+
+import math
+import re
+
+import h5py
+import pytest
+from cases import SLS, case_text
+from program import ALL, NAMES, USAGE
+
+
+@pytest.fixture
+def sls(vcor):
+    vcor.write(SLS)
+    return vcor
+
+
+def test_writes_no_file(sls):
+    sls.succeeds("run", "case.nml", "--print", "cor")
+    assert [path.name for path in sls.folder.iterdir()] == ["case.nml"]
+
+
+def test_writes_files_where_output_says(sls):
+    out = sls.succeeds("run", "case.nml", "--print", "cor", "--output", "out")
+    assert out.count("\n") == 1
+    assert len(list((sls.folder / "out").iterdir())) == 3
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_single_name(sls, name):
+    out = sls.succeeds("run", "case.nml", "--print", name)
+    assert re.fullmatch(r"\S+\n", out)
+    assert out.strip() == sls.numbers("case.nml")[name]
+
+
+def test_order(sls):
+    values = sls.numbers("case.nml")
+    for names in (NAMES[::-1], ["status", "cor", "steps", "cor"], ["cor_error", "cor"]):
+        out = sls.succeeds("run", "case.nml", "--print", ",".join(names))
+        assert out == " ".join(values[name] for name in names) + "\n"
+
+
+def test_blanks_after_commas(sls):
+    one = sls.succeeds("run", "case.nml", "--print", "cor, steps , status")
+    assert one == sls.succeeds("run", "case.nml", "--print", "cor,steps,status")
+
+
+def test_option_given_twice(sls):
+    one = sls.succeeds("run", "case.nml", "--print", "cor", "--print=status")
+    assert one == sls.succeeds("run", "case.nml", "--print", "cor,status")
+
+
+def test_a_line_per_case(sls):
+    sls.write(SLS, "b.nml")
+    words = ["run", "case.nml", "b.nml", "--set", "impact.velocity=3", "--print", "cor"]
+    lines = sls.succeeds(*words).splitlines()
+    assert len(lines) == 2 and lines[0] == lines[1]
+
+
+@pytest.mark.parametrize("model", ["elastic", "sls", "prony", "power_law", "cerf"])
+def test_full_precision(vcor, model):
+    """A number on the screen, in CSV and in HDF5 is one and the same, to the last bit."""
+    vcor.write(case_text(model))
+    values = dict(
+        zip(NAMES, vcor.succeeds("run", "case.nml", "--print", ALL, "--output", ".").split())
+    )
+    lines = (vcor.folder / "case_summary.csv").read_text().splitlines()
+    row = dict(zip(lines[-2].split(","), lines[-1].split(",")))
+    assert list(row) == NAMES
+    with h5py.File(vcor.folder / "case.h5") as file:
+        for name in NAMES:
+            stored = file["summary"][name][0]
+            if name == "status":
+                assert values[name] == row[name] == stored.decode()
+            else:
+                assert float(values[name]) == stored == float(row[name]), name
+                assert math.isfinite(stored)
+
+
+def test_plain_numbers(sls):
+    """Every language reads them: digits, point, e, sign and two digits or more."""
+    for name, value in sls.numbers("case.nml").items():
+        if name not in {"steps", "status"}:
+            assert re.fullmatch(r"-?\d\.\d{16}e[+-]\d{2,3}", value), name
+
+
+@pytest.mark.parametrize("name, nearest", [("kor", "cor"), ("COR", "cor"), ("step", "steps")])
+def test_unknown_name(sls, name, nearest):
+    sls.refuses("run", "case.nml", "--print", name, code=USAGE, says=[f"'{name}'", f"'{nearest}'"])
+    words = ["run", "case.nml", "--print", f"cor,{name}"]
+    sls.refuses(*words, code=USAGE, says=[f"'{name}'", f"'{nearest}'"])
+
+
+@pytest.mark.parametrize("value", [",", "cor,", ",cor", "cor,,steps", "x"])
+def test_no_name(sls, value):
+    sls.refuses("run", "case.nml", "--print", value, code=USAGE, says=["--print", "cor_sphere"])
+
+
+@pytest.mark.parametrize("value", ["cor cor_sphere", "steps status"])
+def test_blank_instead_of_a_comma(sls, value):
+    sls.refuses("run", "case.nml", "--print", value, code=USAGE, says="--print")
+
+
+def test_goes_before_quiet(sls):
+    out = sls.succeeds("run", "case.nml", "--print", "cor", "--quiet")
+    assert out in {"", sls.succeeds("run", "case.nml", "--print", "cor")}

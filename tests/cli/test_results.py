@@ -1,0 +1,264 @@
+"""Result files: which there are, and what happens to those of an earlier run."""
+
+import os
+from itertools import product
+
+import h5py
+import pytest
+from cases import SLS, edit
+from program import FILE, INPUT, NAMES, NUMERICAL, complaint, contents
+
+FLAGS = list(product([True, False], repeat=3))
+
+
+@pytest.fixture
+def sls(vcor):
+    vcor.write(SLS)
+    return vcor
+
+
+def results(folder):
+    return {path.name for path in folder.iterdir() if path.suffix != ".nml"}
+
+
+@pytest.mark.parametrize("csv, hdf5, history", FLAGS)
+def test_which_files(vcor, csv, hdf5, history):
+    text = SLS
+    for key, value in {"csv": csv, "hdf5": hdf5, "history": history}.items():
+        text, _ = edit(text, "output", key, ".true." if value else ".false.")
+    vcor.write(text)
+    expected = set()
+    if csv:
+        expected.add("case_summary.csv")
+    if csv and history:
+        expected.add("case.csv")
+    if hdf5:
+        expected.add("case.h5")
+    out = vcor.succeeds("run", "case.nml", "--output", "out")
+    folder = vcor.folder / "out"
+    assert (results(folder) if folder.exists() else set()) == expected
+    assert folder.exists() == bool(expected)
+    for name in ("case_summary.csv", "case.csv", "case.h5"):
+        assert (name in out) == (name in expected)
+    if hdf5:
+        with h5py.File(folder / "case.h5") as file:
+            assert set(file) == ({"summary", "history"} if history else {"summary"})
+
+
+@pytest.mark.parametrize("value", ["F", ".F.", "false", ".FALSE."])
+def test_forms_of_a_logical(vcor, value):
+    text, _ = edit(SLS, "output", "hdf5", value)
+    vcor.write(text)
+    vcor.succeeds("run", "case.nml")
+    assert results(vcor.folder) == {"case_summary.csv", "case.csv"}
+
+
+def test_stem(vcor):
+    text, _ = edit(SLS, "output", "stem", "'ball 1'")
+    vcor.write(text)
+    vcor.succeeds("run", "case.nml")
+    assert results(vcor.folder) == {"ball 1_summary.csv", "ball 1.csv", "ball 1.h5"}
+
+
+def test_same_run_same_files(sls):
+    """Nothing in a file depends on when it was written."""
+    sls.succeeds("run", "case.nml")
+    first = {path: data for path, (data, _) in contents(sls.folder).items()}
+    sls.succeeds("run", "case.nml")
+    assert {path: data for path, (data, _) in contents(sls.folder).items()} == first
+
+
+def test_old_files_are_replaced_as_a_whole(sls):
+    """Longer old files leave nothing behind."""
+    sls.succeeds("run", "case.nml", "--output", "new")
+    sls.succeeds("run", "case.nml", "--output", "out")
+    for name in results(sls.folder / "out"):
+        with (sls.folder / "out" / name).open("ab") as file:
+            file.write(b"old\n" * 100_000)
+    sls.succeeds("run", "case.nml", "--output", "out")
+    for name in results(sls.folder / "new"):
+        old, new = (sls.folder / folder / name for folder in ("out", "new"))
+        assert old.read_bytes() == new.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "words, code",
+    [
+        (["--set", "impact.velocity=-1"], INPUT),
+        (["--set", "rubber.beta=1"], INPUT),
+        (["--set", "sphere.material=gum"], INPUT),
+        (["--set", "plate.waves=hereditary"], INPUT),
+        (["no.nml"], FILE),
+    ],
+)
+def test_old_files_stay_when_the_run_fails(sls, words, code):
+    sls.succeeds("run", "case.nml")
+    sls.refuses("run", "case.nml", *words, code=code)
+
+
+def test_old_files_stay_when_a_folder_is_in_the_way(sls):
+    (sls.folder / "case_summary.csv").mkdir()
+    for name in ("case.csv", "case.h5"):
+        (sls.folder / name).write_text("old")
+    sls.refuses("run", "case.nml", code=FILE, says="case_summary.csv")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write to every folder")
+def test_folder_that_is_read_only(sls):
+    (sls.folder / "out").mkdir(mode=0o555)
+    sls.refuses("run", "case.nml", "--output", "out", code=FILE, says="out/case")
+
+
+def last_row(folder, name):
+    """The last line of a summary by column."""
+    lines = (folder / name).read_text().splitlines()
+    return dict(zip(lines[-2].split(","), lines[-1].split(",")))
+
+
+@pytest.mark.parametrize("method", ["ive", "direct"])
+def test_no_separation(vcor, method):
+    """Contact that lasts longer than end_time: a status, and files that say so."""
+    text, _ = edit(SLS, "solver", "method", f"'{method}'")
+    text, _ = edit(text, "solver", "end_time", "1.0e-3")
+    vcor.write(text)
+    done = vcor("run", "case.nml")
+    complaint(done, NUMERICAL, ["do not separate", "solver.end_time"], "case.nml")
+    assert "no_separation" in done.out
+    row = last_row(vcor.folder, "case_summary.csv")
+    assert row.pop("status") == "no_separation"
+    assert int(row.pop("steps")) > 0
+    assert float(row.pop("initial_energy")) > 1.6
+    assert set(row.values()) == {"nan"}
+    with h5py.File(vcor.folder / "case.h5") as file:
+        assert file["summary/status"].asstr()[0] == "no_separation"
+        assert file["summary/cor"][0] != file["summary/cor"][0]
+        time, force = file["history/time"][:], file["history/force"][:]
+    assert time[0] == 0.0 and 0.999e-3 <= time[-1]
+    assert (force[1:] > 0).all()
+
+
+@pytest.mark.parametrize(
+    "method",
+    [
+        "ive",
+        "direct",
+    ],
+)
+def test_end_time_is_the_end(sls, method):
+    words = ["--set", f"solver.method={method}", "--set", "solver.end_time=1e-4", "--quiet"]
+    assert sls("run", "case.nml", *words).code == NUMERICAL
+    with h5py.File(sls.folder / "case.h5") as file:
+        assert file["history/time"][-1] == pytest.approx(1e-4, rel=1e-12)
+
+
+def test_time_in_a_message_is_short(sls):
+    done = sls("run", "case.nml", "--set", "solver.end_time=1e-4")
+    assert "1.0000000000000000e-04" not in done.err
+
+
+def test_longer_end_time_helps(sls):
+    """What the message says to do works."""
+    words = ["case.nml", "--set"]
+    assert sls("run", *words, "solver.end_time=1e-3").code == NUMERICAL
+    assert sls.numbers(*words, "solver.end_time=2e-3") == sls.numbers("case.nml")
+
+
+def test_no_separation_printed(sls):
+    words = ["--set", "solver.end_time=1e-3", "--print", "cor,status,contact_time"]
+    done = sls("run", "case.nml", *words)
+    complaint(done, NUMERICAL, "solver.end_time", "case.nml")
+    assert done.out == "nan no_separation nan\n"
+    assert results(sls.folder) == set()
+
+
+def test_no_separation_replaces_old_files(sls):
+    """They are the results of this case now."""
+    sls.succeeds("run", "case.nml")
+    assert sls("run", "case.nml", "--set", "solver.end_time=1e-3", "--quiet").out == ""
+    assert last_row(sls.folder, "case_summary.csv")["cor"] == "nan"
+
+
+STICKING = [
+    # A sphere of glue on a rigid plate, and glue as a half space
+    ("sls", "sphere"),
+    ("sls", "plate"),
+    ("prony", "sphere"),
+    ("prony", "plate"),
+]
+
+
+def sticky(model, body):
+    """A case whose material flows like a liquid before it can push back."""
+    hard, soft = ("plate", "sphere") if body == "sphere" else ("sphere", "plate")
+    lines = {
+        "sls": ["glassy_modulus = 15.0e6", "alpha = 0.0", "beta = 1.0e6"],
+        "prony": ["moduli = 10.0e6, 5.0e6", "rates = 1.0e6, 3.0e6"],
+    }[model]
+    return "\n".join(
+        [
+            "&impact velocity = 10.0 /",
+            f"&{hard} material = 'steel'",
+            "   radius = 0.01" if hard == "sphere" else "   waves = 'none'",
+            "/",
+            f"&{soft} material = 'glue'",
+            "   radius = 0.01" if soft == "sphere" else "   waves = 'none'",
+            "/",
+            "&material name = 'steel' model = 'rigid' density = 7800.0 /",
+            f"&material name = 'glue' model = '{model}' density = 1100.0 poisson_ratio = 0.5",
+            *lines,
+            "/\n",
+        ]
+    )
+
+
+def sticks(vcor, method):
+    """The case is found to stick, and its files say so."""
+    done = vcor("run", "case.nml", "--set", f"solver.method={method}")
+    complaint(done, NUMERICAL, ["sticks", "equilibrium"], "case.nml")
+    assert "sticks" in done.out
+    row = last_row(vcor.folder, "case_summary.csv")
+    assert row["status"] == "sticks"
+    assert row["cor"] == row["contact_time"] == "nan"
+
+
+@pytest.mark.parametrize("model, body", STICKING)
+def test_sticks(vcor, model, body):
+    vcor.write(sticky(model, body))
+    sticks(vcor, "direct")
+
+
+def test_sticks_by_the_default_method(vcor):
+    """All of them in one test: which of them fail depends on rounding."""
+    for model, body in STICKING:
+        for rate in ("1.0e6", "2.0e6", "5.0e6", "1.0e7"):
+            vcor.write(sticky(model, body).replace("1.0e6", rate))
+            sticks(vcor, "auto")
+
+
+def test_velocity_beyond_the_numbers(sls):
+    """Its energy would overflow: refused, not taken for a sphere that sticks."""
+    done = sls("run", "case.nml", "--set", "impact.velocity=1e200")
+    complaint(done, INPUT, "beyond", at="case.nml:8")
+
+
+def test_others_are_done_when_one_fails(sls):
+    """Numerical failure of one case does not stop the next."""
+    text, _ = edit(SLS, "solver", "end_time", "1.0e-3")
+    sls.write(text, "a.nml")
+    sls.write(SLS, "b.nml")
+    sls.write(text, "c.nml")
+    done = sls("run", "a.nml", "case.nml", "c.nml", "b.nml", "--print", "status", "--output", "out")
+    assert done.code == NUMERICAL
+    assert done.out.split() == ["no_separation", "separated", "no_separation", "separated"]
+    lines = done.err.splitlines()
+    assert [line.split(": ")[2] for line in lines] == ["a.nml", "c.nml"]
+    assert all(line.startswith("vcor: error: ") for line in lines)
+    assert len(results(sls.folder / "out")) == 12
+    for name in "bc":
+        row = last_row(sls.folder / "out", f"{name}_summary.csv")
+        assert row["status"] == {"b": "separated", "c": "no_separation"}[name]
+
+
+def test_columns(sls):
+    sls.succeeds("run", "case.nml")
+    assert list(last_row(sls.folder, "case_summary.csv")) == NAMES

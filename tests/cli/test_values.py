@@ -1,0 +1,384 @@
+"""Keys and values that a case cannot have."""
+
+import pytest
+from cases import SLS, add_line, case_text, edit, without
+from program import INPUT
+
+# Model, group and key, for each key that has to be a positive number
+POSITIVE = [
+    ("sls", "impact", "velocity"),
+    ("sls", "sphere", "radius"),
+    ("sls", "sphere", "mass"),
+    ("sls", "plate", "half_thickness"),
+    ("sls", "material", "density"),
+    ("sls", "material", "glassy_modulus"),
+    ("elastic", "material", "modulus"),
+    ("cerf", "material", "relaxing_modulus"),
+    ("cerf", "material", "beta"),
+    ("power_law", "material", "coefficient"),
+    ("sls", "solver", "time_step"),
+    ("sls", "solver", "end_time"),
+]
+# ... that may be zero, but no less
+NOT_NEGATIVE = [
+    ("sls", "material", "alpha"),
+    ("sls", "material", "beta"),
+    ("prony", "material", "equilibrium_modulus"),
+    ("prony", "material", "viscosity"),
+    ("power_law", "material", "equilibrium_modulus"),
+    ("cerf", "material", "equilibrium_modulus"),
+]
+# ... and each list of positive numbers
+LISTS = [
+    ("prony", "material", "moduli"),
+    ("prony", "material", "rates"),
+    ("prony_times", "material", "times"),
+]
+# A number each that is free to be anything finite
+FREE = [("sls", "plate", "surface_radius"), ("sls", "solver", "volterra_coefficient")]
+RANGES = [
+    ("sls", "material", "poisson_ratio"),
+    ("power_law", "material", "exponent"),
+    ("sls", "solver", "accuracy"),
+]
+NUMBERS = POSITIVE + NOT_NEGATIVE + LISTS + FREE + RANGES
+
+
+def spoiled(vcor, where, value, says=()):
+    """What is said when a key has this value."""
+    model, group, key = where
+    text, line = edit(case_text(model), group, key, value)
+    vcor.write(text)
+    return vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=says)
+
+
+def ids(where):
+    return f"{where[0]}-{where[2]}" if isinstance(where, tuple) else None
+
+
+@pytest.mark.parametrize("model", ["elastic", "sls", "prony", "prony_times", "power_law", "cerf"])
+def test_the_unspoiled_cases_are_right(vcor, model):
+    vcor.write(case_text(model))
+    assert vcor.numbers("case.nml")["status"] == "separated"
+
+
+@pytest.mark.parametrize("where", POSITIVE, ids=ids)
+@pytest.mark.parametrize("value", ["0.0", "-0.0", "-1.0", "-1e-300"])
+def test_not_positive(vcor, where, value):
+    spoiled(vcor, where, value, ["found", "expected", "> 0"])
+
+
+@pytest.mark.parametrize("where", NOT_NEGATIVE, ids=ids)
+@pytest.mark.parametrize("value", ["-1.0", "-1e-300"])
+def test_negative(vcor, where, value):
+    spoiled(vcor, where, value, ["found -1", "expected", ">= 0"])
+
+
+@pytest.mark.parametrize("where", LISTS, ids=ids)
+@pytest.mark.parametrize("value", ["0.0", "-2.0"])
+def test_not_positive_in_a_list(vcor, where, value):
+    spoiled(vcor, where, f"1.0, {value}, 3.0", [f"found {value}", "value 2", "> 0"])
+
+
+@pytest.mark.parametrize("where", NUMBERS, ids=ids)
+@pytest.mark.parametrize("value", ["NaN", "nan", "Inf", "-Infinity", "+inf"])
+def test_not_finite(vcor, where, value):
+    spoiled(vcor, where, value, [f"found '{value}'", "finite"])
+
+
+@pytest.mark.parametrize("where", NUMBERS, ids=ids)
+@pytest.mark.parametrize("value", ["1e400", "1d999999999999"])
+def test_too_large(vcor, where, value):
+    spoiled(vcor, where, value, [value, "too large"])
+
+
+def test_too_small(vcor):
+    """A number that underflows would be taken for zero."""
+    spoiled(vcor, ("sls", "impact", "velocity"), "1e-400", ["1e-400", "too small"])
+
+
+@pytest.mark.parametrize("where", NUMBERS, ids=ids)
+@pytest.mark.parametrize(
+    "value", ["ten", "'ten'", "1.0.0", "1e", "0x10", "1.0f", "10m", "--1", ".true.", "1_8", "$"]
+)
+def test_text_for_a_number(vcor, where, value):
+    spoiled(vcor, where, value, ["found", value, "expected"])
+
+
+@pytest.mark.parametrize("where", NUMBERS, ids=ids)
+def test_empty_value(vcor, where):
+    spoiled(vcor, where, "", ["no value"])
+
+
+@pytest.mark.parametrize(
+    "group, key", [("sphere", "material"), ("plate", "waves"), ("case", "title")]
+)
+def test_empty_text_value(vcor, group, key):
+    spoiled(vcor, ("sls", group, key), "", ["no value"])
+
+
+def test_empty_value_before_the_end(vcor):
+    vcor.write(SLS.replace("   velocity = 10.0\n/", "   velocity = /"))
+    vcor.refuses("run", "case.nml", code=INPUT, at="case.nml:5", says="no value")
+
+
+@pytest.mark.parametrize("value", [",", ", 3.0", "3.0,, 4.0", "2*", "1.0, 2*, 3.0"])
+def test_hole_in_a_list(vcor, value):
+    """Fortran would leave what was there before, which is nothing."""
+    spoiled(vcor, ("prony", "material", "rates"), value)
+
+
+@pytest.mark.parametrize("where", POSITIVE + NOT_NEGATIVE + FREE + RANGES, ids=ids)
+@pytest.mark.parametrize("value", ["0.4, 0.4", "0.4 0.4", "2*0.4"])
+def test_too_many_values(vcor, where, value):
+    spoiled(vcor, where, value, ["more than one value"])
+
+
+def test_too_many_texts(vcor):
+    spoiled(vcor, ("sls", "case", "title"), "'Ball' 'on plate'", ["more than one value"])
+
+
+@pytest.mark.parametrize("value", ["-1.0", "-1.5", "0.5000001", "0.6", "49"])
+def test_poisson_ratio(vcor, value):
+    spoiled(vcor, ("sls", "material", "poisson_ratio"), value, ["found", "in (-1, 0.5]"])
+
+
+@pytest.mark.parametrize("value", ["-0.9999", "0.0", "0.5"])
+def test_poisson_ratio_within(vcor, value):
+    text, _ = edit(SLS, "material", "poisson_ratio", value)
+    vcor.write(text)
+    assert vcor.numbers("case.nml")["status"] == "separated"
+
+
+@pytest.mark.parametrize("value", ["0.0", "1.0", "-0.5", "2.0"])
+def test_exponent(vcor, value):
+    spoiled(vcor, ("power_law", "material", "exponent"), value, [f"found {value}", "in (0, 1)"])
+
+
+@pytest.mark.parametrize("value", ["0.0", "1.0e-12", "0.2", "-1.0e-6"])
+def test_accuracy(vcor, value):
+    spoiled(vcor, ("sls", "solver", "accuracy"), value, ["found", "expected a number in ["])
+
+
+@pytest.mark.parametrize("value", ["0", "3", "-1"])
+def test_volterra_order(vcor, value):
+    spoiled(vcor, ("sls", "solver", "volterra_order"), value, [f"found {value}", "whole number"])
+
+
+@pytest.mark.parametrize("value", ["1.0", "1.5", "one", "'1'", "NaN", "99999999999999"])
+def test_no_whole_number(vcor, value):
+    spoiled(vcor, ("sls", "solver", "volterra_order"), value, [value, "whole number"])
+
+
+@pytest.mark.parametrize("key", ["csv", "hdf5", "history"])
+@pytest.mark.parametrize("value", ["1", "yes", "'true'", "tru", "none"])
+def test_no_logical(vcor, key, value):
+    spoiled(vcor, ("sls", "output", key), value, [value, ".true. or .false."])
+
+
+@pytest.mark.parametrize("value", ["steel", "42", ".true."])
+def test_text_without_quotes(vcor, value):
+    spoiled(vcor, ("sls", "sphere", "material"), value, [value, "quotes"])
+
+
+@pytest.mark.parametrize(
+    "group, key, value, known",
+    [
+        ("plate", "waves", "relaxed", "relaxing"),
+        ("solver", "method", "direkt", "direct"),
+        ("solver", "scheme", "products", "product"),
+        ("material", "model", "SLS model", "sls"),
+    ],
+)
+def test_unknown_choice(vcor, group, key, value, known):
+    spoiled(vcor, ("sls", group, key), f"'{value}'", [value.lower(), "expected", known])
+
+
+# What the catalogue knows but no solver does yet
+NOT_YET = [
+    ("plate", "waves", "'hereditary'"),
+    ("contact", "law", "'receding'"),
+    ("contact", "pair", "'series'"),
+    ("material", "model", "'mittag_leffler'"),
+    ("material", "model", "'table'"),
+]
+
+
+@pytest.mark.parametrize("group, key, value", NOT_YET, ids=lambda word: word.strip("'"))
+def test_not_available_yet(vcor, group, key, value):
+    text = SLS if f"&{group}\n" in SLS else f"&{group}\n/\n{SLS}"
+    text, line = edit(text, group, key, value)
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=key)
+
+
+@pytest.mark.parametrize("method", ["auto", "ive", "direct"])
+def test_scheme_not_available_yet(vcor, method):
+    text, _ = edit(SLS, "solver", "method", f"'{method}'")
+    text, line = edit(text, "solver", "scheme", "'adams_bashforth'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="scheme")
+
+
+@pytest.mark.parametrize(
+    "group, key, nearest",
+    [
+        ("impact", "velocitty", "velocity"),
+        ("sphere", "raduis", "radius"),
+        ("plate", "half_thicknes", "half_thickness"),
+        ("material", "poison_ratio", "poisson_ratio"),
+        ("material", "glasy_modulus", "glassy_modulus"),
+        ("solver", "end_tim", "end_time"),
+        ("output", "hdf", "hdf5"),
+    ],
+)
+def test_unknown_key(vcor, group, key, nearest):
+    said = spoiled(vcor, ("sls", group, key), "1", [f"unknown key '{key}'", f"&{group}"])
+    assert f"'{nearest}'" in said
+
+
+def test_key_of_another_group(vcor):
+    spoiled(vcor, ("sls", "sphere", "half_thickness"), "0.01", ["half_thickness", "&plate"])
+
+
+def test_key_of_another_model(vcor):
+    spoiled(vcor, ("sls", "material", "exponent"), "0.5", ["exponent", "'sls'", "glassy_modulus"])
+
+
+@pytest.mark.parametrize("again", ["velocity = 10.0", "VELOCITY = 20.0"])
+def test_key_given_twice(vcor, again):
+    text, line = add_line(SLS, "velocity = 10.0", again)
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=["velocity", "twice"])
+
+
+def test_list_given_twice(vcor):
+    text, line = add_line(case_text("prony"), "rates = 972.0, 6426.0, 34221.0", "rates(2) = 1000.0")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=["rates", "twice"])
+
+
+@pytest.mark.parametrize(
+    "line, key",
+    [
+        ("velocity = 10.0", "velocity"),
+        ("radius = 0.01", "radius"),
+        ("material = 'steel'", "material"),
+        ("material = 'rubber'", "material"),
+        ("half_thickness = 0.02", "half_thickness"),
+        ("model = 'sls'", "model"),
+        ("density = 7800.0", "density"),
+        ("density = 1100.0", "density"),
+        ("poisson_ratio = 0.5", "poisson_ratio"),
+        ("glassy_modulus = 15.0e6", "glassy_modulus"),
+        ("alpha = 300.0", "alpha"),
+        ("beta = 1200.0", "beta"),
+    ],
+)
+def test_key_missing(vcor, line, key):
+    text, _ = without(SLS, line)
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", f"'{key}' is missing"])
+
+
+@pytest.mark.parametrize("name", ["steel", "rubber"])
+def test_name_missing(vcor, name):
+    text, _ = without(SLS, f"name = '{name}'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "name"])
+
+
+@pytest.mark.parametrize("key, model", [("rates", "prony"), ("times", "prony_times")])
+@pytest.mark.parametrize("value", ["1.0, 2.0", "1.0", "1.0, 2.0, 3.0, 4.0", "4*1.0"])
+def test_lengths(vcor, key, model, value):
+    spoiled(vcor, (model, "material", key), value, ["3 moduli", key])
+
+
+def test_rates_and_times(vcor):
+    spoiled(vcor, ("prony", "material", "times"), "1.0, 2.0, 3.0", ["rates", "times", "one of"])
+
+
+def test_neither_rates_nor_times(vcor):
+    text, _ = without(case_text("prony"), "rates = 972.0, 6426.0, 34221.0")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "rates", "times"])
+
+
+def test_no_stiffness(vcor):
+    text, _ = without(case_text("prony"), "rates = 972.0, 6426.0, 34221.0")
+    text, _ = without(text, "moduli = 20.181e6, 38.204e6, 87.344e6")
+    text, _ = without(text, "equilibrium_modulus = 10.421e6")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "rubber", "stiffness"])
+
+
+@pytest.mark.parametrize("value", ["1200.1", "1e300"])
+def test_rubbery_above_glassy(vcor, value):
+    spoiled(vcor, ("sls", "material", "alpha"), value, ["alpha", "beta", "1200.0", "rubbery"])
+
+
+def test_rubbery_modulus_without_relaxation(vcor):
+    text, _ = edit(SLS, "material", "beta", "0.0")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "alpha", "beta"])
+
+
+@pytest.mark.parametrize("group", ["sphere", "plate"])
+def test_material_not_there(vcor, group):
+    spoiled(vcor, ("sls", group, "material"), "'ruber'", ["'ruber'", f"&{group}", "rubber"])
+
+
+@pytest.mark.parametrize("name", ["steel", "STEEL", " steel "])
+def test_material_there_twice(vcor, name):
+    text, line = edit(SLS, "material", "name", f"'{name}'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="two materials")
+
+
+def test_blank_and_underscore_are_one_name(vcor):
+    text = SLS.replace("'steel'", "'hard steel'").replace("'rubber'", "'hard_steel'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "two materials"])
+
+
+def test_both_rigid(vcor):
+    spoiled(vcor, ("sls", "plate", "material"), "'steel'", ["both rigid"])
+
+
+@pytest.mark.parametrize("value", ["-0.005", "-0.01", "-1e-9"])
+def test_hollow_smaller_than_the_sphere(vcor, value):
+    spoiled(vcor, ("sls", "plate", "surface_radius"), value, ["surface_radius", "-0.01"])
+
+
+@pytest.mark.parametrize("model", ["cerf", "power_law"])
+def test_ive_names_the_method_that_works(vcor, model):
+    spoiled(vcor, (model, "solver", "method"), "'ive'", ["'ive'", "'direct'"])
+
+
+def test_time_step_not_below_end_time(vcor):
+    text, _ = edit(SLS, "solver", "end_time", "1.0e-3")
+    text, _ = edit(text, "solver", "time_step", "1.0e-3")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "time_step", "end_time"])
+
+
+@pytest.mark.parametrize("value", ["'a/b'", "'../x'", "'/proc/x'"])
+def test_stem_with_a_folder(vcor, value):
+    """A stem is a name: the folder is output.directory."""
+    spoiled(vcor, ("sls", "output", "stem"), value, ["stem"])
+
+
+@pytest.mark.parametrize("method", ["auto", "ive", "direct"])
+@pytest.mark.parametrize(
+    ("group", "key", "value"),
+    [
+        ("plate", "waves", "'frozen'"),
+        ("solver", "volterra_order", "2"),
+        ("solver", "continue_after_separation", ".true."),
+    ],
+)
+def test_rare_values(vcor, group, key, value, method):
+    text, _ = edit(SLS, group, key, value)
+    text, _ = edit(text, "solver", "method", f"'{method}'")
+    vcor.write(text)
+    assert vcor.numbers("case.nml")["status"] == "separated"

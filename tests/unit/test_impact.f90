@@ -1,0 +1,486 @@
+!> Contact modulus, plate, impact, trajectory and outcome
+program test_impact
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_constants, only : pi
+   use vcor_error, only : error_input, error_t
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
+   use vcor_impact_problem, only : hertz_contact_time, impact_t, new_impact
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate_velocity, &
+      col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, contact_separated, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_type, only : material_t
+   use vcor_solver_ive, only : ive_t
+   use vcor_solver_product, only : product_t
+   use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
+   use vcor_test_cases, only : make_ive, make_product, rigid_on_plate, success
+   implicit none
+
+   !> A dozen operations, each rounded
+   real(wp), parameter :: rounding = 4.0e-15_wp
+   !> Gauss's rule of eight nodes on the step next to a singularity, over the whole integral
+   real(wp), parameter :: step_tolerance = 1.0e-11_wp
+   !> Five-point formula with steps of 1/500: (1/500)^4/30 times a fifth derivative of up to a
+   !> hundred
+   real(wp), parameter :: slope_tolerance = 1.0e-10_wp
+   !> Iteration for the time scale ends at changes of 1e-3, contracted by up to 2/5
+   real(wp), parameter :: scale_tolerance = 1.0e-3_wp
+   !> Hertz's contact time sets steps only
+   real(wp), parameter :: hertz_tolerance = 1.0e-9_wp
+   !> Fourier quadrature of a pair against closed forms
+   real(wp), parameter :: transform_tolerance = 1.0e-11_wp
+
+   type(prony_t) :: rigid, steel, glass, sls
+   type(power_law_t) :: power_law
+   type(cerf_t) :: cerf
+   type(error_t), allocatable :: failure
+
+   call suite("impact")
+   call new_rigid(rigid)
+   rigid%density = 7800.0_wp
+   call new_elastic(steel, 210.0e9_wp, failure)
+   steel%poisson_ratio = 0.3_wp
+   steel%density = 7800.0_wp
+   call new_elastic(glass, 70.0e9_wp, failure)
+   glass%poisson_ratio = 0.22_wp
+   glass%density = 2500.0_wp
+   call new_sls(sls, 15.0e6_wp, 300.0_wp, 1200.0_wp, failure)
+   sls%density = 1100.0_wp
+   call new_power_law(power_law, 8.0e6_wp, 7.0e5_wp, 0.5_wp, failure)
+   power_law%density = 1100.0_wp
+   call new_cerf(cerf, 8.0e6_wp, 6.0e8_wp, 300.0_wp, failure)
+   cerf%density = 1100.0_wp
+   call success(failure, "the materials are built")
+
+   call test_four_cases()
+   call test_pair()
+   call test_refused_pairs()
+   call test_plate()
+   call test_radius()
+   call test_time_scale()
+   call test_sample()
+   call test_outcome()
+   call finish()
+
+contains
+
+   !> The cases of the paper's Section III
+   subroutine test_four_cases()
+      type(contact_modulus_t) :: modulus
+      type(exponential_sum_t) :: terms
+      type(error_t), allocatable :: error
+      real(wp) :: a, b
+      real(wp), parameter :: t = 4.0e-4_wp
+      logical :: exact
+
+      ! 1: both elastic
+      a = 210.0e9_wp/(1.0_wp - 0.3_wp**2)
+      b = 70.0e9_wp/(1.0_wp - 0.22_wp**2)
+      call new_contact_modulus(modulus, steel, glass, .false., error)
+      call success(error, "two elastic bodies")
+      call check_relative(modulus%glassy(), a*b/(a + b), rounding, "two elastic bodies: Eq. (1)")
+      call check_relative(modulus%relaxation(t), a*b/(a + b), rounding, "they do not relax")
+      call modulus%exponentials(terms, exact)
+      call check(exact .and. size(terms%moduli) == 0, "they are a sum of no exponentials")
+      call new_contact_modulus(modulus, steel, steel, .true., error)
+      call check_relative(modulus%glassy(), 0.5_wp*a, rounding, "two of the same: half the modulus")
+
+      ! 2: both of one viscoelastic material
+      call new_contact_modulus(modulus, sls, sls, .true., error)
+      call check_relative(modulus%relaxation(t), 0.5_wp*sls%relaxation(t)/0.75_wp, rounding, &
+         "both of one viscoelastic material")
+      call modulus%exponentials(terms, exact)
+      call check(exact, "both of one SLS: a sum of exponentials")
+      call check_relative(terms%moduli(1), 0.5_wp*15.0e6_wp/0.75_wp*0.75_wp, rounding, &
+         "with half of the modulus in its term")
+      call check_relative(terms%rates(1), 1200.0_wp, rounding, "and the rate of the SLS")
+
+      ! 3 and 4: one of them hard
+      call new_contact_modulus(modulus, rigid, sls, .false., error)
+      call same_as(modulus, sls, 1.0_wp/0.75_wp, "hard sphere on a soft plate")
+      call new_contact_modulus(modulus, sls, rigid, .false., error)
+      call same_as(modulus, sls, 1.0_wp/0.75_wp, "soft sphere on a hard plate")
+      call new_contact_modulus(modulus, rigid, power_law, .false., error)
+      call same_as(modulus, power_law, 1.0_wp/0.75_wp, "hard sphere on a power law")
+      call new_contact_modulus(modulus, cerf, rigid, .false., error)
+      call same_as(modulus, cerf, 1.0_wp/0.75_wp, "CERF sphere on a hard plate")
+   end subroutine test_four_cases
+
+   !> Check that a contact modulus is a multiple of a material's
+   subroutine same_as(modulus, material, factor, what)
+      !> The contact modulus
+      type(contact_modulus_t), intent(in) :: modulus
+      !> The material
+      class(material_t), intent(in) :: material
+      !> Factor
+      real(wp), intent(in) :: factor
+      !> What they are
+      character(len=*), intent(in) :: what
+
+      integer, parameter :: steps = 20
+      real(wp), parameter :: t = 4.0e-4_wp, omega = 4000.0_wp
+      complex(wp) :: dynamic
+
+      call check_relative(modulus%relaxation(t), factor*material%relaxation(t), rounding, &
+         what//": relaxation")
+      call check_relative(modulus%rate(t), factor*material%rate(t), rounding, what//": rate")
+      call check_relative(modulus%rubbery(), factor*material%rubbery(), rounding, &
+         what//": rubbery modulus")
+      if (ieee_is_finite(material%glassy())) call check_relative(modulus%glassy(), &
+         factor*material%glassy(), rounding, what//": glassy modulus")
+      dynamic = modulus%dynamic_modulus(omega)/material%complex_modulus(cmplx(0.0_wp, omega, wp))
+      call check_close(abs(dynamic - factor), 0.0_wp, rounding, what//": dynamic modulus")
+      call check_relative(sum(modulus%step_integrals(t/steps, steps)), &
+         factor*material%integral(t), 10.0_wp*rounding, what//": the steps are the whole")
+   end subroutine same_as
+
+   !> Two different materials of which one relaxes, at least
+   subroutine test_pair()
+      type(prony_t) :: soft
+      type(error_t), allocatable :: error
+      type(contact_modulus_t) :: modulus
+      complex(wp) :: dynamic
+      real(wp) :: g, r, b, s, omega
+
+      call new_sls(soft, 8.0e6_wp, 360.0_wp, 900.0_wp, error)
+      soft%poisson_ratio = 0.45_wp
+      call pair_of(soft, sls, "two SLS")
+      call pair_of(sls, steel, "SLS and steel")
+      call pair_of(power_law, steel, "power law and steel")
+      call pair_of(cerf, sls, "CERF and SLS")
+      call pair_of(power_law, cerf, "power law and CERF")
+
+      ! An SLS of glassy modulus g and rubbery r beside an elastic body of modulus s: with
+      ! y = exp(-b t), E' = s (r + d y)/(s + r + d y), whose transform is a hypergeometric series;
+      ! in the limit s -> infinity it is that of the SLS, for s = 1e9 g to nine digits
+      g = 15.0e6_wp/0.75_wp
+      r = 0.25_wp*g
+      b = 1200.0_wp
+      omega = 4000.0_wp
+      call new_elastic(soft, 1.0e9_wp*g, error)
+      call new_contact_modulus(modulus, sls, soft, .false., error)
+      s = soft%glassy()*soft%plane_strain_factor()
+      dynamic = modulus%dynamic_modulus(omega)
+      call check_relative(real(dynamic, wp), r + (g - r)*omega**2/(omega**2 + b**2), 1.0e-8_wp, &
+         "storage modulus of an SLS on something very hard")
+      call check_relative(aimag(dynamic), (g - r)*omega*b/(omega**2 + b**2), 1.0e-8_wp, &
+         "loss modulus of an SLS on something very hard")
+      ! two moduli with the same course make a pair with a closed form
+      call new_contact_modulus(modulus, sls, sls, .false., error)
+      dynamic = modulus%dynamic_modulus(omega)
+      call check_relative(real(dynamic, wp), 0.5_wp*(r + (g - r)*omega**2/(omega**2 + b**2)), &
+         transform_tolerance, "storage modulus of a pair of equals")
+      call check_relative(aimag(dynamic), 0.5_wp*(g - r)*omega*b/(omega**2 + b**2), &
+         transform_tolerance, "loss modulus of a pair of equals")
+      call new_contact_modulus(modulus, power_law, power_law, .false., error)
+      dynamic = modulus%dynamic_modulus(omega) &
+         /(power_law%complex_modulus(cmplx(0.0_wp, omega, wp))*0.5_wp/0.75_wp)
+      call check_close(abs(dynamic - 1.0_wp), 0.0_wp, transform_tolerance, &
+         "dynamic modulus of a pair of equal power laws")
+      call check(s > g, "the hard one is harder")
+   end subroutine test_pair
+
+   !> Check a pair against Eq. (1)
+   subroutine pair_of(first, second, what)
+      !> One material
+      class(material_t), intent(in) :: first
+      !> The other one
+      class(material_t), intent(in) :: second
+      !> What they are
+      character(len=*), intent(in) :: what
+
+      integer, parameter :: steps = 20
+      real(wp), parameter :: t = 4.0e-4_wp, h = t/500.0_wp
+      type(contact_modulus_t) :: modulus, other
+      type(error_t), allocatable :: error
+      type(exponential_sum_t) :: terms
+      real(wp) :: a, b, whole(1)
+      logical :: exact
+
+      call new_contact_modulus(modulus, first, second, .false., error)
+      call success(error, what//" make a pair")
+      call new_contact_modulus(other, second, first, .false., error)
+      a = first%relaxation(t)*first%plane_strain_factor()
+      b = second%relaxation(t)*second%plane_strain_factor()
+      call check_relative(modulus%relaxation(t), a*b/(a + b), rounding, what//": Eq. (1)")
+      call check_relative(other%relaxation(t), a*b/(a + b), rounding, what//": the other way round")
+      call check_close(t*modulus%rate(t)/modulus%relaxation(t), t &
+         *(modulus%relaxation(t - 2.0_wp*h) - modulus%relaxation(t + 2.0_wp*h) &
+         + 8.0_wp*(modulus%relaxation(t + h) &
+         - modulus%relaxation(t - h)))/(12.0_wp*h)/modulus%relaxation(t), slope_tolerance, &
+         what//": the rate is the derivative")
+      whole = modulus%step_integrals(t, 1)
+      call check_relative(sum(modulus%step_integrals(t/steps, steps)), whole(1), step_tolerance, &
+         what//": the steps are the whole")
+      if (ieee_is_finite(first%glassy()) .and. ieee_is_finite(second%glassy())) then
+         call check_relative(modulus%relaxation(0.0_wp), modulus%glassy(), rounding, &
+            what//": E'(0) is the glassy modulus")
+      else if (ieee_is_finite(second%glassy())) then
+         call check_relative(modulus%glassy(), second%glassy()*second%plane_strain_factor(), &
+            rounding, what//": the glassy modulus is that of the finite one")
+         call check_relative(modulus%relaxation(0.0_wp), modulus%glassy(), rounding, &
+            what//": and so is E'(0)")
+      end if
+      a = first%rubbery()*first%plane_strain_factor()
+      b = second%rubbery()*second%plane_strain_factor()
+      call check_relative(modulus%rubbery(), a*b/(a + b), rounding, what//": rubbery modulus")
+      call check_close(modulus%viscosity(), 0.0_wp, 0.0_wp, what//": no dashpot")
+      call modulus%exponentials(terms, exact)
+      call check(.not. exact, what//": no finite sum of exponentials")
+   end subroutine pair_of
+
+   !> Pairs that make no contact modulus
+   subroutine test_refused_pairs()
+      type(prony_t) :: dashpot, fluid
+      type(contact_modulus_t) :: modulus
+      type(error_t), allocatable :: error
+      real(wp), parameter :: none(0) = [real(wp) ::]
+
+      call new_contact_modulus(modulus, rigid, rigid, .false., error)
+      call check(allocated(error), "two rigid bodies are refused")
+      if (allocated(error)) call check_contains(error%message, "both rigid", "and it is said why")
+      call new_prony(dashpot, 1.0e6_wp, none, none, 10.0_wp, error)
+      call new_contact_modulus(modulus, dashpot, sls, .false., error)
+      call check(allocated(error), "a dashpot in a pair is refused")
+      if (allocated(error)) call check(error%code == error_input, "as an error of the input")
+      call new_contact_modulus(modulus, steel, dashpot, .false., error)
+      call check(allocated(error), "also beside an elastic body")
+      call new_contact_modulus(modulus, rigid, dashpot, .false., error)
+      call success(error, "beside a rigid body it is not")
+      call check_relative(modulus%viscosity(), 10.0_wp/0.75_wp, rounding, &
+         "and its viscosity counts")
+      call new_prony(fluid, 0.0_wp, [1.0e6_wp], [10.0_wp], 0.0_wp, error)
+      call new_contact_modulus(modulus, fluid, sls, .false., error)
+      call success(error, "a fluid and a solid make a pair")
+      call check_close(modulus%rubbery(), 0.0_wp, 0.0_wp, "that relaxes to nothing")
+   end subroutine test_refused_pairs
+
+   !> Zener's parameter alpha
+   subroutine test_plate()
+      real(wp), parameter :: half = 0.02_wp, t = 4.0e-4_wp, h = t/500.0_wp
+      type(plate_t) :: plate
+      type(prony_t) :: nothing
+      type(error_t), allocatable :: error
+      real(wp), parameter :: none(0) = [real(wp) ::]
+
+      call new_plate(plate, sls, half, waves_relaxing, error)
+      call success(error, "a relaxing plate is built")
+      call check_relative(plate%alpha(0.0_wp), sqrt(3.0_wp*1100.0_wp/(15.0e6_wp/0.75_wp)) &
+         /(16.0_wp*1100.0_wp*half**2), rounding, "alpha(0) of Eq. (3)")
+      call check_relative(plate%alpha(t), sqrt(3.0_wp*1100.0_wp/(sls%relaxation(t)/0.75_wp)) &
+         /(16.0_wp*1100.0_wp*half**2), rounding, "alpha(t) of Eq. (3)")
+      call check_relative(plate%alpha_rate(t), (plate%alpha(t - 2.0_wp*h) &
+         - plate%alpha(t + 2.0_wp*h) + 8.0_wp*(plate%alpha(t + h) - plate%alpha(t - h))) &
+         /(12.0_wp*h), slope_tolerance, "its rate is the derivative")
+      call new_plate(plate, power_law, half, waves_relaxing, error)
+      call check_relative(plate%alpha_rate(t), (plate%alpha(t - 2.0_wp*h) &
+         - plate%alpha(t + 2.0_wp*h) + 8.0_wp*(plate%alpha(t + h) - plate%alpha(t - h))) &
+         /(12.0_wp*h), slope_tolerance, "also for a power law")
+      call check_close(plate%alpha(0.0_wp), 0.0_wp, 0.0_wp, "whose alpha(0) is zero")
+      call new_plate(plate, sls, half, waves_constant, error)
+      call check_relative(plate%alpha(1.0_wp), sqrt(3.0_wp*1100.0_wp/(15.0e6_wp/0.75_wp)) &
+         /(16.0_wp*1100.0_wp*half**2), rounding, "a constant plate keeps alpha(0)")
+      call check_close(plate%alpha_rate(t), 0.0_wp, 0.0_wp, "and has no rate")
+      call new_plate(plate, sls, 0.0_wp, waves_none, error)
+      call success(error, "a plate without waves needs no thickness")
+      call check_close(plate%alpha(t), 0.0_wp, 0.0_wp, "it does not move")
+      call new_plate(plate, rigid, half, waves_relaxing, error)
+      call success(error, "a rigid plate is built")
+      call check_close(plate%alpha(t), 0.0_wp, 0.0_wp, "it does not move, either")
+      call new_plate(plate, steel, half, waves_relaxing, error)
+      call check_relative(plate%alpha(t), plate%alpha(0.0_wp), 0.0_wp, &
+         "elastic plates are constant")
+
+      call new_plate(plate, sls, 0.0_wp, waves_relaxing, error)
+      call check(allocated(error), "waves without a thickness are refused")
+      nothing = sls
+      nothing%density = 0.0_wp
+      call new_plate(plate, nothing, half, waves_constant, error)
+      call check(allocated(error), "waves without a density are refused")
+      call new_prony(nothing, 0.0_wp, none, none, 1.0_wp, error)
+      nothing%density = 1000.0_wp
+      call new_plate(plate, nothing, half, waves_constant, error)
+      call check(allocated(error), "waves in a dashpot are refused")
+   end subroutine test_plate
+
+   !> Footnote 2: 1/R = 1/r + 1/r_surface
+   subroutine test_radius()
+      real(wp), parameter :: r = 0.01_wp, t = 4.0e-4_wp
+      real(wp), parameter :: surface(3) = [0.0_wp, 0.03_wp, -0.03_wp]
+      real(wp), parameter :: hertz(3) = [0.01_wp, 0.0075_wp, 0.015_wp]
+      type(contact_modulus_t) :: modulus
+      type(plate_t) :: plate
+      type(impact_t) :: impact
+      type(error_t), allocatable :: error
+      real(wp) :: whole(1)
+      integer :: i
+
+      call new_contact_modulus(modulus, rigid, sls, .false., error)
+      call new_plate(plate, sls, 0.02_wp, waves_relaxing, error)
+      do i = 1, 3
+         call new_impact(impact, 5.0_wp, 0.03_wp, r, surface(i), modulus, plate, error)
+         call success(error, "an impact is built")
+         call check_relative(impact%hertz_factor, 4.0_wp/3.0_wp*sqrt(hertz(i)), rounding, &
+            "flat, convex, concave: the radius of Hertz")
+         call check_relative(impact%kernel(t), impact%hertz_factor*modulus%relaxation(t), &
+            rounding, "kernel of Eq. (5)")
+         whole = impact%kernel_step_integrals(t, 1)
+         call check_relative(whole(1), impact%hertz_factor*sls%integral(t)/0.75_wp, rounding, &
+            "and its integral")
+      end do
+      call check_relative(impact%initial_energy(), 0.375_wp, rounding, "energy m v^2/2")
+      call new_impact(impact, 5.0_wp, 0.03_wp, r, -0.01_wp, modulus, plate, error)
+      call check(allocated(error), "a hollow as narrow as the sphere is refused")
+      call new_impact(impact, 0.0_wp, 0.03_wp, r, 0.0_wp, modulus, plate, error)
+      call check(allocated(error), "no velocity is refused")
+      call new_impact(impact, 1.0_wp, -0.03_wp, r, 0.0_wp, modulus, plate, error)
+      call check(allocated(error), "a negative mass is refused")
+      call new_impact(impact, 1.0_wp, 0.03_wp, 0.0_wp, 0.0_wp, modulus, plate, error)
+      call check(allocated(error), "no radius is refused")
+   end subroutine test_radius
+
+   !> Time scale and Zener's parameter
+   subroutine test_time_scale()
+      type(impact_t) :: impact
+      type(prony_t) :: rubber
+      type(error_t), allocatable :: error
+      real(wp) :: scale, firmness, mass, whole(1)
+
+      call new_elastic(rubber, 15.0e6_wp, error)
+      rubber%density = 1100.0_wp
+      call rigid_on_plate(rubber, waves_relaxing, 10.0_wp, impact)
+      mass = 4.0_wp/3.0_wp*pi*1.0e-6_wp*7800.0_wp
+      firmness = 4.0_wp/3.0_wp*0.1_wp*15.0e6_wp/0.75_wp
+      scale = (mass/(firmness*sqrt(10.0_wp)))**0.4_wp
+      call check_relative(impact%time_scale(), scale, rounding, "T of an elastic contact")
+      call check_relative(impact%inelasticity(), mass/scale &
+         *sqrt(3.0_wp*1100.0_wp*0.75_wp/15.0e6_wp)/(16.0_wp*1100.0_wp*0.02_wp**2), &
+         rounding, "Zener's lambda = alpha(0) m/T")
+      call check_close(impact%inelasticity(), 0.138_wp, 1.0e-4_wp, "the paper's is 0.1380")
+      call check(impact%patience() > 100.0_wp*scale, "a contact may last")
+      call check_close(hertz_contact_time, 0.8_wp*sqrt(pi)*gamma(0.4_wp)/gamma(0.9_wp) &
+         *1.25_wp**0.4_wp, hertz_tolerance, "Hertz: contact time in units of T")
+
+      call rigid_on_plate(power_law, waves_relaxing, 10.0_wp, impact)
+      scale = impact%time_scale()
+      whole = impact%kernel_step_integrals(scale, 1)
+      call check_relative(scale, (mass*scale/(whole(1)*sqrt(10.0_wp)))**0.4_wp, scale_tolerance, &
+         "T with the mean kernel over T")
+      call check_close(impact%inelasticity(), 0.0_wp, 0.0_wp, "a singular kernel has lambda = 0")
+   end subroutine test_time_scale
+
+   !> Samples of a trajectory at equal steps
+   subroutine test_sample()
+      integer, parameter :: count = 200
+      ! interpolated between stages: two orders worse than at the nodes of an accuracy of 1e-8
+      real(wp), parameter :: interpolation = 1.0e-5_wp
+      type(impact_t) :: impact
+      type(ive_t) :: ive
+      type(product_t) :: product
+      type(trajectory_t) :: coarse, fine, series
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: sample(:, :), exact(:, :)
+      real(wp) :: largest, time
+      integer :: i, j
+
+      call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
+      call make_ive(1.0e-8_wp, ive)
+      call ive%solve(impact, coarse, error)
+      call coarse%sample(count, sample)
+      call check(lbound(sample, 2) == 0 .and. ubound(sample, 2) == count .and. &
+         size(sample, 1) == columns, "as many samples as wanted")
+      time = coarse%state(col_time, coarse%last)
+      do i = 0, count
+         call check_close(sample(col_time, i)/time, real(i, wp)/real(count, wp), rounding, &
+            "at equal steps of time")
+      end do
+      call check_close(sample(:, 0) - coarse%state(:, 0), 0.0_wp, 0.0_wp, "from the first node")
+      call check_close(sample(:, count) - coarse%state(:, coarse%last), 0.0_wp, 0.0_wp, &
+         "to the last node")
+      call make_ive(1.0e-10_wp, ive)
+      call ive%solve(impact, fine, error)
+      call fine%sample(count, exact)
+      do j = 2, columns
+         largest = maxval(abs(exact(j, :)))
+         call check_close(maxval(abs(sample(j, :) - exact(j, :)))/largest, 0.0_wp, interpolation, &
+            "the samples of two accuracies agree")
+      end do
+
+      call make_product(1.0e-5_wp, 1.0e-6_wp, product)
+      call product%solve(impact, series, error)
+      deallocate (sample)
+      call series%sample(count, sample)
+      call check(ubound(sample, 2) == series%last, "the nodes of a time series are its samples")
+      call check_close(maxval(abs(sample - series%state(:, 0:series%last))), 0.0_wp, 0.0_wp, &
+         "without any change")
+   end subroutine test_sample
+
+   !> A trajectory made by hand: F = F0 sin(pi t/t0), so that all integrals are known
+   subroutine test_outcome()
+      integer, parameter :: nodes = 4
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      complex(wp) :: modulus
+      integer :: i
+
+      call rigid_on_plate(sls, waves_relaxing, 2.0_wp, impact, mass=0.1_wp)
+      call trajectory%reserve(nodes)
+      trajectory%state = 0.0_wp
+      trajectory%last = nodes
+      trajectory%steps = 7
+      trajectory%weight = [1.0_wp, 4.0_wp, 2.0_wp, 4.0_wp, 1.0_wp]*1.0e-4_wp
+      do i = 0, nodes
+         trajectory%state(col_time, i) = 3.0e-4_wp*real(i, wp)
+         trajectory%state(col_force, i) = real(i*(nodes - i), wp)
+         trajectory%state(col_velocity, i) = 2.0_wp - 0.75_wp*real(i, wp)
+         trajectory%state(col_plate_velocity, i) = 0.125_wp*real(i, wp)
+         trajectory%state(col_sphere_velocity, i) = 2.0_wp - 0.625_wp*real(i, wp)
+      end do
+      trajectory%state(col_impulse, nodes) = 0.25_wp
+      trajectory%state(col_indentation, nodes) = 1.0e-4_wp
+      trajectory%max_indentation = 8.0e-4_wp
+      trajectory%time_of_max_indentation = 5.0e-4_wp
+      trajectory%max_force = 4.0_wp
+      trajectory%time_of_max_force = 6.0e-4_wp
+      trajectory%cor_error = 1.0e-9_wp
+
+      trajectory%status = contact_lasting
+      outcome = evaluate(impact, trajectory)
+      call check(outcome%status == contact_lasting, "a lasting contact is passed on")
+      call check(outcome%steps == 7, "the number of steps is passed on")
+      call check_relative(outcome%initial_energy, 0.2_wp, rounding, "initial energy")
+
+      trajectory%status = contact_separated
+      outcome = evaluate(impact, trajectory)
+      call check(outcome%status == contact_separated, "the separation is passed on")
+      call check_relative(outcome%cor, 0.5_wp, rounding, "cor = -s'/v0")
+      call check_relative(outcome%cor_sphere, 0.25_wp, rounding, "cor_sphere = I/(m v0) - 1")
+      call check_relative(outcome%contact_time, 1.2e-3_wp, rounding, "contact time")
+      call check_relative(outcome%max_indentation, 8.0e-4_wp, rounding, "largest indentation")
+      call check_relative(outcome%time_of_max_indentation, 5.0e-4_wp, rounding, "and its time")
+      call check_relative(outcome%max_force, 4.0_wp, rounding, "largest force")
+      call check_relative(outcome%time_of_max_force, 6.0e-4_wp, rounding, "and its time")
+      call check_relative(outcome%residual_indentation, 1.0e-4_wp, rounding, "residual indentation")
+      call check_relative(outcome%residual_ratio, 0.125_wp, rounding, "and its ratio")
+      ! sums by hand: F s' = 3*1.25 + 4*0.5 - 3*0.25 with weights 4, 2, 4; F U' = 3/8, 1, 9/8
+      call check_relative(outcome%hysteresis_energy, 16.0e-4_wp, rounding, "W_h = int F ds")
+      call check_relative(outcome%wave_energy, 8.0e-4_wp, rounding, "W_wave = int F dU")
+      call check_relative(outcome%final_energy, 0.0125_wp, rounding, "m z'^2/2")
+      call check_relative(outcome%energy_imbalance, 0.1875_wp - 24.0e-4_wp, rounding, &
+         "what the budget misses")
+      call check_relative(outcome%min_frequency, 2.0_wp*pi/1.2e-3_wp, rounding, "2 pi/t0")
+      call check_relative(outcome%inelasticity, impact%inelasticity(), 0.0_wp, "Zener's lambda")
+      modulus = sls%complex_modulus(cmplx(0.0_wp, outcome%min_frequency, wp))
+      call check_relative(outcome%loss_tangent, aimag(modulus)/real(modulus, wp), rounding, &
+         "loss tangent at 2 pi/t0")
+      call check_close(outcome%cor_error, 1.0e-9_wp, 0.0_wp, "the estimate of the error")
+   end subroutine test_outcome
+
+end program test_impact

@@ -1,0 +1,360 @@
+!> Both solvers: convergence, what a trajectory holds, contacts that do not end, refusals
+program test_solver
+   use vcor_error, only : error_input, error_t
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_plate, only : waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
+      columns, contact_lasting, contact_separated, contact_sticking, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_sls, prony_t
+   use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
+   use vcor_solver_ive, only : ive_t
+   use vcor_solver_product, only : product_t
+   use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
+      suite
+   use vcor_test_cases, only : make_ive, make_product, rigid_on_plate, run, success
+   implicit none
+
+   !> Sums and differences of the state, each rounded
+   real(wp), parameter :: rounding = 1.0e-13_wp
+   !> Integrals over the contact by the weights of the nodes, at default accuracies
+   real(wp), parameter :: ive_integral = 1.0e-8_wp, direct_integral = 1.0e-5_wp
+   !> cor of tests/reference/reference.csv: sls_v10, butyl_prony_v10 and elastic_v10
+   real(wp), parameter :: reference(3) = &
+      [0.4319868986470_wp, 0.2572184845344_wp, 0.7912870179168_wp]
+   !> cor of a pure power law of exponent 1/2 on a half space
+   real(wp), parameter :: power_law_cor = 0.28565312277610_wp
+   !> Order of product integration: u = s^1.5 at the start makes it 2.5
+   real(wp), parameter :: lowest_order = 2.0_wp, highest_order = 3.0_wp
+
+   type(impact_t) :: impact(3), singular
+   type(power_law_t) :: power_law
+
+   call suite("solver")
+   call make_impacts()
+   call test_ive_accuracy()
+   call test_product_order()
+   call test_product_accuracy()
+   call test_trajectory()
+   call test_repeatable()
+   call test_lasting()
+   call test_sticking()
+   call test_factory()
+   call finish()
+
+contains
+
+   !> The impacts of the paper at 10 m/s, and a pure power law
+   subroutine make_impacts()
+      type(prony_t) :: material
+      type(error_t), allocatable :: error
+
+      call new_sls(material, 15.0e6_wp, 300.0_wp, 1200.0_wp, error)
+      call rigid_on_plate(material, waves_relaxing, 10.0_wp, impact(1))
+      call new_prony(material, 10.421e6_wp, [20.181e6_wp, 38.204e6_wp, 87.344e6_wp], &
+         [972.0_wp, 6426.0_wp, 34221.0_wp], 0.0_wp, error)
+      call rigid_on_plate(material, waves_relaxing, 10.0_wp, impact(2))
+      call new_elastic(material, 15.0e6_wp, error)
+      call rigid_on_plate(material, waves_relaxing, 10.0_wp, impact(3))
+      call new_power_law(power_law, 0.0_wp, 7.0e5_wp, 0.5_wp, error)
+      call rigid_on_plate(power_law, waves_none, 10.0_wp, singular)
+      call success(error, "the materials are built")
+   end subroutine make_impacts
+
+   !> The error of internal variables is below the accuracy asked for, and more costs more steps
+   subroutine test_ive_accuracy()
+      type(ive_t) :: solver
+      type(outcome_t) :: outcome
+      real(wp) :: accuracy
+      integer :: i, digits, steps(3)
+
+      steps = 0
+      do digits = 4, 10
+         accuracy = 10.0_wp**(-digits)
+         call make_ive(accuracy, solver)
+         do i = 1, 3
+            call run(solver, impact(i), outcome)
+            call check(outcome%status == contact_separated, "the bodies separate")
+            call check_close(outcome%cor, reference(i), accuracy, &
+               "ive: the error is below the accuracy asked for")
+            call check(outcome%cor_error <= accuracy, "ive: by its own estimate as well")
+            if (digits == 10) call check(outcome%steps > steps(i), &
+               "ive: ten digits need more steps than four")
+            if (digits == 4) steps(i) = outcome%steps
+         end do
+      end do
+   end subroutine test_ive_accuracy
+
+   !> Product integration on steps that are halved
+   subroutine test_product_order()
+      call check_order(impact(1), reference(1), "sls")
+      call check_order(impact(2), reference(2), "butyl_prony")
+      call check_order(singular, power_law_cor, "power_law")
+   end subroutine test_product_order
+
+   !> Check the order of product integration
+   subroutine check_order(problem, cor, name)
+      !> The impact, lasting about a millisecond
+      type(impact_t), intent(in) :: problem
+      !> Its coefficient of restitution
+      real(wp), intent(in) :: cor
+      !> What to call it
+      character(len=*), intent(in) :: name
+
+      integer, parameter :: halvings = 3
+      type(product_t) :: solver
+      type(outcome_t) :: outcome
+      real(wp) :: error(0:halvings), order
+      integer :: i
+
+      do i = 0, halvings
+         call make_product(8.0e-6_wp/2.0_wp**i, 1.0_wp, solver)
+         call run(solver, problem, outcome)
+         error(i) = abs(outcome%cor - cor)
+         call check(error(i) <= 10.0_wp*outcome%cor_error .and. &
+            outcome%cor_error <= 100.0_wp*error(i), name//": the estimate of the error is honest")
+      end do
+      order = log(error(0)/error(halvings))/(real(halvings, wp)*log(2.0_wp))
+      call check(order >= lowest_order, name//": product integration is of order 2 at least")
+      call check_close(order, 0.5_wp*(lowest_order + highest_order), &
+         0.5_wp*(highest_order - lowest_order), name//": order of product integration")
+   end subroutine check_order
+
+   !> Product integration refines until its estimate meets the accuracy
+   subroutine test_product_accuracy()
+      type(product_t) :: solver
+      type(outcome_t) :: outcome
+      integer :: digits, i, steps
+
+      steps = 0
+      do digits = 3, 7
+         call make_product(0.0_wp, 10.0_wp**(-digits), solver)
+         do i = 1, 3
+            call run(solver, impact(i), outcome)
+            call check_close(outcome%cor, reference(i), 10.0_wp**(-digits), &
+               "product: the error is below the accuracy asked for")
+         end do
+         call run(solver, singular, outcome)
+         call check_close(outcome%cor, power_law_cor, 10.0_wp**(-digits), &
+            "product: also for a singular kernel")
+         call check(outcome%steps >= steps, "product: more digits need no fewer steps")
+         steps = outcome%steps
+      end do
+   end subroutine test_product_accuracy
+
+   !> What the columns of a trajectory have to do with each other
+   subroutine test_trajectory()
+      type(ive_t) :: ive
+      type(product_t) :: product
+
+      call make_ive(1.0e-8_wp, ive)
+      call check_trajectory(ive, impact(1), ive_integral, "ive")
+      call check_trajectory(ive, impact(2), ive_integral, "ive")
+      call make_product(0.0_wp, 1.0e-6_wp, product)
+      call check_trajectory(product, impact(1), direct_integral, "direct")
+      call check_trajectory(product, singular, direct_integral, "direct")
+   end subroutine test_trajectory
+
+   !> Check one trajectory
+   subroutine check_trajectory(solver, problem, tolerance, name)
+      !> The solver
+      class(solver_t), intent(in) :: solver
+      !> The impact
+      type(impact_t), intent(in) :: problem
+      !> Tolerance of integrals
+      real(wp), intent(in) :: tolerance
+      !> What to call it
+      character(len=*), intent(in) :: name
+
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: state(:, :), weight(:)
+      real(wp) :: largest
+      integer :: n
+
+      call solver%solve(problem, trajectory, error)
+      call success(error, name//": an impact is solved")
+      outcome = evaluate(problem, trajectory)
+      n = trajectory%last
+      ! copies, with node 0 the first: the arrays of a trajectory may be longer
+      allocate (state(columns, 0:n), weight(0:n))
+      state = trajectory%state(:, 0:n)
+      weight = trajectory%weight(0:n)
+      call check_close(state([col_time, col_indentation, col_force, col_impulse, col_sphere, &
+         col_plate], 0), 0.0_wp, 0.0_wp, name//": all is zero at first contact")
+      call check_relative(state([col_velocity, col_sphere_velocity], 0), problem%velocity, &
+         0.0_wp, name//": but the velocities")
+      call check(all(state(col_time, 1:n) > state(col_time, 0:n - 1)), name//": time goes on")
+      largest = maxval(abs(state(col_sphere, :)))
+      call check_close(maxval(abs(state(col_indentation, :) - state(col_sphere, :) &
+         + state(col_plate, :)))/largest, 0.0_wp, rounding, name//": s = z - U")
+      call check_close(maxval(abs(state(col_velocity, :) - state(col_sphere_velocity, :) &
+         + state(col_plate_velocity, :)))/problem%velocity, 0.0_wp, tolerance, &
+         name//": s' = z' - U'")
+      call check_close(maxval(abs(problem%mass*(problem%velocity &
+         - state(col_sphere_velocity, :)) - state(col_impulse, :)))/state(col_impulse, n), &
+         0.0_wp, rounding, name//": m (v0 - z') = I")
+      call check_close(maxval(abs(problem%plate%alpha(state(col_time, :)) &
+         *state(col_impulse, :) - state(col_plate, :)))/largest, 0.0_wp, rounding, &
+         name//": U = alpha I")
+      call check(all(state(col_force, 1:n - 1) > 0.0_wp), name//": the force presses")
+      call check_close(state(col_force, n)/outcome%max_force, 0.0_wp, tolerance, &
+         name//": and is zero at the end")
+      call check_relative(sum(weight*state(col_force, :)), state(col_impulse, n), tolerance, &
+         name//": the impulse is the integral of the force")
+      call check_relative(sum(weight*state(col_sphere_velocity, :)), state(col_sphere, n), &
+         tolerance, name//": z is the integral of z'")
+      call check_relative(sum(weight), state(col_time, n), tolerance, &
+         name//": the weights make up the contact time")
+      call check(outcome%max_indentation >= maxval(state(col_indentation, :)) &
+         *(1.0_wp - rounding), name//": no node is deeper than the largest indentation")
+      call check(outcome%max_force >= maxval(state(col_force, :))*(1.0_wp - rounding), &
+         name//": no force is larger than the largest")
+      call check(outcome%time_of_max_force < outcome%time_of_max_indentation, &
+         name//": the force is largest before the indentation")
+   end subroutine check_trajectory
+
+   !> A solver is not changed by what it solves
+   subroutine test_repeatable()
+      type(ive_t) :: solver
+      type(outcome_t) :: first, other, again
+
+      call make_ive(1.0e-8_wp, solver)
+      call run(solver, impact(1), first)
+      call run(solver, impact(2), other)
+      call run(solver, impact(1), again)
+      call check_close(again%cor, first%cor, 0.0_wp, "the same impact has the same outcome")
+      call check(abs(other%cor - first%cor) > 0.1_wp, "another one has another")
+   end subroutine test_repeatable
+
+   !> A contact that does not end within the time given
+   subroutine test_lasting()
+      real(wp), parameter :: too_short = 1.0e-3_wp, enough = 2.0e-3_wp
+      character(len=*), parameter :: method(2) = [character(len=6) :: "ive", "direct"]
+      type(solver_settings_t) :: settings
+      class(solver_t), allocatable :: solver
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      integer :: i
+
+      settings%scheme = "product"
+      do i = 1, 2
+         settings%method = trim(method(i))
+         settings%end_time = too_short
+         call new_solver(solver, settings, impact(1), error)
+         call success(error, settings%method//" is built")
+         call solver%solve(impact(1), trajectory, error)
+         call success(error, settings%method//": a short time is no error")
+         outcome = evaluate(impact(1), trajectory)
+         call check(outcome%status == contact_lasting, settings%method//": but its own status")
+         call check_close(outcome%cor, 0.0_wp, 0.0_wp, settings%method//": without an outcome")
+         ! product integration ends with a whole step
+         call check_relative(trajectory%state(col_time, trajectory%last), too_short, &
+            merge(1.0e-12_wp, 0.05_wp, i == 1), settings%method//": it ends when it is told to")
+         settings%end_time = enough
+         call new_solver(solver, settings, impact(1), error)
+         call run(solver, impact(1), outcome)
+         call check_close(outcome%cor, reference(1), 1.0e-6_wp, &
+            settings%method//": a longer time changes nothing")
+      end do
+   end subroutine test_lasting
+
+   !> A sphere that falls into a fluid does not come back
+   subroutine test_sticking()
+      type(prony_t) :: fluid
+      type(impact_t) :: fall
+      type(ive_t) :: ive
+      type(product_t) :: product
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      call new_sls(fluid, 15.0e6_wp, 0.0_wp, 1.0e5_wp, error)
+      call success(error, "a Maxwell fluid is built")
+      call rigid_on_plate(fluid, waves_none, 1.0_wp, fall)
+      call make_ive(1.0e-8_wp, ive)
+      call run(ive, fall, outcome)
+      call check(outcome%status == contact_sticking .or. outcome%status == contact_lasting, &
+         "ive: in a Maxwell fluid that relaxes fast the sphere sticks")
+      call make_product(0.0_wp, 1.0e-6_wp, product)
+      call run(product, fall, outcome)
+      call check(outcome%status == contact_sticking .or. outcome%status == contact_lasting, &
+         "direct: in a Maxwell fluid that relaxes fast the sphere sticks")
+   end subroutine test_sticking
+
+   !> Solvers by name
+   subroutine test_factory()
+      type(cerf_t) :: cerf
+      type(impact_t) :: general
+      type(solver_settings_t) :: settings
+      class(solver_t), allocatable :: solver
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      settings%scheme = "product"
+      settings%method = "auto"
+      call check_text(method_for(impact(1), "auto", "product"), "ive", "auto is ive for an SLS")
+      call check_text(method_for(singular, "auto", "product"), "direct", &
+         & "auto is direct for a power law")
+      call check_text(method_for(impact(1), "direct", "product"), "direct", &
+         & "what is asked for is taken")
+      call check_text(method_for(impact(1), "auto", "adams_bashforth"), "direct", &
+         & "auto is direct for the scheme of the paper")
+      call new_solver(solver, settings, singular, error)
+      call success(error, "auto solves a power law")
+      call run(solver, singular, outcome)
+      call check_close(outcome%cor, power_law_cor, 1.0e-6_wp, "to six digits")
+      call new_solver(solver, settings, impact(1), error)
+      call run(solver, impact(1), outcome)
+      call check_close(outcome%cor, reference(1), 1.0e-8_wp, "and an SLS to eight")
+      settings%method = "direct"
+      settings%time_step = 1.0e-6_wp
+      call new_solver(solver, settings, impact(1), error)
+      call run(solver, impact(1), outcome)
+      call check(outcome%steps == 1342, "the time step is taken: t0 = 1341.5 us")
+      settings%time_step = 0.0_wp
+
+      call new_cerf(cerf, 8.0e6_wp, 6.0e8_wp, 300.0_wp, error)
+      call rigid_on_plate(cerf, waves_relaxing, 10.0_wp, general)
+      settings%method = "ive"
+      call new_solver(solver, settings, general, error)
+      call refused(error, "ive for a CERF material", "direct")
+      call check(.not. allocated(solver), "then there is no solver")
+      call new_solver(solver, settings, singular, error)
+      call refused(error, "ive for a power law", "direct")
+      call make_ive(1.0e-8_wp, ive)
+      call ive%solve(general, trajectory, error)
+      call refused(error, "ive without asking the factory", "direct")
+
+      settings%method = "magic"
+      call new_solver(solver, settings, impact(1), error)
+      call refused(error, "an unknown method", "auto, ive, direct")
+      settings%method = "direct"
+      settings%scheme = "magic"
+      call new_solver(solver, settings, impact(1), error)
+      call refused(error, "an unknown scheme", "product")
+   end subroutine test_factory
+
+   !> Check that something was refused as bad input
+   subroutine refused(error, what, remedy)
+      !> The error
+      type(error_t), allocatable, intent(in) :: error
+      !> What was refused
+      character(len=*), intent(in) :: what
+      !> What the message must name
+      character(len=*), intent(in) :: remedy
+
+      call check(allocated(error), what//" is refused")
+      if (.not. allocated(error)) return
+      call check(error%code == error_input, what//" is an error of the input")
+      call check_contains(error%message, remedy, what//": the message says what works")
+   end subroutine refused
+
+end program test_solver
