@@ -23,12 +23,10 @@ module vcor_impact_plate
       private
       !> One of the `waves_*` constants
       integer :: waves = waves_none
-      !> sqrt(3 rho)/(16 rho h^2), so that alpha = coefficient/sqrt(E'_b) [m^2.5 s/kg^1.5 ..]
+      !> sqrt(3 rho (1 - nu^2))/(16 rho h^2), so that alpha = coefficient/sqrt(E_b) [Pa^0.5 m/(N s)]
       real(wp) :: coefficient = 0.0_wp
       !> alpha(0) [m/(N s)]
       real(wp) :: initial = 0.0_wp
-      !> Factor from E_b to E'_b [-]
-      real(wp) :: factor = 1.0_wp
       !> Material of a plate whose alpha varies, otherwise not allocated
       class(material_t), allocatable :: material
    contains
@@ -36,6 +34,8 @@ module vcor_impact_plate
       procedure :: alpha
       !> d alpha/dt
       procedure :: alpha_rate
+      !> Both
+      procedure :: alpha_and_rate
       !> Whether the plate is the frozen one and differs from the relaxing one
       procedure :: frozen
    end type plate_t
@@ -66,9 +66,9 @@ contains
       end if
       if (allocated(error)) return
 
-      self%coefficient = sqrt(3.0_wp*material%density)/(16.0_wp*material%density*half_thickness**2)
-      self%factor = material%plane_strain_factor()
-      self%initial = self%coefficient/sqrt(self%factor*material%glassy())
+      self%coefficient = sqrt(3.0_wp*material%density/material%plane_strain_factor()) &
+         /(16.0_wp*material%density*half_thickness**2)
+      self%initial = self%coefficient/sqrt(material%glassy())
       self%waves = waves
       ! an elastic plate is a constant one
       if (waves /= waves_constant .and. material%glassy() > material%rubbery()) &
@@ -86,8 +86,7 @@ contains
 
       if (allocated(self%material)) then
          ! a modulus that has decayed to nothing is kept off zero: the plate then gives way at once
-         value = self%coefficient &
-            /sqrt(max(self%factor*self%material%relaxation(t), tiny(1.0_wp)))
+         value = self%coefficient/sqrt(max(self%material%relaxation(t), tiny(1.0_wp)))
       else
          value = self%initial
       end if
@@ -112,9 +111,32 @@ contains
       !> Rate [m/(N s^2)], >= 0
       real(wp) :: value
 
-      value = 0.0_wp
-      if (allocated(self%material)) value = -0.5_wp*self%alpha(t)*self%material%rate(t) &
-         /max(self%material%relaxation(t), tiny(1.0_wp))
+      real(wp) :: alpha
+
+      call self%alpha_and_rate(t, alpha, value)
    end function alpha_rate
+
+   !> Plate parameter and its rate
+   elemental subroutine alpha_and_rate(self, t, alpha, rate)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Time since first contact [s], t > 0
+      real(wp), intent(in) :: t
+      !> Deflection per impulse [m/(N s)]
+      real(wp), intent(out) :: alpha
+      !> Its rate [m/(N s^2)], >= 0
+      real(wp), intent(out) :: rate
+
+      real(wp) :: inverse
+
+      if (allocated(self%material)) then
+         inverse = 1.0_wp/max(self%material%relaxation(t), tiny(1.0_wp))
+         alpha = self%coefficient*sqrt(inverse)
+         rate = -0.5_wp*alpha*self%material%rate(t)*inverse
+      else
+         alpha = self%initial
+         rate = 0.0_wp
+      end if
+   end subroutine alpha_and_rate
 
 end module vcor_impact_plate

@@ -20,6 +20,8 @@ module vcor_material_power_law
       real(wp) :: coefficient = 0.0_wp
       !> Exponent a
       real(wp) :: exponent = 0.5_wp
+      !> C/Gamma(1 - a) [Pa s^a]
+      real(wp) :: factor = 0.0_wp
    contains
       procedure :: relaxation
       procedure :: rate
@@ -56,6 +58,7 @@ contains
       self%equilibrium = equilibrium
       self%coefficient = coefficient
       self%exponent = exponent
+      self%factor = coefficient/gamma(1.0_wp - exponent)
    end subroutine new_power_law
 
    !> Relaxation modulus E(t), infinite at t = 0
@@ -68,8 +71,7 @@ contains
       real(wp) :: value
 
       if (t > 0.0_wp) then
-         value = self%equilibrium &
-            + self%coefficient*t**(-self%exponent)/gamma(1.0_wp - self%exponent)
+         value = self%equilibrium + self%factor*t**(-self%exponent)
       else
          value = ieee_value(1.0_wp, ieee_positive_inf)
       end if
@@ -85,14 +87,13 @@ contains
       real(wp) :: value
 
       if (t > 0.0_wp) then
-         value = -self%exponent*self%coefficient*t**(-self%exponent - 1.0_wp) &
-            /gamma(1.0_wp - self%exponent)
+         value = -self%exponent*self%factor*t**(-self%exponent - 1.0_wp)
       else
          value = ieee_value(1.0_wp, ieee_negative_inf)
       end if
    end function rate
 
-   !> Integral of E from 0 to t: E_0 t + C t^(1-a)/Gamma(2 - a)
+   !> Integral of E from 0 to t: E_0 t + C t^(1-a)/((1 - a) Gamma(1 - a))
    elemental function integral(self, t) result(value)
       !> The material
       class(power_law_t), intent(in) :: self
@@ -102,7 +103,7 @@ contains
       real(wp) :: value
 
       value = self%equilibrium*t &
-         + self%coefficient*t**(1.0_wp - self%exponent)/gamma(2.0_wp - self%exponent)
+         + self%factor*t**(1.0_wp - self%exponent)/(1.0_wp - self%exponent)
    end function integral
 
    !> Complex modulus E_0 + C s^a, the transform of Eq. (23)

@@ -200,8 +200,7 @@ contains
             call make_room()
          end if
          t = dt*real(n, wp)
-         alpha = impact%plate%alpha(t)
-         alpha_rate = impact%plate%alpha_rate(t)
+         call impact%plate%alpha_and_rate(t, alpha, alpha_rate)
          rule = dt*adams_moulton
          if (n == 1 .or. 1.5_wp*sqrt(abs(s))*dt*(alpha*stiffness + viscosity/impact%mass) > stiff) &
             rule = dt*trapezoid
