@@ -6,10 +6,10 @@ module vcor_app_driver
    use vcor_app_help, only : help_text
    use vcor_app_screen, only : report, short
    use vcor, only : build_impact, build_solver, case_t, contact_lasting, contact_separated, &
-      error_input, error_numerical, error_t, evaluate, history_table, impact_t, integer_text, &
-      join_path, make_directory, method_for, outcome_t, override, quantities, quantity_value, &
-      raise, read_case, real_text, same_file, solver_t, status_name, summary_table, table_t, &
-      trajectory_t, version, write_csv, write_hdf5, write_stdout
+      default_accuracy, error_input, error_numerical, error_t, evaluate, history_table, impact_t, &
+      integer_text, join_path, make_directory, method_for, outcome_t, override, quantities, &
+      quantity_value, raise, read_case, real_text, same_file, solver_t, status_name, &
+      summary_table, table_t, trajectory_t, version, wp, write_csv, write_hdf5, write_stdout
    implicit none
    private
 
@@ -93,10 +93,25 @@ contains
       call prepare(request, jobs, error)
       if (allocated(error)) return
       do i = 1, size(jobs)
-         call write_stdout(jobs(i)%case%to_text(complete=.true., remarks=.true.), error)
+         call write_stdout(jobs(i)%case%to_text(complete=.true., remarks=.true.)//chosen(jobs(i)), &
+            error)
          if (allocated(error)) return
       end do
    end subroutine check
+
+   !> What the program chooses where the case says nothing, as comments
+   function chosen(job) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Lines
+      character(len=:), allocatable :: text
+
+      text = new_line('a')//'! method: '//job%method//new_line('a')
+      if (.not. job%case%given('solver', 'accuracy')) text = text//'! accuracy: ' &
+         //short(default_accuracy(job%method))//new_line('a')
+      if (.not. job%case%given('sphere', 'mass')) text = text//'! mass of the sphere: ' &
+         //real_text(job%impact%mass)//' kg'//new_line('a')
+   end function chosen
 
    !> Run cases. All are read and validated before the first one runs, so that a mistake in the
    !> last does not come after hours
@@ -246,10 +261,45 @@ contains
          call write_stdout(numbers(request%names, outcome)//new_line('a'), trouble)
       else if (.not. request%quiet) then
          call write_stdout(report(job%case%source, title, job%method, outcome, &
-            trajectory%state(1, trajectory%last), files), trouble)
+            trajectory%state(1, trajectory%last), remarks_on(job, outcome)//files), trouble)
       end if
       if (allocated(trouble)) call move_alloc(trouble, error)
    end subroutine run_job
+
+   !> Remarks on an outcome that is beyond what the model is made for
+   function remarks_on(job, outcome) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Lines
+      character(len=:), allocatable :: text
+
+      real(wp) :: radius, half_thickness
+
+      text = ''
+      if (outcome%status /= contact_separated) return
+      call job%case%get('sphere', 'radius', radius)
+      if (outcome%max_indentation > radius) call add("the indentation exceeds the sphere's " &
+         //"radius: Hertz's contact does not apply")
+      if (job%case%given('plate', 'half_thickness')) then
+         call job%case%get('plate', 'half_thickness', half_thickness)
+         if (outcome%max_indentation > 2.0_wp*half_thickness) &
+            call add('the indentation exceeds the thickness of the plate')
+      end if
+      if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
+         //'(cor_sphere below zero): the plate has run away from it')
+
+   contains
+
+      !> One line
+      subroutine add(line)
+         !> The remark
+         character(len=*), intent(in) :: line
+
+         text = text//'  note: '//line//new_line('a')
+      end subroutine add
+   end function remarks_on
 
    !> An impact without separation has no coefficient of restitution: say why
    subroutine end_of(job, outcome, trajectory, error)
@@ -268,12 +318,13 @@ contains
       time = short(trajectory%state(1, trajectory%last))
       if (outcome%status == contact_lasting) then
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
-            //'within '//time//' s: give a longer solver.end_time, with method direct a longer ' &
-            //'solver.time_step as well')
+            //'within '//time//' s: give a longer solver.end_time; with method direct a ' &
+            //'contact shorter than its steps is missed, give a shorter solver.time_step')
       else
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
-            //time//' s all motion has died out in contact, a material without equilibrium ' &
-            //'modulus does not push it back')
+            //time//' s all motion has died out in contact; the plate takes up the blow ' &
+            //'(inelasticity '//short(job%impact%inelasticity())//') or the material, without ' &
+            //'equilibrium modulus, does not push it back')
       end if
    end subroutine end_of
 

@@ -28,7 +28,7 @@ contains
       type(outcome_t), intent(in) :: outcome
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
-      !> Files written, one to a line
+      !> Remarks and files written, one to a line
       character(len=*), intent(in) :: files
       !> Text of several lines
       character(len=:), allocatable :: text

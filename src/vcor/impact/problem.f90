@@ -15,7 +15,7 @@ module vcor_impact_problem
    private
 
    public :: impact_t, new_impact
-   public :: hertz_contact_time
+   public :: hertz, hertz_contact_time
 
    !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
    !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
@@ -46,6 +46,8 @@ module vcor_impact_problem
       procedure :: kernel_viscosity
       !> Time scale of the contact
       procedure :: time_scale
+      !> Time scale of the fastest motion
+      procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
       procedure :: patience
       !> Zener's parameter lambda
@@ -55,6 +57,17 @@ module vcor_impact_problem
    end type impact_t
 
 contains
+
+   !> Hertz's u = s^1.5, continued oddly: past the end of an elastic contact s is negative, and
+   !> the force with it
+   elemental function hertz(s) result(u)
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> u [m^1.5]
+      real(wp) :: u
+
+      u = s*sqrt(abs(s))
+   end function hertz
 
    !> Build an impact
    pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, error)
@@ -185,6 +198,22 @@ contains
       end do
       scale = guess
    end function time_scale
+
+   !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
+   !> that relaxes before it is over can be shorter than its time scale
+   pure function fast_time_scale(self) result(scale)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time scale [s]
+      real(wp) :: scale
+
+      real(wp) :: firmness
+
+      scale = self%time_scale()
+      firmness = self%hertz_factor*self%modulus%glassy()
+      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
+         scale = min(scale, (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp)
+   end function fast_time_scale
 
    !> Time after which a contact counts as lasting where the user gives none: a thousand time
    !> scales, those of the rubbery modulus if there is one

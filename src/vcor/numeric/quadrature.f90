@@ -5,7 +5,11 @@ module vcor_numeric_quadrature
    implicit none
    private
 
-   public :: endpoint_rule, fourier_rule
+   public :: endpoint_rule, fourier_rule, newton_cotes
+
+   !> Closed Newton-Cotes rule of nine points on (0, 1)
+   real(wp), parameter :: newton_cotes(0:8) = [989.0_wp, 5888.0_wp, -928.0_wp, 10496.0_wp, &
+      -4540.0_wp, 10496.0_wp, -928.0_wp, 5888.0_wp, 989.0_wp]/28350.0_wp
 
 contains
 

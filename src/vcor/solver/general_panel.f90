@@ -11,12 +11,12 @@
 !> frozen plate has U' = int alpha F' dt = alpha F - Z with Z' = alpha' F, hence
 !> U = U_n - Z_n (t - t_n) + H alpha F - H^2 alpha' F.
 module vcor_solver_general_panel
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : solve_linear
-   use vcor_solver_panel, only : hertz, panel_t, resolve_modes, start_t
+   use vcor_solver_panel, only : panel_t, resolve_modes, start_t
    implicit none
    private
 

@@ -2,7 +2,7 @@
 module vcor_solver_history
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_quadrature, only : endpoint_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    implicit none
    private
 
@@ -24,10 +24,7 @@ contains
       !> Weights [N/m^1.5], shape (0:n-1)
       real(wp) :: weight(0:n - 1)
 
-      integer, parameter :: near = 16, parts = 8
-      ! closed Newton-Cotes rule of nine points
-      real(wp), parameter :: cotes(0:parts) = [989.0_wp, 5888.0_wp, -928.0_wp, 10496.0_wp, &
-         -4540.0_wp, 10496.0_wp, -928.0_wp, 5888.0_wp, 989.0_wp]/28350.0_wp
+      integer, parameter :: near = 16, parts = ubound(newton_cotes, 1)
       real(wp) :: mean(0:n), part(0:near*parts - 1), integral(0:parts), moment(0:n - 1)
       real(wp), allocatable :: node(:), share(:)
       integer :: i, j
@@ -43,7 +40,7 @@ contains
          do j = 1, parts
             integral(j) = integral(j - 1) + part(i*parts + j - 1)
          end do
-         moment(i) = (sum(cotes*integral) - 0.5_wp*integral(parts))/dt
+         moment(i) = (sum(newton_cotes*integral) - 0.5_wp*integral(parts))/dt
       end do
       do i = near, n - 1
          moment(i) = (mean(i - 1) - mean(i + 1))/24.0_wp

@@ -1,11 +1,11 @@
 !> End of the contact in the internal-variable method
 module vcor_solver_landing
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_collocator, only : collocator_t, guess, newton_tolerance, plate_velocity, &
       solve_step
-   use vcor_solver_panel, only : hertz, panel_t, start_t
+   use vcor_solver_panel, only : panel_t, start_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private

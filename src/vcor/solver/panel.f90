@@ -12,7 +12,7 @@
 !> What is left is s = v0 t - J/m - alpha I with I = I_n + H F and J = J_n + H I, one nonlinear
 !> system for the stage values of s, whatever the number of internal variables.
 module vcor_solver_panel
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
@@ -21,7 +21,7 @@ module vcor_solver_panel
    private
 
    public :: panel_t, start_t
-   public :: solve_panel, resolve_modes, advance_modes, hertz
+   public :: solve_panel, resolve_modes, advance_modes
 
    !> State at the start of a panel
    type :: start_t
@@ -75,17 +75,6 @@ module vcor_solver_panel
    end type panel_t
 
 contains
-
-   !> Hertz's u = s^1.5, continued oddly: past the end of an elastic contact s is negative, and
-   !> the force with it
-   elemental function hertz(s) result(u)
-      !> Indentation [m]
-      real(wp), intent(in) :: s
-      !> u [m^1.5]
-      real(wp) :: u
-
-      u = s*sqrt(abs(s))
-   end function hertz
 
    !> Position of a time in the panel: the root of the quadratic map in its stable form
    pure function theta(self, time)

@@ -88,13 +88,16 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: first_steps = 64
+      real(wp), parameter :: least_part = 32.0_wp
       real(wp) :: dt, cor(3)
       integer :: level
 
       if (self%time_step > 0.0_wp) then
          dt = 4.0_wp*self%time_step
       else
-         dt = hertz_contact_time*impact%time_scale()/real(first_steps, wp)
+         ! a glassy modulus that lasts for no time at all is no reason for tiny steps
+         dt = hertz_contact_time/real(first_steps, wp)*max(impact%fast_time_scale(), &
+            impact%time_scale()/least_part)
          ! the last step ends where the computation is to end
          if (self%end_time > 0.0_wp) &
             dt = self%end_time/real(ceiling(min(self%end_time/dt, real(most_steps, wp))), wp)

@@ -15,7 +15,7 @@ module vcor_solver_second_term
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_dot, only : dot
-   use vcor_numeric_quadrature, only : endpoint_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    implicit none
    private
 
@@ -78,10 +78,7 @@ contains
       !> Means [N/m^1.5], shape (0:n-1)
       real(wp) :: mean(0:n - 1)
 
-      integer, parameter :: near = 16, parts = 8
-      ! closed Newton-Cotes rule of nine points
-      real(wp), parameter :: cotes(0:parts) = [989.0_wp, 5888.0_wp, -928.0_wp, 10496.0_wp, &
-         -4540.0_wp, 10496.0_wp, -928.0_wp, 5888.0_wp, 989.0_wp]/28350.0_wp
+      integer, parameter :: near = 16, parts = ubound(newton_cotes, 1)
       real(wp) :: w(0:n + 1), part(0:(near + 2)*parts - 1), step(0:parts)
       real(wp), allocatable :: node(:), share(:)
       integer :: i, j
@@ -95,7 +92,7 @@ contains
          do j = 0, parts
             step(j) = sum(part(i*parts + j:(i + 1)*parts + j - 1))
          end do
-         mean(i) = sum(cotes*step)
+         mean(i) = sum(newton_cotes*step)
       end do
       do i = near, n - 1
          mean(i) = (13.0_wp*(w(i) + w(i + 1)) - w(i - 1) - w(i + 2))/24.0_wp

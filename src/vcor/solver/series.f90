@@ -1,6 +1,6 @@
 !> Evaluation of a solution on equal time steps: end of contact, quadrature weights, peaks
 module vcor_solver_series
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : hertz, impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       trajectory_t
@@ -112,16 +112,6 @@ contains
 
       y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
    end function parabola
-
-   !> u = s^1.5, continued oddly
-   elemental function hertz(s) result(u)
-      !> Indentation [m]
-      real(wp), intent(in) :: s
-      !> u [m^1.5]
-      real(wp) :: u
-
-      u = s*sqrt(abs(s))
-   end function hertz
 
    !> Weights for integrals over the contact: trapezoids on the equal steps with both ends corrected
    !> by the first difference, with a dashpot the start for integrands in powers of t^(1/2); on the

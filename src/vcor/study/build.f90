@@ -86,6 +86,8 @@ contains
 
       call case%get('solver', 'method', settings%method)
       call case%get('solver', 'scheme', settings%scheme)
+      call case%get('solver', 'form', settings%form)
+      call case%get('solver', 'quadrature', settings%quadrature)
       settings%time_step = number(case, 'solver', 'time_step')
       settings%end_time = number(case, 'solver', 'end_time')
       settings%accuracy = number(case, 'solver', 'accuracy')

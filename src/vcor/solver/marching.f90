@@ -1,0 +1,308 @@
+!> The paper's own scheme: explicit time marching, Section V of Green's paper
+!>
+!> The sums leave an error of order dt with rectangles. With trapezoids it is of order dt^2, but for
+!> a small term of order dt^1.5 from the start, u' ~ sqrt(t). The capped kernel t^-a leaves one of
+!> order dt^(1-a). The scheme is stable for small steps only,
+!> `vcor_solver_stability` says how small: a run in which the oscillation from step to step grows
+!> is refused.
+module vcor_solver_marching
+   use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_trajectory, only : col_indentation, col_time, col_velocity, contact_separated, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_solver_march, only : capped, march, scheme_t, stable_damping
+   use vcor_solver_product, only : new_product, product_t
+   use vcor_solver_type, only : solver_t
+   implicit none
+   private
+
+   public :: marching_t, new_marching
+
+   !> The paper's time marching
+   type, extends(solver_t) :: marching_t
+      private
+      !> Time step [s]; 0: a part of the expected contact time
+      real(wp) :: time_step = 0.0_wp
+      !> Scheme but for its step
+      type(scheme_t) :: scheme
+      !> Go on after the separation
+      logical :: ghost = .false.
+   contains
+      procedure :: solve
+   end type marching_t
+
+contains
+
+   !> Build the solver
+   pure subroutine new_marching(self, time_step, end_time, form, quadrature, error, &
+                                second_coefficient, ghost)
+      !> The solver
+      type(marching_t), intent(out) :: self
+      !> Time step [s]; 0: a 3000th of the expected contact time
+      real(wp), intent(in) :: time_step
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp), intent(in) :: end_time
+      !> Form of Eq. (8): a or b
+      character(len=*), intent(in) :: form
+      !> Sums: rectangle or trapezoid
+      character(len=*), intent(in) :: quadrature
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> Coefficient of the second term of the Volterra series [m^-1.5]; absent: without it
+      real(wp), intent(in), optional :: second_coefficient
+      !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
+      logical, intent(in), optional :: ghost
+
+      if (form /= 'a' .and. form /= 'b') then
+         call raise(error, error_input, "unknown form '"//form//"'; known: a, b")
+      else if (quadrature /= 'rectangle' .and. quadrature /= 'trapezoid') then
+         call raise(error, error_input, "unknown quadrature '"//quadrature &
+            //"'; known: rectangle, trapezoid")
+      end if
+      if (allocated(error)) return
+
+      self%time_step = time_step
+      self%scheme%end_time = end_time
+      self%scheme%form = form
+      self%scheme%share = 1.0_wp
+      if (quadrature == 'trapezoid') self%scheme%share = 0.5_wp
+      if (present(second_coefficient)) self%scheme%second_coefficient = second_coefficient
+      if (present(ghost)) self%ghost = ghost
+   end subroutine new_marching
+
+   !> Compute the course of an impact, with the error estimated from runs with longer steps
+   subroutine solve(self, impact, trajectory, error)
+      !> The solver
+      class(marching_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: usual_steps = 3000, fewest_steps = 40
+      real(wp) :: dt, contact_time
+
+      call refuse(self, impact, error)
+      if (allocated(error)) return
+      contact_time = hertz_contact_time*impact%time_scale()
+      dt = self%time_step
+      if (.not. dt > 0.0_wp) dt = contact_time/real(usual_steps, wp)
+      ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
+      if (.not. real(fewest_steps, wp)*dt < contact_time) then
+         call raise(error, error_numerical, 'solver.time_step is '//in_seconds(dt)//', too long ' &
+            //'for a contact expected to last '//in_seconds(contact_time)//': at most ' &
+            //in_seconds(contact_time/real(fewest_steps, wp)))
+         return
+      end if
+      call run(self, impact, dt, self%ghost, trajectory, error)
+      if (allocated(error)) return
+      if (trajectory%status == contact_separated) &
+         trajectory%cor_error = error_of_cor(self, impact, dt, cor_of(impact, trajectory))
+   end subroutine solve
+
+   !> Say what the scheme cannot do
+   subroutine refuse(self, impact, error)
+      !> The solver
+      type(marching_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_input`, unallocated if all is well
+      type(error_t), allocatable, intent(out) :: error
+
+      ! k' that is infinite at 0 grows by a power of the time on the way there
+      real(wp), parameter :: early = 1.0e-12_wp, noticeable = 1.01_wp
+      type(exponential_sum_t) :: terms
+      real(wp) :: time
+      logical :: exact
+
+      if (impact%kernel_viscosity() > 0.0_wp) then
+         call raise(error, error_input, "scheme = 'adams_bashforth' has no term for a viscosity; " &
+            //"use scheme = 'product' or method = 'ive'")
+      else if (self%scheme%form == 'b') then
+         time = early*impact%time_scale()
+         if (impact%modulus%glassy() > huge(1.0_wp)) then
+            call raise(error, error_input, "form = 'b' needs a finite modulus at t = 0, which " &
+               //"this contact does not have; use form = 'a'")
+         else if (abs(impact%modulus%rate(time)) &
+                  > noticeable*abs(impact%modulus%rate(4.0_wp*time))) then
+            call raise(error, error_input, "form = 'b' needs a modulus with a finite rate at " &
+               //"t = 0, which this contact does not have; use form = 'a'")
+         else if (abs(self%scheme%second_coefficient) > 0.0_wp) then
+            call impact%kernel_exponentials(terms, exact)
+            if (.not. exact) call raise(error, error_input, "the second Volterra term in form = " &
+               //"'b' needs a modulus that is a sum of exponentials; use form = 'a'")
+         end if
+      end if
+   end subroutine refuse
+
+   !> One run, its failures as errors
+   subroutine run(self, impact, dt, ghost, trajectory, error)
+      !> The solver
+      type(marching_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Go on after the separation
+      logical, intent(in) :: ghost
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: stable, complete
+
+      call march(self%scheme, impact, dt, ghost, trajectory, stable, complete)
+      if (.not. stable) then
+         call raise(error, error_numerical, "scheme = 'adams_bashforth' is unstable with " &
+            //'solver.time_step = '//in_seconds(dt)//': the largest stable one is about ' &
+            //in_seconds(stable_step(self, impact, dt)))
+      else if (.not. complete) then
+         call raise(error, error_numerical, 'no end of the contact within the largest number of ' &
+            //"steps of scheme = 'adams_bashforth': give a longer solver.time_step")
+      end if
+   end subroutine run
+
+   !> Coefficient of restitution
+   pure function cor_of(impact, trajectory) result(cor)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(in) :: trajectory
+      !> -s'(t0)/v0 [-]
+      real(wp) :: cor
+
+      cor = -trajectory%state(col_velocity, trajectory%last)/impact%velocity
+   end function cor_of
+
+   !> Error of the coefficient of restitution, by Richardson's extrapolation from runs with two and
+   !> four times the step and the order that they show, between that of the capped kernel or of
+   !> rectangles and two; with half the step where longer ones are unstable
+   function error_of_cor(self, impact, dt, cor) result(estimate)
+      !> The solver
+      type(marching_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Coefficient of restitution with this step
+      real(wp), intent(in) :: cor
+      !> Estimate [-]
+      real(wp) :: estimate
+
+      real(wp), parameter :: smallest_ratio = 1.1_wp, best_ratio = 8.0_wp
+      real(wp) :: coarse(2), fine, least, ratio
+      logical :: known
+      integer :: i
+
+      ! 2^order, at its least: k(dt)/k(2 dt) = 2^a makes it 1 - a
+      least = 2.0_wp
+      if (capped(impact)) least = max(smallest_ratio, &
+         2.0_wp*impact%kernel(2.0_wp*dt)/impact%kernel(dt))
+
+      do i = 1, 2
+         call attempt(2.0_wp**i*dt, coarse(i), known)
+         if (.not. known) exit
+      end do
+      select case (i)
+      case (3)
+         ! where the last two agree by chance, the first two tell
+         estimate = max(abs(coarse(1) - cor), abs(coarse(2) - coarse(1))/best_ratio)
+         ratio = 4.0_wp
+         if (estimate > 0.0_wp) ratio = abs(coarse(2) - coarse(1))/estimate
+         estimate = estimate/(min(max(ratio, least), 4.0_wp) - 1.0_wp)
+      case (2)
+         estimate = abs(coarse(1) - cor)/(least - 1.0_wp)
+      case default
+         call attempt(0.5_wp*dt, fine, known)
+         estimate = abs(cor)
+         if (known) estimate = abs(cor - fine)*least/(least - 1.0_wp)
+      end select
+
+   contains
+
+      !> Coefficient of restitution with another step
+      subroutine attempt(step, value, known)
+         !> Time step [s]
+         real(wp), intent(in) :: step
+         !> Coefficient of restitution
+         real(wp), intent(out) :: value
+         !> Whether there is one
+         logical, intent(out) :: known
+
+         type(trajectory_t) :: trajectory
+         logical :: stable, complete
+
+         value = 0.0_wp
+         call march(self%scheme, impact, step, .false., trajectory, stable, complete)
+         known = stable .and. complete .and. trajectory%status == contact_separated
+         if (known) value = cor_of(impact, trajectory)
+      end subroutine attempt
+   end function error_of_cor
+
+   !> Largest stable time step, estimated along a course that product integration computes: it is
+   !> stable with any step
+   function stable_step(self, impact, dt) result(step)
+      !> The solver
+      type(marching_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> An unstable time step [s]
+      real(wp), intent(in) :: dt
+      !> Estimate [s]
+      real(wp) :: step
+
+      real(wp), parameter :: accuracy = 1.0e-3_wp
+      integer, parameter :: halvings = 100, bisections = 10
+      type(product_t) :: product
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+      real(wp) :: damping, lower, upper
+      integer :: i
+
+      call new_product(product, 0.0_wp, accuracy, self%scheme%end_time, &
+         self%scheme%second_coefficient)
+      call product%solve(impact, trajectory, error)
+      damping = 0.0_wp
+      do i = 1, trajectory%last
+         damping = max(damping, 1.5_wp*impact%plate%alpha(trajectory%state(col_time, i)) &
+            *sqrt(abs(trajectory%state(col_indentation, i))))
+      end do
+
+      ! what is unstable for another reason than the damper is too coarse: half of it may do
+      upper = dt
+      lower = 0.5_wp*dt
+      do i = 1, halvings
+         if (damping <= stable_damping(self%scheme, impact, lower)) exit
+         upper = lower
+         lower = 0.5_wp*lower
+      end do
+      do i = 1, bisections
+         step = sqrt(lower*upper)
+         if (damping <= stable_damping(self%scheme, impact, step)) then
+            lower = step
+         else
+            upper = step
+         end if
+      end do
+      step = lower
+   end function stable_step
+
+   !> A time as text
+   pure function in_seconds(time) result(text)
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Such as 4.0E-07 s
+      character(len=:), allocatable :: text
+
+      character(len=16) :: buffer
+
+      write(buffer, '(es9.2)') time
+      text = trim(adjustl(buffer))//' s'
+   end function in_seconds
+
+end module vcor_solver_marching

@@ -1,0 +1,132 @@
+!> Stability of the paper's time marching
+!>
+!> What oscillates from step to step has no time to feel the inertia of the sphere or the change of
+!> s and alpha: the scheme sees s'' = -U'' = -d (k s')' with d = (3/2) alpha sqrt(s), a damper. On
+!> s' ~ z^n, with x = 1/z, each of its formulas is a factor:
+!>
+!>     Adams-Bashforth  (1 - x)/x s' = dt sigma(x) s''
+!>     force, form a    F = (3/2) sqrt(s) dt (K(x) - (1 - g) k_0) s',  K(x) = sum_j k_j x^j
+!>     force, form b    F = (3/2) sqrt(s) k_0 s,  s = dt sigma(x) x/(1 - x) s'
+!>     impulse          I = dt (g + (1 - g) x)/(1 - x) F
+!>     difference       U'' = alpha delta2(x)/dt^2 I, frozen plate: U'' = alpha delta1(x)/dt F
+!>
+!> with g = 1 for rectangles and 1/2 for trapezoids. Each z on the unit circle belongs to one d; the
+!> smallest d that is real and positive is where the first mode stops decaying. For form a with
+!> rectangles it is z = -1 with sigma = 551/45, delta2 = 4592/45, and for a constant kernel
+!> K = k_0/2: dt (3/2) alpha k_0 sqrt(s) < 0.0064, where the formula of Adams and Bashforth alone
+!> would bear 0.163.
+module vcor_solver_stability
+   use vcor_constants, only : pi
+   use vcor_kinds, only : wp
+   use vcor_solver_multistep, only : ab_points, adams_bashforth, first_difference, first_points, &
+      second_difference, second_points
+   implicit none
+   private
+
+   public :: damping_limit, kernel_terms
+
+   !> Number of kernel values that are summed one by one
+   integer, parameter :: kernel_terms = 32
+
+contains
+
+   !> Largest d = (3/2) alpha sqrt(s) for which the marching is stable
+   pure function damping_limit(dt, kernel, form, share, frozen) result(limit)
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Kernel k_j at t = j dt, j = 0 .. kernel_terms [N/m^1.5], as the scheme takes it
+      real(wp), intent(in) :: kernel(0:kernel_terms)
+      !> Form of the force: a or b
+      character(len=1), intent(in) :: form
+      !> Share g of the newest value in the sums, 1 or 1/2
+      real(wp), intent(in) :: share
+      !> Whether the plate is the frozen one
+      logical, intent(in) :: frozen
+      !> Limit [m^1.5/(N s)]
+      real(wp) :: limit
+
+      ! below the first angle are the modes that the solution itself is made of
+      integer, parameter :: angles = 120
+      real(wp), parameter :: first_angle = 0.1_wp*pi
+      complex(wp) :: d, previous
+      real(wp) :: crossing, weight
+      integer :: i
+
+      limit = huge(1.0_wp)
+      previous = (0.0_wp, 0.0_wp)
+      do i = 0, angles
+         d = damping_at(first_angle + (pi - first_angle)*real(i, wp)/real(angles, wp))
+         crossing = -1.0_wp
+         if (i == angles) then
+            ! at z = -1 everything is real
+            crossing = real(d, wp)
+         else if (i > 0 .and. aimag(d)*aimag(previous) <= 0.0_wp) then
+            weight = aimag(previous)/(aimag(previous) - aimag(d))
+            crossing = real(previous, wp) + weight*real(d - previous, wp)
+         end if
+         if (crossing > 0.0_wp) limit = min(limit, crossing)
+         previous = d
+      end do
+
+   contains
+
+      !> The damping that makes a mode z = exp(i angle) neither grow nor decay
+      pure function damping_at(angle) result(damping)
+         !> Angle, 0 < angle <= pi
+         real(wp), intent(in) :: angle
+         !> Damping
+         complex(wp) :: damping
+
+         complex(wp) :: x, sigma, response
+
+         x = exp(cmplx(0.0_wp, -angle, wp))
+         if (angle >= pi) x = (-1.0_wp, 0.0_wp)
+         sigma = polynomial(adams_bashforth(:, ab_points), x)
+         if (form == 'a') then
+            response = dt*(transform(x) - (1.0_wp - share)*kernel(0))
+         else
+            response = kernel(0)*dt*sigma*x/(1.0_wp - x)
+         end if
+         if (frozen) then
+            response = response*polynomial(first_difference(:, first_points), x)/dt
+         else
+            response = response*polynomial(second_difference(:, second_points), x)/dt &
+               *(share + (1.0_wp - share)*x)/(1.0_wp - x)
+         end if
+         ! trapezoids do not see z = -1 at all
+         damping = (-1.0_wp, 0.0_wp)
+         if (abs(response) > tiny(1.0_wp)) damping = -(1.0_wp - x)/(x*dt*sigma*response)
+      end function damping_at
+
+      !> sum_j k_j x^j for |x| = 1, x /= 1: the tail, smooth, from its value and slope at its start
+      pure function transform(x) result(value)
+         !> Argument
+         complex(wp), intent(in) :: x
+         !> Sum
+         complex(wp) :: value
+
+         associate (n => kernel_terms)
+            value = polynomial(kernel(0:n - 1), x) + x**n/(1.0_wp - x) &
+               *(kernel(n) + (kernel(n) - kernel(n - 1))*x/(1.0_wp - x))
+         end associate
+      end function transform
+   end function damping_limit
+
+   !> Polynomial by Horner's rule
+   pure function polynomial(c, x) result(value)
+      !> Coefficients, lowest first
+      real(wp), intent(in) :: c(:)
+      !> Argument
+      complex(wp), intent(in) :: x
+      !> Value
+      complex(wp) :: value
+
+      integer :: j
+
+      value = cmplx(c(size(c)), 0.0_wp, wp)
+      do j = size(c) - 1, 1, -1
+         value = value*x + c(j)
+      end do
+   end function polynomial
+
+end module vcor_solver_stability
