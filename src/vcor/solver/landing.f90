@@ -57,6 +57,11 @@ contains
       n = self%rule%stages
       crossing = panel
       k = first_without_force(crossing)
+      if (k > 1 .and. crossing%force(k - 1) <= 0.0_wp) then
+         ! a panel so crude that its force is negative while the indentation grows
+         panel%converged = .false.
+         return
+      end if
       theta = self%rule%point(k - 1)
       if (k > 1) theta = self%rule%crossing(crossing%force(0:n), theta, self%rule%point(k))
       time = theta*(crossing%map(1) + crossing%map(2)*theta)

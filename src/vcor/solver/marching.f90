@@ -180,8 +180,9 @@ contains
    end function cor_of
 
    !> Error of the coefficient of restitution, by Richardson's extrapolation from runs with two and
-   !> four times the step and the order that they show, between that of the capped kernel or of
-   !> rectangles and two; with half the step where longer ones are unstable
+   !> four times the step and the order that they show, two at most; next to none where the kernel
+   !> falls within a step. Where longer steps are unstable from one other run, with the order of
+   !> rectangles or of the capped kernel
    function error_of_cor(self, impact, dt, cor) result(estimate)
       !> The solver
       type(marching_t), intent(in) :: self
@@ -194,7 +195,7 @@ contains
       !> Estimate [-]
       real(wp) :: estimate
 
-      real(wp), parameter :: smallest_ratio = 1.1_wp, best_ratio = 8.0_wp
+      real(wp), parameter :: smallest_ratio = 1.2_wp, best_ratio = 8.0_wp
       real(wp) :: coarse(2), fine, least, ratio
       logical :: known
       integer :: i
@@ -214,7 +215,7 @@ contains
          estimate = max(abs(coarse(1) - cor), abs(coarse(2) - coarse(1))/best_ratio)
          ratio = 4.0_wp
          if (estimate > 0.0_wp) ratio = abs(coarse(2) - coarse(1))/estimate
-         estimate = estimate/(min(max(ratio, least), 4.0_wp) - 1.0_wp)
+         estimate = estimate/(min(max(ratio, smallest_ratio), 4.0_wp) - 1.0_wp)
       case (2)
          estimate = abs(coarse(1) - cor)/(least - 1.0_wp)
       case default
@@ -256,7 +257,7 @@ contains
       !> Estimate [s]
       real(wp) :: step
 
-      real(wp), parameter :: accuracy = 1.0e-3_wp
+      real(wp), parameter :: accuracy = 1.0e-3_wp, noticeably_less = 0.9_wp
       integer, parameter :: halvings = 100, bisections = 10
       type(product_t) :: product
       type(trajectory_t) :: trajectory
@@ -273,23 +274,49 @@ contains
             *sqrt(abs(trajectory%state(col_indentation, i))))
       end do
 
-      ! what is unstable for another reason than the damper is too coarse: half of it may do
-      upper = dt
+      ! where the damper is not the reason, the steps are too coarse for what they follow
+      upper = noticeably_less*dt
       lower = 0.5_wp*dt
+      if (holds(upper)) upper = lower
       do i = 1, halvings
-         if (damping <= stable_damping(self%scheme, impact, lower)) exit
+         if (holds(lower)) exit
          upper = lower
          lower = 0.5_wp*lower
       end do
       do i = 1, bisections
          step = sqrt(lower*upper)
-         if (damping <= stable_damping(self%scheme, impact, step)) then
+         if (holds(step)) then
             lower = step
          else
             upper = step
          end if
       end do
       step = lower
+
+   contains
+
+      !> Whether a time step is short enough for the damper and, in form b, for the sum of k' to
+      !> leave about the k that it should: one that is too large makes the force negative
+      pure function holds(trial)
+         !> Time step [s]
+         real(wp), intent(in) :: trial
+         !> Whether it is
+         logical :: holds
+
+         integer, parameter :: most_terms = 60000
+         real(wp) :: left
+         integer :: j
+
+         holds = damping <= stable_damping(self%scheme, impact, trial)
+         if (.not. holds .or. self%scheme%form == 'a') return
+         left = impact%kernel(0.0_wp) &
+            + self%scheme%share*trial*impact%hertz_factor*impact%modulus%rate(0.0_wp)
+         do j = 1, min(int(hertz_contact_time*impact%time_scale()/trial), most_terms)
+            left = left + trial*impact%hertz_factor*impact%modulus%rate(trial*real(j, wp))
+            holds = left > 0.5_wp*impact%kernel(trial*real(j, wp))
+            if (.not. holds) return
+         end do
+      end function holds
    end function stable_step
 
    !> A time as text

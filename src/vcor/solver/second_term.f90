@@ -7,15 +7,13 @@
 !>     F2_n = c2 sum_{a,b=1..n} q_{2n-a-b} du_a du_b
 !>     q_i = (1/dt^2) int_0^dt int_0^dt k(i dt + x + y) dx dy
 !>
-!> The weights depend on a + b alone, so F2_n = c2 sum_m q_{2n-m} C_n(m) with the sums
-!> C_n(m) = sum_{a+b=m; a,b<=n} du_a du_b. From step to step they gain 2 du_n du_a at m = n + a and
-!> du_n^2 at m = 2n only: O(n) work where the double sum takes O(n^2). The step's own du_n is not
+!> which is O(n) work per step by the sums of `vcor_solver_volterra`. The step's own du_n is not
 !> known yet; it enters as a quadratic polynomial.
 module vcor_solver_second_term
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_dot, only : dot
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
+   use vcor_solver_volterra, only : volterra_t
    implicit none
    private
 
@@ -24,10 +22,8 @@ module vcor_solver_second_term
    !> Second term under way
    type :: second_term_t
       private
-      !> weights(room - i) = c2 q_i, reversed, shape (room)
-      real(wp), allocatable :: weights(:)
-      !> sums(m) = C_n(m), shape (room)
-      real(wp), allocatable :: sums(:)
+      !> Double sum with the weights c2 q_i
+      type(volterra_t) :: sums
    contains
       !> Make room
       procedure :: prepare
@@ -52,17 +48,7 @@ contains
       !> Number of steps
       integer, intent(in) :: steps
 
-      real(wp), allocatable :: longer(:)
-      integer :: room
-
-      room = 2*steps
-      allocate (longer(room))
-      longer = 0.0_wp
-      if (allocated(self%sums)) longer(:size(self%sums)) = self%sums
-      call move_alloc(longer, self%sums)
-      allocate (longer(room))
-      longer(room:1:-1) = coefficient*square_means(impact, dt, room)
-      call move_alloc(longer, self%weights)
+      call self%sums%prepare(coefficient*square_means(impact, dt, 2*steps))
    end subroutine prepare
 
    !> Mean of the kernel over the squares x, y in (0, dt) at i dt + x + y, i = 0 .. n - 1: the mean
@@ -116,17 +102,13 @@ contains
       !> Coefficient of u_n^2 [N/m^3]
       real(wp), intent(inout) :: quadratic
 
-      real(wp) :: first, past
-      integer :: room
+      real(wp) :: constant, first, own
 
-      room = size(self%weights)
-      past = dot(self%weights(room - 2*n + 2:room - 2), self%sums(2:2*n - 2))
-      first = 2.0_wp*dot(self%weights(room - n + 1:room - 1), du(1:n - 1))
-      associate (own => self%weights(room))
-         known = known + past - first*u + own*u**2
-         linear = linear + first - 2.0_wp*own*u
-         quadratic = quadratic + own
-      end associate
+      ! with du_n = u_n - u
+      call self%sums%polynomial(n, du, constant, first, own)
+      known = known + constant - first*u + own*u**2
+      linear = linear + first - 2.0_wp*own*u
+      quadratic = quadratic + own
    end subroutine add
 
    !> Take du_n into the sums
@@ -138,8 +120,7 @@ contains
       !> Differences of u up to step n [m^1.5], shape (>= n)
       real(wp), intent(in), contiguous :: du(:)
 
-      self%sums(n + 1:2*n - 1) = self%sums(n + 1:2*n - 1) + 2.0_wp*du(n)*du(1:n - 1)
-      self%sums(2*n) = self%sums(2*n) + du(n)**2
+      call self%sums%accept(n, du)
    end subroutine accept
 
 end module vcor_solver_second_term

@@ -31,6 +31,8 @@ module vcor_solver_volterra
       procedure :: prepare
       !> The double sum at a step
       procedure :: double_sum
+      !> Its coefficients as a polynomial of the newest value
+      procedure :: polynomial
       !> Take the newest value in
       procedure :: accept
    end type volterra_t
@@ -84,6 +86,29 @@ contains
       total = dot(self%weights(room - 2*n + 2:room - 2), self%sums(2:2*n - 2)) &
          + share*w(n)*(2.0_wp*single + self%weights(room)*share*w(n))
    end function double_sum
+
+   !> D_n = constant + linear w_n + quadratic w_n^2 where the newest value is not known yet
+   pure subroutine polynomial(self, n, w, constant, linear, quadratic)
+      !> The double sum
+      class(volterra_t), intent(in) :: self
+      !> Step, 1 <= n, 2 n <= room
+      integer, intent(in) :: n
+      !> Values, w_1 .. w_{n-1} known, shape (>= n)
+      real(wp), contiguous, intent(in) :: w(:)
+      !> D_n without the newest value
+      real(wp), intent(out) :: constant
+      !> Coefficient of w_n
+      real(wp), intent(out) :: linear
+      !> Coefficient of w_n^2
+      real(wp), intent(out) :: quadratic
+
+      integer :: room
+
+      room = size(self%weights)
+      constant = dot(self%weights(room - 2*n + 2:room - 2), self%sums(2:2*n - 2))
+      linear = 2.0_wp*dot(self%weights(room - n + 1:room - 1), w(1:n - 1))
+      quadratic = self%weights(room)
+   end subroutine polynomial
 
    !> Take the newest value w_n in, whole
    pure subroutine accept(self, n, w)
