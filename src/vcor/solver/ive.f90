@@ -31,7 +31,7 @@ module vcor_solver_ive
 
    public :: ive_t, new_ive
 
-   !> Share of the wanted accuracy that the defect of one panel may use up
+   !> Share of the wanted accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 0.2_wp
 
    !> Internal variable evolution
