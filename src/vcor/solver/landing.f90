@@ -49,29 +49,32 @@ contains
       type(panel_t), intent(inout) :: panel
 
       integer, parameter :: most_iterations = 40
+      ! a shorter correction tells nothing about slopes
+      real(wp), parameter :: noticeable = 1.0e-7_wp
       type(panel_t) :: crossing, last
-      real(wp) :: theta, time, correction, tolerance, velocity
+      real(wp) :: theta, time, correction, last_correction, tolerance, velocity
       real(wp) :: kappa, memory_rate, old_memory, memory
       integer :: iteration, n, k
 
       n = self%rule%stages
       crossing = panel
       k = first_without_force(crossing)
-      if (k > 1 .and. crossing%force(k - 1) <= 0.0_wp) then
+      if (crossing%force(k - 1) <= 0.0_wp) then
          ! a panel so crude that its force is negative while the indentation grows
          panel%converged = .false.
          return
       end if
-      theta = self%rule%point(k - 1)
-      if (k > 1) theta = self%rule%crossing(crossing%force(0:n), theta, self%rule%point(k))
+      theta = self%rule%crossing(crossing%force(0:n), self%rule%point(k - 1), self%rule%point(k))
       time = theta*(crossing%map(1) + crossing%map(2)*theta)
 
       ! Write F = kappa u - M with any kappa that is about dF/du: the indentation s and the memory
       ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
-      ! kappa u(s) = M with s and M linear in time, the slope of M from the last two iterations
+      ! kappa u(s) = M with s and M linear in time, the slope of M from the polynomials of the panel
+      ! and then from the last two iterations
       tolerance = 1.0e-3_wp*min(accuracy, 1.0e-7_wp)
       kappa = crossing%end_stiffness
-      memory_rate = 0.0_wp
+      memory_rate = (kappa*slope_at(hertz(crossing%indentation(0:n))) &
+         - slope_at(crossing%force(0:n)))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
       correction = 0.0_wp
       panel%converged = .false.
@@ -86,15 +89,31 @@ contains
          velocity = impact%velocity - panel%impulse(n)/impact%mass &
             - plate_velocity(impact, panel, n)
          memory = kappa*hertz(panel%indentation(n)) - panel%force(n)
-         if (abs(correction) > 0.0_wp) memory_rate = (memory - old_memory)/correction
+         if (abs(correction) > noticeable*time) memory_rate = (memory - old_memory)/correction
          old_memory = memory
+         last_correction = correction
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
          if (abs(correction) <= tolerance*(start%time + time)) return
+         ! rounding in the force of a dashpot or of stiff internal variables ends it, too
+         if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
+             .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
          time = time + correction
       end do
       panel%converged = .false.
+
+   contains
+
+      !> Slope of a polynomial at theta
+      pure function slope_at(value) result(slope)
+         !> Values at the points of the panel, shape (0:n)
+         real(wp), intent(in) :: value(0:)
+         !> Derivative by theta
+         real(wp) :: slope
+
+         slope = self%rule%interpolate(matmul(self%rule%derivative(0:n, 0:n), value), theta)
+      end function slope_at
    end subroutine land
 
    !> Solve kappa hertz(s + v x) = memory + rate x for x near 0 by Newton's method

@@ -65,7 +65,7 @@ module vcor_solver_panel
       real(wp) :: deflection(0:width) = 0.0_wp
       !> What the velocity of a frozen plate falls behind alpha F [m/s]
       real(wp) :: drift(0:width) = 0.0_wp
-      !> Change of the force per change of u at the last stage alone [N/m^1.5]
+      !> Change of the force but the dashpot's per change of u at the last stage alone [N/m^1.5]
       real(wp) :: end_stiffness = 0.0_wp
       !> Whether Newton's iteration converged
       logical :: converged = .false.
@@ -203,7 +203,8 @@ contains
          panel%impulse(1:) = panel%impulse(1:) + re*real(first, wp) - im*aimag(first)
          first = lambda(m)*first
          panel%second_impulse(1:) = panel%second_impulse(1:) + re*real(first, wp) - im*aimag(first)
-         first = stiffness(m)*cmplx(map%left_re(n, m), map%left_im(n, m), wp)
+         first = (stiffness(m) - kernel%viscosity/lambda(m)) &
+            *cmplx(map%left_re(n, m), map%left_im(n, m), wp)
          panel%end_stiffness = panel%end_stiffness + re(n)*real(first, wp) - im(n)*aimag(first)
       end do
    end subroutine solve_panel
