@@ -131,8 +131,7 @@ contains
          ends = .false.
          if (panel%converged .and. trajectory%status /= contact_separated) &
             ends = first_without_force(panel) > 0
-         if (ends) call land(self%collocator, impact, kernel, start, self%accuracy, &
-            rounding*largest_force, step, panel)
+         if (ends) call land(self%collocator, impact, kernel, start, self%accuracy, step, panel)
          if (.not. panel%converged) then
             call step%shorten(0.5_wp*step%duration())
             cycle

@@ -32,7 +32,7 @@ contains
    end function first_without_force
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
-   subroutine land(self, impact, kernel, start, accuracy, negligible, step, panel)
+   subroutine land(self, impact, kernel, start, accuracy, step, panel)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -43,8 +43,6 @@ contains
       type(start_t), intent(in) :: start
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
-      !> Force that is no more than rounding [N]
-      real(wp), intent(in) :: negligible
       !> The step, on return the one that ends at the zero
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the zero; not converged on failure
@@ -96,11 +94,7 @@ contains
          last_correction = correction
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
-         if (.not. panel%converged) then
-            ! where the contact creeps back, the force may be gone before its slope can be told
-            panel%converged = abs(panel%force(n)) <= negligible
-            return
-         end if
+         if (.not. panel%converged) return
          if (abs(correction) <= tolerance*(start%time + time)) return
          ! rounding in the force of a dashpot or of stiff internal variables ends it, too
          if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
