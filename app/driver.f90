@@ -171,7 +171,7 @@ contains
 
             call job%case%get('solver', 'method', method)
             call job%case%get('solver', 'scheme', scheme)
-            job%method = method_for(job%impact, method, scheme)
+            job%method = method_for(method, scheme)
             call job%case%get('output', 'directory', directory)
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)

@@ -13,7 +13,7 @@
 !> over whole panels. Towards the end of a nearly elastic contact, where s goes to zero as well and
 !> u = s^1.5 loses its derivatives, the panels shrink geometrically.
 module vcor_solver_ive
-   use vcor_error, only : error_input, error_numerical, error_t, raise
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz_contact_time, impact_t
    use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
@@ -98,15 +98,9 @@ contains
       real(wp) :: end_time, time_scale, largest_force, force_tolerance, time_tolerance
       real(wp) :: excess, force_error
       integer :: trial, n
-      logical :: exact, ends, last
+      logical :: ends, last
 
-      call impact%kernel_exponentials(kernel, exact)
-      if (.not. exact) then
-         call raise(error, error_input, 'the contact modulus of this case is no sum of ' &
-            //"exponentials, which method = 'ive' needs: use method = 'direct'")
-         return
-      end if
-
+      call impact%kernel_exponentials(4.0_wp*hertz_contact_time*impact%time_scale(), 0.1_wp*self%accuracy, kernel)
       n = self%collocator%rule%stages
       time_scale = impact%time_scale()
       end_time = self%end_time
