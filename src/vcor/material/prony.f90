@@ -238,6 +238,8 @@ contains
       !> The series
       type(exponential_sum_t), intent(out) :: terms
 
+      associate (not_needed => [window, accuracy])
+      end associate
       terms%equilibrium = self%equilibrium
       allocate (terms%moduli, source=self%moduli)
       allocate (terms%rates, source=self%rates)
