@@ -9,7 +9,7 @@ values belong to exactly the times that the tests use. 60 digits are carried.
 The Mittag-Leffler functions are summed: by their power series up to x = 100, with as many more
 digits as its terms cancel, by their asymptotic series beyond. Each value is compared with an
 integral over the relaxation spectrum, which shares nothing with the series; the script stops
-where they differ by more than 1e-25 of the value. That takes some minutes.
+where they differ by more than 1e-25 of the value. That takes a quarter of an hour.
 """
 
 from mpmath import ceil, cos, erfc, exp, expm1, gamma, mp, mpf, pi, quad, rgamma, sin, sqrt
