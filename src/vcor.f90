@@ -19,6 +19,7 @@ module vcor
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
@@ -37,8 +38,9 @@ module vcor
    public :: error_t, raise
    public :: error_internal, error_usage, error_input, error_file, error_numerical
    public :: material_t, material_data_t, new_material
-   public :: prony_t, power_law_t, cerf_t
+   public :: prony_t, power_law_t, cerf_t, mittag_leffler_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
+   public :: new_mittag_leffler
    public :: contact_modulus_t, new_contact_modulus
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: impact_t, new_impact

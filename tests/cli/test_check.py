@@ -4,7 +4,7 @@ import pytest
 from cases import SLS, case_text, edit
 from program import EXAMPLES, INPUT
 
-MODELS = ["elastic", "sls", "prony", "prony_times", "power_law", "cerf"]
+MODELS = ["elastic", "sls", "prony", "prony_times", "power_law", "cerf", "mittag_leffler"]
 
 
 def again(vcor, name):

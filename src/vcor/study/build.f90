@@ -158,6 +158,7 @@ contains
       data%coefficient = number(case, 'material', 'coefficient', item)
       data%exponent = number(case, 'material', 'exponent', item)
       data%relaxing_modulus = number(case, 'material', 'relaxing_modulus', item)
+      data%time = number(case, 'material', 'time', item)
       call new_material(material, data, error)
       if (allocated(error)) call locate(case, 'material', 'name', error, item)
    end subroutine build_material

@@ -43,12 +43,12 @@ module vcor_study_keys
       !> Range of a number, or of every number of a list
       type(interval_t) :: range = interval_t()
       !> Words a text may be, separated by blanks; blank: any text
-      character(len=48) :: choices = ""
+      character(len=64) :: choices = ""
       !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the
       !> empty text
       character(len=12) :: default = ""
       !> Models of the group's selector this row is for, separated by blanks; blank: all
-      character(len=40) :: models = ""
+      character(len=56) :: models = ""
       !> Whether the key must be given
       logical :: required = .false.
    end type key_t
@@ -75,6 +75,8 @@ module vcor_study_keys
       & interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
    type(interval_t), parameter :: unit_open = &
       & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
+   type(interval_t), parameter :: unit_half_open = &
+      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
@@ -117,10 +119,10 @@ module vcor_study_keys
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices="rigid elastic sls prony power_law cerf", required=.true.), &
+      &    choices="rigid elastic sls prony power_law cerf mittag_leffler", required=.true.), &
       & key_t("material", "density", real_key, "Density", "kg/m3", positive), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
-      &    models="elastic sls prony power_law cerf", required=.true.), &
+      &    models="elastic sls prony power_law cerf mittag_leffler", required=.true.), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &
       &    range=poisson_range, models="rigid"), &
       & key_t("material", "modulus", real_key, "Young's modulus", "Pa", positive, &
@@ -134,7 +136,7 @@ module vcor_study_keys
       & key_t("material", "beta", real_key, "Root of the rate of relaxation", "s^-1/2", positive, &
       &    models="cerf", required=.true.), &
       & key_t("material", "equilibrium_modulus", real_key, "Modulus after a long time", "Pa", &
-      &    not_negative, models="prony power_law cerf", default="0.0"), &
+      &    not_negative, models="prony power_law cerf mittag_leffler", default="0.0"), &
       & key_t("material", "moduli", list_key, "Moduli of the relaxing terms", "Pa", positive, &
       &    models="prony"), &
       & key_t("material", "rates", list_key, "Rates of the relaxing terms; or give times", "1/s", &
@@ -147,8 +149,12 @@ module vcor_study_keys
       &    "Pa s^a", positive, models="power_law", required=.true.), &
       & key_t("material", "exponent", real_key, "Exponent a of C t^-a / Gamma(1-a)", &
       &    range=unit_open, models="power_law", required=.true.), &
+      & key_t("material", "exponent", real_key, "Exponent a of the function E_a(-(t/time)^a)", &
+      &    range=unit_half_open, models="mittag_leffler", required=.true.), &
       & key_t("material", "relaxing_modulus", real_key, "Part of the modulus that relaxes", "Pa", &
-      &    positive, models="cerf", required=.true.), &
+      &    positive, models="cerf mittag_leffler", required=.true.), &
+      & key_t("material", "time", real_key, "Relaxation time", "s", positive, &
+      &    models="mittag_leffler", required=.true.), &
       !
       & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
       &    choices="auto ive direct", default="auto"), &
