@@ -5,6 +5,7 @@ module vcor_material
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -15,7 +16,7 @@ module vcor_material
    type :: material_data_t
       !> Name that cases call it by
       character(len=:), allocatable :: name
-      !> One of rigid, elastic, sls, prony, power_law, cerf
+      !> One of rigid, elastic, sls, prony, power_law, cerf, table
       character(len=:), allocatable :: model
       !> Mass density [kg/m3]; 0: not known
       real(wp) :: density = 0.0_wp
@@ -31,7 +32,7 @@ module vcor_material
       real(wp) :: beta = 0.0_wp
       !> prony, power_law, cerf: equilibrium modulus [Pa]
       real(wp) :: equilibrium_modulus = 0.0_wp
-      !> prony: moduli of the terms [Pa], shape (n)
+      !> prony: moduli of the terms; table: of the points [Pa], shape (n)
       real(wp), allocatable :: moduli(:)
       !> prony: rates of the terms [1/s], shape (n)
       real(wp), allocatable :: rates(:)
@@ -43,6 +44,8 @@ module vcor_material
       real(wp) :: exponent = 0.5_wp
       !> cerf: relaxing modulus [Pa]
       real(wp) :: relaxing_modulus = 0.0_wp
+      !> table: times of the points [s], shape (n)
+      real(wp), allocatable :: times(:)
    end type material_data_t
 
 contains
@@ -59,6 +62,7 @@ contains
       type(prony_t) :: prony
       type(power_law_t) :: power_law
       type(cerf_t) :: cerf
+      type(tabulated_t) :: table
 
       select case (data%model)
       case ('rigid')
@@ -81,9 +85,12 @@ contains
       case ('cerf')
          call new_cerf(cerf, data%equilibrium_modulus, data%relaxing_modulus, data%beta, error)
          call accept(cerf)
+      case ('table')
+         call new_tabulated(table, data%times, data%moduli, error)
+         call accept(table)
       case default
          call raise(error, error_input, "unknown model '"//data%model &
-            //"'; known: rigid, elastic, sls, prony, power_law, cerf")
+            //"'; known: rigid, elastic, sls, prony, power_law, cerf, table")
       end select
 
    contains
