@@ -2,8 +2,8 @@
 !>
 !> With the rates on a grid the moduli are a problem of non-negative least squares, relative to the
 !> modulus, and few of them are not zero. A single relaxation time shows up as two neighbours of the
-!> grid, so the grid is refined about the rates in use as long as that pays; what stands close together
-!> is merged at last.
+!> grid, so the grid is refined about the rates in use as long as that pays; what stands close
+!> together is merged at last.
 module vcor_material_exponential_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -13,9 +13,9 @@ module vcor_material_exponential_fit
 
    public :: fit_exponentials
 
-   !> Largest rate times the first, smallest rate times the last time. Wider, and the sum runs further
-   !> away from the modulus outside of the data for digits that no data have: for t^-0.5 these give a
-   !> misfit of 2e-5 and at t = 0 2.7 times the first modulus; 2 and 0.5 1e-3 and 2.1
+   !> Largest rate times the first, smallest rate times the last time. Wider, and the sum runs
+   !> further away from the modulus outside of the data for digits that no data have: for t^-0.5
+   !> these give a misfit of 2e-5 and at t = 0 2.7 times the first modulus; 2 and 0.5 1e-3 and 2.1
    real(wp), parameter :: fastest = 4.0_wp, slowest = 0.25_wp
    !> Rates per decade of the first grid: for t^-0.5 2 give a misfit of 5e-4, 3 and 4 2e-5
    real(wp), parameter :: per_decade = 3.0_wp
@@ -24,8 +24,8 @@ module vcor_material_exponential_fit
    integer, parameter :: most_refinements = 8
    !> Misfit that is good enough: the default accuracy of the restitution
    real(wp), parameter :: goal = 1.0e-6_wp
-   !> A refinement must reduce the residual times the square of the number of terms to this part: where
-   !> the spectrum is continuous, twice the terms halve the residual for ever
+   !> A refinement must reduce the residual times the square of the number of terms to this part:
+   !> where the spectrum is continuous, twice the terms halve the residual for ever
    real(wp), parameter :: gain = 0.7_wp
    !> All mergers may increase the misfit by this factor
    real(wp), parameter :: loss = 1.25_wp
@@ -61,7 +61,8 @@ contains
          width = 0.5_wp*width
          finer = refined(rate, width, grid)
          call fit(time, modulus, finer, better, new_residual, new_misfit, guess=rate)
-         if (.not. new_residual*real(size(finer), wp)**2 < gain*residual*real(size(rate), wp)**2) exit
+         if (.not. new_residual*real(size(finer), wp)**2 &
+            < gain*residual*real(size(rate), wp)**2) exit
          call move_alloc(finer, rate)
          call move_alloc(better, weight)
          residual = new_residual
@@ -149,7 +150,8 @@ contains
 
       all(:size(rate)) = rate
       n = size(rate)
-      call insert([rate - width, rate + width, grid], grid(1), grid(size(grid)), 0.1_wp*width, all, n)
+      call insert([rate - width, rate + width, grid], grid(1), grid(size(grid)), 0.1_wp*width, &
+         all, n)
       finer = all(:n)
    end function refined
 

@@ -1,5 +1,5 @@
-!> Monotone interpolation: piecewise cubics that fall where the data fall and are flat where they are
-!> flat
+!> Monotone interpolation: piecewise cubics that fall where the data fall and are flat where they
+!> are flat
 module vcor_numeric_monotone
    use vcor_kinds, only : wp
    implicit none
@@ -9,8 +9,8 @@ module vcor_numeric_monotone
 
 contains
 
-   !> Slopes at the points that make Hermite's cubics between them monotone: F. N. Fritsch and
-   !> J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021. Third order where the
+   !> Slopes at the points that make Hermite's cubics between them monotone: F. N. Fritsch and J.
+   !> Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021. Third order where the
    !> data are smooth
    pure function monotone_slopes(x, y) result(slope)
       !> Points, strictly increasing, shape (n), n >= 2
@@ -43,7 +43,8 @@ contains
       end if
    end function monotone_slopes
 
-   !> Slope at an end: that of the parabola through three points, within what keeps the cubic monotone
+   !> Slope at an end: that of the parabola through three points, within what keeps the cubic
+   !> monotone
    pure function end_slope(h, further_h, secant, further_secant) result(slope)
       !> Length of the interval at the end
       real(wp), intent(in) :: h

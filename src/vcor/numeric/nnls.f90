@@ -4,12 +4,12 @@
 !> chapter 23. All columns of A, in use or not, and b are kept multiplied by the same orthogonal
 !> matrix, such that the columns in use are triangular. Then to take a column in is one Householder
 !> reflection, to let one go a few plane rotations, and the gradient of the columns not in use is a
-!> scalar product each: O(m n) per change, where a factorisation by a library for each set of columns
-!> would be O(m k^2), and no normal equations, which would halve the digits.
+!> scalar product each: O(m n) per change, where a factorisation by a library for each set of
+!> columns would be O(m k^2), and no normal equations, which would halve the digits.
 !>
 !> It ends whatever the columns are. A column that is dependent on those in use is not taken in; nor
-!> is one whose coefficient rounding makes negative; the residual must fall from one feasible solution
-!> to the next; and the changes are counted.
+!> is one whose coefficient rounding makes negative; the residual must fall from one feasible
+!> solution to the next; and the changes are counted.
 module vcor_numeric_nnls
    use vcor_kinds, only : wp
    implicit none
@@ -133,8 +133,8 @@ contains
       end do
    end function steepest
 
-   !> Take a column in, unless it depends on those in use: a Householder reflection of the rows below
-   !> the triangle, I - v v'/h
+   !> Take a column in, unless it depends on those in use: a Householder reflection of the rows
+   !> below the triangle, I - v v'/h
    pure subroutine take_in(work, column, taken)
       !> The problem
       type(work_t), intent(inout) :: work
@@ -220,8 +220,8 @@ contains
       end do
    end subroutine solve_triangle
 
-   !> Go from a feasible solution towards least squares with the columns in use, and let go those whose
-   !> bound is in the way, until it is reached
+   !> Go from a feasible solution towards least squares with the columns in use, and let go those
+   !> whose bound is in the way, until it is reached
    pure subroutine make_feasible(work, x, z)
       !> The problem
       type(work_t), intent(inout) :: work
