@@ -313,8 +313,32 @@ contains
       end if
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it')
+      call remark_on_data('sphere')
+      call remark_on_data('plate')
 
    contains
+
+      !> Data that do not cover the contact
+      subroutine remark_on_data(body)
+         !> Group of the body
+         character(len=*), intent(in) :: body
+
+         ! what counts is the material between the contact time and a hundredth of it
+         real(wp), parameter :: early = 0.01_wp
+         character(len=:), allocatable :: name
+         real(wp), allocatable :: times(:)
+         integer :: item
+
+         call job%case%get(body, 'material', name)
+         item = job%case%find_material(name)
+         if (data_file(job%case, item) == '') return
+         call job%case%get('material', 'times', times, item)
+         name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
+         if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
+            //short(times(1))//' s: before that the modulus is taken as constant')
+         if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
+            //short(times(size(times)))//' s: after that the modulus is taken as constant')
+      end subroutine remark_on_data
 
       !> One line
       subroutine add(line)

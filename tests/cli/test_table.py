@@ -311,6 +311,18 @@ def test_results_do_not_replace_the_data(vcor):
     vcor.refuses("run", *words, code=INPUT, says=["other_summary.csv", "output.stem"])
 
 
+def test_note_on_data_that_do_not_cover_the_contact(table):
+    assert "note" not in table.succeeds("run", "case.nml")
+    table.write("\n".join(LINES[75:]), "data.csv")
+    out = table.succeeds("run", "case.nml")
+    assert "note: the data of the plate (data.csv) begin at 1.0E-04 s" in out
+    assert out.count("note") == 1
+    table.write("\n".join(LINES[:50]), "data.csv")
+    out = table.succeeds("run", "case.nml")
+    assert "note: the data of the plate (data.csv) end at " in out
+    assert out.count("note") == 1
+
+
 def test_ten_thousand_points(table):
     expected = cor(table)
     time = np.logspace(-7, 1, 10_000)
