@@ -6,10 +6,11 @@ module vcor_app_driver
    use vcor_app_help, only : help_text
    use vcor_app_screen, only : report, short
    use vcor, only : build_impact, build_solver, case_t, contact_lasting, contact_separated, &
-      default_accuracy, error_input, error_numerical, error_t, evaluate, history_table, impact_t, &
-      integer_text, join_path, make_directory, method_for, outcome_t, override, quantities, &
-      quantity_value, raise, read_case, real_text, same_file, solver_t, status_name, &
-      summary_table, table_t, trajectory_t, version, wp, write_csv, write_hdf5, write_stdout
+      data_file, default_accuracy, error_input, error_numerical, error_t, evaluate, history_table, &
+      impact_t, integer_text, join_path, make_directory, method_for, outcome_t, override, &
+      quantities, quantity_value, raise, read_case, read_data, real_text, same_file, &
+      solver_t, status_name, summary_table, table_t, trajectory_t, version, wp, write_csv, &
+      write_hdf5, write_stdout
    implicit none
    private
 
@@ -164,6 +165,8 @@ contains
             end do
             call job%case%validate(error)
             if (allocated(error)) return
+            call read_data(job%case, error)
+            if (allocated(error)) return
             call build_impact(job%case, job%impact, error)
             if (allocated(error)) return
             call build_solver(job%case, job%impact, job%solver, error)
@@ -191,7 +194,7 @@ contains
       end do
    end subroutine prepare
 
-   !> No file of one case may be a file of another, nor a case file itself
+   !> No file of one case may be a file of another, nor a case file itself, nor a data file
    subroutine refuse_clash(request, jobs, new, old, error)
       !> The request
       type(request_t), intent(in) :: request
@@ -207,6 +210,9 @@ contains
       integer :: i, j
 
       do i = 1, size(endings)
+         if (jobs(new)%writes(i)) call keep_data(new, old)
+         if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
+         if (allocated(error)) return
          if (.not. jobs(new)%writes(i)) cycle
          if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
             call raise(error, error_input, request%files(new)%text//': its results would replace ' &
@@ -224,6 +230,24 @@ contains
             end if
          end do
       end do
+
+   contains
+
+      !> No file of a case may be a data file of another or its own
+      subroutine keep_data(writer, reader)
+         !> The case whose results are written
+         integer, intent(in) :: writer
+         !> The case whose data files are read
+         integer, intent(in) :: reader
+
+         do j = 1, jobs(reader)%case%count('material')
+            if (.not. same_file(jobs(writer)%path//trim(endings(i)), &
+               data_file(jobs(reader)%case, j))) cycle
+            call raise(error, error_input, request%files(writer)%text//': its results would ' &
+               //'replace the data file '//data_file(jobs(reader)%case, j) &
+               //': give it another output.stem')
+         end do
+      end subroutine keep_data
    end subroutine refuse_clash
 
    !> Run one case
@@ -289,8 +313,32 @@ contains
       end if
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it')
+      call remark_on_data('sphere')
+      call remark_on_data('plate')
 
    contains
+
+      !> Data that do not cover the contact
+      subroutine remark_on_data(body)
+         !> Group of the body
+         character(len=*), intent(in) :: body
+
+         ! what counts is the material between the contact time and a hundredth of it
+         real(wp), parameter :: early = 0.01_wp
+         character(len=:), allocatable :: name
+         real(wp), allocatable :: times(:)
+         integer :: item
+
+         call job%case%get(body, 'material', name)
+         item = job%case%find_material(name)
+         if (data_file(job%case, item) == '') return
+         call job%case%get('material', 'times', times, item)
+         name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
+         if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
+            //short(times(1))//' s: before that the modulus is taken as constant')
+         if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
+            //short(times(size(times)))//' s: after that the modulus is taken as constant')
+      end subroutine remark_on_data
 
       !> One line
       subroutine add(line)

@@ -6,6 +6,7 @@ module vcor_material
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -16,7 +17,7 @@ module vcor_material
    type :: material_data_t
       !> Name that cases call it by
       character(len=:), allocatable :: name
-      !> One of rigid, elastic, sls, prony, power_law, cerf, mittag_leffler
+      !> One of rigid, elastic, sls, prony, power_law, cerf, mittag_leffler, table
       character(len=:), allocatable :: model
       !> Mass density [kg/m3]; 0: not known
       real(wp) :: density = 0.0_wp
@@ -32,7 +33,7 @@ module vcor_material
       real(wp) :: beta = 0.0_wp
       !> prony, power_law, cerf, mittag_leffler: equilibrium modulus [Pa]
       real(wp) :: equilibrium_modulus = 0.0_wp
-      !> prony: moduli of the terms [Pa], shape (n)
+      !> prony: moduli of the terms; table: of the points [Pa], shape (n)
       real(wp), allocatable :: moduli(:)
       !> prony: rates of the terms [1/s], shape (n)
       real(wp), allocatable :: rates(:)
@@ -46,6 +47,8 @@ module vcor_material
       real(wp) :: relaxing_modulus = 0.0_wp
       !> mittag_leffler: relaxation time [s]
       real(wp) :: time = 0.0_wp
+      !> table: times of the points [s], shape (n)
+      real(wp), allocatable :: times(:)
    end type material_data_t
 
 contains
@@ -63,6 +66,7 @@ contains
       type(power_law_t) :: power_law
       type(cerf_t) :: cerf
       type(mittag_leffler_t) :: mittag_leffler
+      type(tabulated_t) :: table
 
       select case (data%model)
       case ('rigid')
@@ -97,9 +101,13 @@ contains
                [1.0_wp/data%time], 0.0_wp, error)
             call accept(prony)
          end if
+      case ('table')
+         call new_tabulated(table, data%times, data%moduli, error)
+         call accept(table)
       case default
          call raise(error, error_input, "unknown model '"//data%model &
-            //"'; known: rigid, elastic, sls, prony, power_law, cerf, mittag_leffler")
+            //"'; known: rigid, elastic, sls, prony, power_law, cerf, " &
+            //'mittag_leffler, table')
       end select
 
    contains

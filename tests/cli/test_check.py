@@ -20,6 +20,7 @@ def again(vcor, name):
     return once
 
 
+@pytest.mark.usefixtures("data_files")
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(vcor, path):
     again(vcor, path)

@@ -210,7 +210,9 @@ contains
       !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
-      call sum_of_spectrum(self, window, accuracy, terms)
+      ! Q has its poles where (s tau)^a = -1
+      call sum_of_spectrum(self, window, accuracy, terms, peak=-log(self%time), &
+         distance=pi*(1.0_wp - self%exponent)/self%exponent)
    end subroutine exponentials
 
 end module vcor_material_mittag_leffler

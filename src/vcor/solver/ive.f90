@@ -36,9 +36,9 @@ module vcor_solver_ive
    real(wp), parameter :: panel_share = 0.2_wp
 
    !> Share of the wanted accuracy that the kernel is approximated to
-   real(wp), parameter :: kernel_share = 0.02_wp
+   real(wp), parameter :: kernel_share = 0.01_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
-   real(wp), parameter :: sensitivity = 0.1_wp
+   real(wp), parameter :: sensitivity = 0.3_wp
 
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t

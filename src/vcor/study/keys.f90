@@ -15,7 +15,7 @@ module vcor_study_keys
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       & list_key
    public :: find_group, find_key, first_row, last_row, row_for_model, contains_word
-   public :: kind_name, range_text, wanted, keys_of, group_names, join_words
+   public :: kind_name, range_text, wanted, keys_of, group_names, join_words, spelled
 
    !> Kinds of values: a real number
    integer, parameter :: real_key = 1
@@ -119,10 +119,10 @@ module vcor_study_keys
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices="rigid elastic sls prony power_law cerf mittag_leffler", required=.true.), &
+      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
       & key_t("material", "density", real_key, "Density", "kg/m3", positive), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
-      &    models="elastic sls prony power_law cerf mittag_leffler", required=.true.), &
+      &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &
       &    range=poisson_range, models="rigid"), &
       & key_t("material", "modulus", real_key, "Young's modulus", "Pa", positive, &
@@ -155,6 +155,12 @@ module vcor_study_keys
       &    positive, models="cerf mittag_leffler", required=.true.), &
       & key_t("material", "time", real_key, "Relaxation time", "s", positive, &
       &    models="mittag_leffler", required=.true.), &
+      & key_t("material", "file", text_key, "File of times and moduli; from the case's folder", &
+      &    models="table", required=.true.), &
+      & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
+      &    choices="ns us ms s min h", models="table", default="s"), &
+      & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
+      &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
       !
       & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
       &    choices="auto ive direct", default="auto"), &
@@ -279,6 +285,22 @@ contains
       yes = len_trim(word) > 0 .and. index(trim(word), " ") == 0
       if (yes) yes = index(" "//words//" ", " "//trim(word)//" ") > 0
    end function contains_word
+
+   !> A word as it is spelled in a list of words: upper and lower case make no difference
+   pure function spelled(words, word) result(same)
+      !> Words separated by blanks
+      character(len=*), intent(in) :: words
+      !> The word
+      character(len=*), intent(in) :: word
+      !> The word of the list; in lower case when it is not there
+      character(len=len(word)) :: same
+      integer :: place
+
+      same = lower(word)
+      if (.not. contains_word(lower(words), same)) return
+      place = index(" "//lower(words)//" ", " "//same//" ")
+      same = words(place:place + len(word) - 1)
+   end function spelled
 
    !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
    pure function range_text(key) result(text)
