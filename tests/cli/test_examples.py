@@ -26,7 +26,8 @@ def test_runs(vcor, path):
     assert 0 < float(numbers["cor"]) < 1
     if path not in CONVERGED:
         return
-    assert float(numbers["cor_error"]) <= 1e-6
+    # points of data are met by a sum of exponentials to some digits only
+    assert float(numbers["cor_error"]) <= (5e-5 if "'table'" in path.read_text() else 1e-6)
     energy = float(numbers["initial_energy"])
     assert abs(float(numbers["energy_imbalance"])) <= 1e-6 * energy
 

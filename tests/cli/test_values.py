@@ -379,11 +379,6 @@ def test_hollow_smaller_than_the_sphere(vcor, value):
     spoiled(vcor, ("sls", "plate", "surface_radius"), value, ["surface_radius", "-0.01"])
 
 
-@pytest.mark.parametrize("model", ["cerf", "power_law"])
-def test_ive_names_the_method_that_works(vcor, model):
-    spoiled(vcor, (model, "solver", "method"), "'ive'", ["'ive'", "'direct'"])
-
-
 def test_time_step_not_below_end_time(vcor):
     text, _ = edit(SLS, "solver", "end_time", "1.0e-3")
     text, _ = edit(text, "solver", "time_step", "1.0e-3")

@@ -4,6 +4,7 @@ program test_reference
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive, only : ive_t
    use vcor_solver_product, only : product_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
@@ -35,9 +36,11 @@ program test_reference
    real(wp), parameter :: rounding = 1.0e-11_wp
    !> An estimate below a tenth of the error is no estimate
    real(wp), parameter :: too_small = 10.0_wp
-   !> An estimate of more than a hundred times the error is none, either, errors of rounding size
-   !> aside
-   real(wp), parameter :: too_large = 100.0_wp, estimate_floor = 1.0e-10_wp
+   !> An estimate of more than a hundred times the error is none, either; below a tenth of the
+   !> accuracy asked for, rounding aside, it misleads nobody
+   real(wp), parameter :: too_large = 100.0_wp, estimate_floor = 0.1_wp
+   !> Pairs by Eq. (1) are fitted with moduli of both signs, which costs digits
+   real(wp), parameter :: best_pair = 1.0e-9_wp
    !> Time step of the paper [s]
    real(wp), parameter :: microsecond = 1.0e-6_wp
    !> What product integration at 1 us is to reach: 2.5th order, kernels that are finite at t = 0
@@ -152,19 +155,22 @@ contains
       type(ive_t) :: solver
       type(outcome_t) :: outcome
       character(len=12) :: asked
-      real(wp) :: other
+      type(exponential_sum_t) :: terms
+      real(wp) :: other, best
       integer :: i
 
       write(asked, "(a, es7.1)") " ive ", accuracy
       call make_ive(accuracy, solver)
       other = max(other_share*accuracy, best_other)
       do i = 1, rows
-         if (.not. reference(i)%exponential) cycle
          call run(solver, impact(i), outcome)
          associate (r => reference(i)%outcome, name => trim(reference(i)%name)//asked)
             call check(outcome%status == contact_separated, name//": the bodies separate")
-            call check_close(outcome%cor, r%cor, accuracy, name//": cor")
-            call check_close(outcome%cor_sphere, r%cor_sphere, accuracy, name//": cor_sphere")
+            call impact(i)%kernel_exponentials(r%contact_time, accuracy, terms)
+            best = accuracy
+            if (any(terms%moduli < 0.0_wp)) best = max(best, best_pair)
+            call check_close(outcome%cor, r%cor, best, name//": cor")
+            call check_close(outcome%cor_sphere, r%cor_sphere, best, name//": cor_sphere")
             call check_relative(outcome%contact_time, r%contact_time, share*accuracy + rounding, &
                name//": contact_time")
             call check_relative(outcome%max_indentation, r%max_indentation, other, &
@@ -184,7 +190,7 @@ contains
                imbalance_share*accuracy + rounding, name//": energy_imbalance")
             if (accuracy <= default_accuracy) call check_close(outcome%loss_tangent, &
                r%loss_tangent, loss_tolerance, name//": loss_tangent")
-            call check_honest(outcome, r, name)
+            call check_honest(outcome, r, accuracy, name)
          end associate
       end do
    end subroutine test_ive
@@ -239,7 +245,7 @@ contains
          call check_direct(solver, i, direct_accuracy, " direct", outcome)
          associate (r => reference(i)%outcome, name => trim(reference(i)%name)//" direct")
             call check(outcome%cor_error <= direct_accuracy, name//": by its own estimate as well")
-            call check_honest(outcome, r, name)
+            call check_honest(outcome, r, direct_accuracy, name)
          end associate
       end do
    end subroutine test_direct_default
@@ -277,11 +283,13 @@ contains
    end subroutine check_direct
 
    !> Check that the estimate of the error is one
-   subroutine check_honest(outcome, r, name)
+   subroutine check_honest(outcome, r, accuracy, name)
       !> The outcome
       type(outcome_t), intent(in) :: outcome
       !> What it is to be
       type(outcome_t), intent(in) :: r
+      !> Accuracy asked for
+      real(wp), intent(in) :: accuracy
       !> Name of the case
       character(len=*), intent(in) :: name
 
@@ -289,7 +297,7 @@ contains
 
       error = abs(outcome%cor - r%cor)
       call check(error <= too_small*outcome%cor_error, name//": cor_error is not too small")
-      call check(outcome%cor_error <= too_large*error + estimate_floor, &
+      call check(outcome%cor_error <= too_large*error + estimate_floor*accuracy + rounding, &
          name//": cor_error is not too large")
    end subroutine check_honest
 

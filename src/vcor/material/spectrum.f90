@@ -131,7 +131,7 @@ contains
       !> Error
       real(wp) :: error
 
-      real(wp), parameter :: part(5) = [1.0_wp, 0.5_wp, 0.25_wp, 0.12_wp, 0.06_wp]
+      real(wp), parameter :: part(5) = [1.0_wp, 0.7_wp, 0.5_wp, 0.35_wp, 0.25_wp]
       real(wp) :: value, expected
       integer :: i, k
 

@@ -332,8 +332,9 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy: has no effect, as the sum says all that the data say
       real(wp), intent(in) :: accuracy
-      !> The sum; its `error` is the largest relative misfit from the first point to the window's
-      !> end, and what the integral is off by at the first point, over that of the window
+      !> The sum; its `error` is the largest relative misfit from the first point to the last, or to
+      !> half of the window, where a contact is expected to end, and what the integral is off by at
+      !> the first point, over that of the window
       type(exponential_sum_t), intent(out) :: terms
 
       associate (not_needed => accuracy)
@@ -341,7 +342,7 @@ contains
       terms = self%terms
       if (size(terms%rates) == 0) return
       terms%error = max(terms%error, &
-         abs(sum_at(terms, window)/self%relaxation(window) - 1.0_wp)) &
+         abs(sum_at(terms, 0.5_wp*window)/self%relaxation(0.5_wp*window) - 1.0_wp)) &
          + abs(self%early_excess)/self%integral(window)
    end subroutine exponentials
 

@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgesv, zgesv
+   public :: dgeev, dgelsy, dgesv, zgesv
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -39,6 +39,38 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgeev
+
+      !> Least squares by a complete orthogonal factorisation, of least norm where columns depend on
+      !> each other
+      pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+         import :: wp
+         !> Number of equations
+         integer, intent(in) :: m
+         !> Number of unknowns
+         integer, intent(in) :: n
+         !> Number of right-hand sides
+         integer, intent(in) :: nrhs
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The matrix, destroyed on return, shape (lda, n)
+         real(wp), intent(inout) :: a(lda, *)
+         !> Leading dimension of `b`, >= max(m, n)
+         integer, intent(in) :: ldb
+         !> Right-hand sides, on return the solutions, shape (ldb, nrhs)
+         real(wp), intent(inout) :: b(ldb, *)
+         !> On entry 0 for columns that may be interchanged, shape (n)
+         integer, intent(inout) :: jpvt(*)
+         !> Inverse condition beyond which columns count as dependent
+         real(wp), intent(in) :: rcond
+         !> Rank found
+         integer, intent(out) :: rank
+         !> Work space, shape (lwork)
+         real(wp), intent(out) :: work(*)
+         !> Length of the work space
+         integer, intent(in) :: lwork
+         !> 0 on success
+         integer, intent(out) :: info
+      end subroutine dgelsy
 
       !> Solve a general real system of linear equations
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)

@@ -49,7 +49,7 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp), parameter :: tightest = 1.0e-14_wp, tolerance_share = 1.0e-4_wp
+      real(wp), parameter :: tightest = 1.0e-14_wp, tolerance_share = 1.0e-5_wp
       real(wp) :: unit(0:stages)
       integer :: i, j
 

@@ -39,7 +39,7 @@ contains
       allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
    end subroutine begin
 
-   !> Add a panel to the trajectory
+   !> Add a panel to the trajectory: the finer solution, which the other one has led there
    subroutine append(self, impact, kernel, start, panel, fine, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
@@ -47,7 +47,7 @@ contains
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> State at the start of the panel
+      !> State of the finer solution at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
@@ -60,25 +60,25 @@ contains
 
       integer :: n, first, j
 
-      n = panel%stages
+      n = fine%stages
       call trajectory%reserve(trajectory%final + n)
-      call trajectory%add_map(panel%map)
+      call trajectory%add_map(fine%map)
       first = trajectory%final + 1
       trajectory%final = trajectory%final + n
       trajectory%steps = trajectory%steps + 1
-      trajectory%weight(first:trajectory%final) = self%rule%weight(1:n) &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*self%rule%node(1:n))
+      trajectory%weight(first:trajectory%final) = self%fine%weight(1:n) &
+         *(fine%map(1) + 2.0_wp*fine%map(2)*self%fine%node(1:n))
       do j = 1, n
          associate (state => trajectory%state(:, first + j - 1))
-            state(col_time) = panel%time(j)
-            state(col_indentation) = panel%indentation(j)
-            state(col_force) = panel%force(j)
-            state(col_impulse) = panel%impulse(j)
-            state(col_sphere) = impact%velocity*panel%time(j) &
-               - panel%second_impulse(j)/impact%mass
-            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
-            state(col_plate) = state(col_sphere) - panel%indentation(j)
-            state(col_plate_velocity) = plate_velocity(impact, panel, j)
+            state(col_time) = fine%time(j)
+            state(col_indentation) = fine%indentation(j)
+            state(col_force) = fine%force(j)
+            state(col_impulse) = fine%impulse(j)
+            state(col_sphere) = impact%velocity*fine%time(j) &
+               - fine%second_impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%velocity - fine%impulse(j)/impact%mass
+            state(col_plate) = state(col_sphere) - fine%indentation(j)
+            state(col_plate_velocity) = plate_velocity(impact, fine, j)
             state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
          end associate
       end do
@@ -95,7 +95,7 @@ contains
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> State at the start of the panel
+      !> State of the finer solution at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
@@ -108,7 +108,7 @@ contains
 
       integer :: n
 
-      n = panel%stages
+      n = fine%stages
       call look_for_peak(panel%indentation, fine%indentation, .true., &
          trajectory%max_indentation, trajectory%time_of_max_indentation)
       call look_for_peak(panel%force, fine%force, .false., trajectory%max_force, &
@@ -117,11 +117,11 @@ contains
    contains
 
       !> Larger value in the panel than so far, if there is one
-      subroutine look_for_peak(value, fine_value, of_indentation, largest, time)
+      subroutine look_for_peak(coarse, value, of_indentation, largest, time)
          !> Values at the points of the panel
-         real(wp), intent(in) :: value(0:width)
+         real(wp), intent(in) :: coarse(0:width)
          !> Values at the points of the finer solution
-         real(wp), intent(in) :: fine_value(0:width)
+         real(wp), intent(in) :: value(0:width)
          !> Whether they are those of the indentation, otherwise of the force
          logical, intent(in) :: of_indentation
          !> Largest value so far
@@ -132,9 +132,9 @@ contains
          real(wp) :: peak, peak_time
          integer :: j
 
-         if (sum(self%rule%derivative(0, 0:n)*value(0:n)) > 0.0_wp .and. &
-             sum(self%rule%derivative(n, 0:n)*value(0:n)) < 0.0_wp) then
-            call find_peak(value(0:n), fine_value, of_indentation, peak, peak_time)
+         if (sum(self%fine%derivative(0, 0:n)*value(0:n)) > 0.0_wp .and. &
+             sum(self%fine%derivative(n, 0:n)*value(0:n)) < 0.0_wp) then
+            call find_peak(coarse, value(0:n), of_indentation, peak, peak_time)
             if (peak > largest) then
                largest = peak
                time = peak_time
@@ -143,18 +143,18 @@ contains
          do j = 1, n
             if (value(j) > largest) then
                largest = value(j)
-               time = panel%time(j)
+               time = fine%time(j)
             end if
          end do
       end subroutine look_for_peak
 
       !> Maximum inside the panel: where the polynomials of both solutions agree from them, otherwise
       !> by solving the panel up to there, as it is more accurate at its end
-      subroutine find_peak(value, fine_value, of_indentation, peak, time)
+      subroutine find_peak(coarse, value, of_indentation, peak, time)
          !> Values at the points of the panel
-         real(wp), intent(in) :: value(0:)
+         real(wp), intent(in) :: coarse(0:width)
          !> Values at the points of the finer solution
-         real(wp), intent(in) :: fine_value(0:width)
+         real(wp), intent(in) :: value(0:)
          !> Whether they are those of the indentation, otherwise of the force
          logical, intent(in) :: of_indentation
          !> Maximum
@@ -166,13 +166,14 @@ contains
          type(step_t) :: step
          real(wp) :: theta
 
-         theta = self%rule%crossing(matmul(self%rule%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
-         time = theta*(panel%map(1) + panel%map(2)*theta)
-         peak = self%fine%interpolate(fine_value(0:self%fine%stages), theta)
-         if (.not. abs(peak - self%rule%interpolate(value, theta)) <= accuracy*peak) then
+         theta = self%fine%crossing(matmul(self%fine%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
+         time = theta*(fine%map(1) + fine%map(2)*theta)
+         peak = self%fine%interpolate(value, theta)
+         if (.not. abs(peak - self%rule%interpolate(coarse(0:panel%stages), theta)) &
+             <= accuracy*peak) then
             step = step_to(start%time, time)
-            call guess(self%rule, impact, panel, start, step, cut)
-            call solve_step(self, self%rule, step, impact, kernel, start, cut)
+            call guess(self%fine, impact, fine, start, step, cut)
+            call solve_step(self, self%fine, step, impact, kernel, start, cut)
             if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
          end if
          time = start%time + time
