@@ -102,15 +102,26 @@ contains
       if (allocated(error)) return
       do i = 1, size(jobs)
          call verify_case(jobs(i), request%quiet, trouble)
-         if (.not. allocated(trouble)) cycle
-         if (trouble%code /= error_numerical) then
-            call move_alloc(trouble, error)
-            return
-         end if
-         if (allocated(error)) call complain(error)
-         call move_alloc(trouble, error)
+         if (gives_up(trouble, error)) return
       end do
    end subroutine verify
+
+   !> Take over the trouble that a case made. A case that fails numerically does not stop the
+   !> others, anything else does
+   function gives_up(trouble, error)
+      !> Trouble of the case, unallocated if there was none; taken over
+      type(error_t), allocatable, intent(inout) :: trouble
+      !> Trouble of the cases before; said on stderr if there is more now
+      type(error_t), allocatable, intent(inout) :: error
+      !> Whether the cases that are left have to go
+      logical :: gives_up
+
+      gives_up = .false.
+      if (.not. allocated(trouble)) return
+      gives_up = trouble%code /= error_numerical
+      if (allocated(error) .and. .not. gives_up) call complain(error)
+      call move_alloc(trouble, error)
+   end function gives_up
 
    !> What the program chooses where the case says nothing, as comments
    function chosen(job) result(text)
@@ -142,14 +153,7 @@ contains
       if (allocated(error)) return
       do i = 1, size(jobs)
          call run_job(request, jobs(i), trouble)
-         if (.not. allocated(trouble)) cycle
-         ! a case that fails numerically does not stop the others, anything else does
-         if (trouble%code /= error_numerical) then
-            call move_alloc(trouble, error)
-            return
-         end if
-         if (allocated(error)) call complain(error)
-         call move_alloc(trouble, error)
+         if (gives_up(trouble, error)) return
       end do
    end subroutine run
 

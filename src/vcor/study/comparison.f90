@@ -8,12 +8,13 @@ module vcor_study_comparison
    use vcor_error, only : error_t
    use vcor_impact_problem, only : hertz_contact_time, impact_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : default_accuracy, method_for, solver_settings_t
+   use vcor_solver, only : default_accuracy, solver_settings_t
    use vcor_study_case, only : case_t
    use vcor_study_comparison_attempt, only : attempt_t
    use vcor_study_comparison_judge, only : judge_ends, judge_numbers
    use vcor_study_comparison_type, only : attempt_case, attempt_count, attempt_first, &
       attempt_halved, attempt_refined, comparison_t
+   use vcor_study_methods, only : method_of_case, methods_for
    implicit none
    private
 
@@ -35,8 +36,8 @@ contains
 
       type(solver_settings_t) :: settings
 
-      comparison%two_methods = method_for(impact, 'auto', 'product') == 'ive'
-      call take_settings(case, impact, settings)
+      comparison%two_methods = size(methods_for(impact)) == 2
+      call take_settings(case, comparison%two_methods, settings)
       call comparison%attempts(attempt_first)%try(settings, impact, error)
       if (allocated(error)) return
       if (comparison%two_methods) then
@@ -55,17 +56,18 @@ contains
    end subroutine compare
 
    !> What the attempts take over from the case; not its steps, its scheme or its ghost lines
-   subroutine take_settings(case, impact, settings)
+   subroutine take_settings(case, two_methods, settings)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Its impact
-      type(impact_t), intent(in) :: impact
+      !> Whether its impact can be solved by internal variables
+      logical, intent(in) :: two_methods
       !> Settings
       type(solver_settings_t), intent(out) :: settings
 
       integer :: order
 
-      settings%method = method_for(impact, 'auto', 'product')
+      settings%method = 'direct'
+      if (two_methods) settings%method = 'ive'
       settings%scheme = 'product'
       settings%accuracy = default_accuracy(settings%method)
       if (case%given('solver', 'accuracy')) &
@@ -87,11 +89,10 @@ contains
       !> Whether it is
       logical :: is_another
 
-      character(len=:), allocatable :: method, scheme
+      character(len=:), allocatable :: scheme
 
-      call case%get('solver', 'method', method)
       call case%get('solver', 'scheme', scheme)
-      is_another = method_for(impact, method, scheme) == 'direct' .and. (two_methods &
+      is_another = method_of_case(case, impact) == 'direct' .and. (two_methods &
          .or. scheme /= 'product' .or. case%given('solver', 'time_step'))
    end function is_another
 

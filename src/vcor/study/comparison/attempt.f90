@@ -5,7 +5,7 @@ module vcor_study_comparison_attempt
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : new_solver, solver_settings_t, solver_t
    use vcor_study_build, only : build_solver
    use vcor_study_case, only : case_t
    implicit none
@@ -42,7 +42,7 @@ module vcor_study_comparison_attempt
 
 contains
 
-   !> Solve with given settings
+   !> Solve with given settings, the method being ive or direct
    subroutine try(self, settings, impact, error)
       !> The attempt
       class(attempt_t), intent(inout) :: self
@@ -55,7 +55,7 @@ contains
 
       class(solver_t), allocatable :: solver
 
-      self%label = method_for(impact, settings%method, settings%scheme)
+      self%label = settings%method
       self%time_step = settings%time_step
       if (.not. self%time_step > 0.0_wp) self%accuracy = settings%accuracy
       call new_solver(solver, settings, impact, error)

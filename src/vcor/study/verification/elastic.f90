@@ -3,9 +3,10 @@ module vcor_study_verification_elastic
    use vcor_impact_plate, only : waves_constant, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
+   use vcor_study_methods, only : methods_for
    use vcor_study_verification_impacts, only : elastic, hertz_duration, &
       hertz_scale, strike, zener_plate
-   use vcor_study_verification_row, only : accuracy_of, law_t, methods_for
+   use vcor_study_verification_row, only : accuracy_of, law_t
    implicit none
    private
 

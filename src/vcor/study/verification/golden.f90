@@ -4,8 +4,9 @@ module vcor_study_verification_golden
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
+   use vcor_study_methods, only : methods_for
    use vcor_study_verification_impacts, only : elastic, sls, strike
-   use vcor_study_verification_row, only : accuracy_of, law_t, methods_for
+   use vcor_study_verification_row, only : accuracy_of, law_t
    implicit none
    private
 

@@ -29,9 +29,10 @@ module vcor_study_verification_kelvin_voigt
    use vcor_impact_plate, only : waves_constant
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
+   use vcor_study_methods, only : methods_for
    use vcor_study_verification_impacts, only : elastic, hertz_scale, kelvin_voigt, strike, &
       zener_plate
-   use vcor_study_verification_row, only : accuracy_of, law_t, methods_for
+   use vcor_study_verification_row, only : accuracy_of, law_t
    implicit none
    private
 

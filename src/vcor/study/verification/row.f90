@@ -9,13 +9,12 @@ module vcor_study_verification_row
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : method_for
    use vcor_study_quantity, only : quantities, quantity_value
    implicit none
    private
 
    public :: row_t, law_t, verdict_t, measure_i
-   public :: judge, methods_for, accuracy_of
+   public :: judge, accuracy_of
 
    !> Accuracy that the internal-variable method is asked for, the smallest that it takes
    real(wp), parameter :: ive_accuracy = 1.0e-11_wp
@@ -213,21 +212,6 @@ contains
          if (present(expectation)) row%expectation => expectation
       end associate
    end subroutine add_measure
-
-   !> The methods that solve an impact. This line decides: where `auto` takes the internal variables
-   !> the rows are checked with both methods, elsewhere with direct alone
-   pure function methods_for(impact) result(methods)
-      !> The impact
-      type(impact_t), intent(in) :: impact
-      !> Methods, shape (1) or (2)
-      character(len=6), allocatable :: methods(:)
-
-      if (method_for(impact, 'auto', 'product') == 'ive') then
-         methods = [character(len=6) :: 'ive', 'direct']
-      else
-         methods = [character(len=6) :: 'direct']
-      end if
-   end function methods_for
 
    !> Accuracy that a method is asked for
    elemental function accuracy_of(method) result(accuracy)
