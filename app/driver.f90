@@ -7,8 +7,8 @@ module vcor_app_driver
    use vcor_app_job, only : endings, job_t, prepare
    use vcor_app_screen, only : report, short
    use vcor_app_verify, only : verify_case, verify_program
-   use vcor, only : contact_lasting, contact_separated, default_accuracy, error_numerical, &
-      error_t, evaluate, history_table, integer_text, make_directory, outcome_t, quantities, &
+   use vcor, only : contact_lasting, contact_separated, data_file, default_accuracy, &
+      error_numerical, error_t, evaluate, history_table, integer_text, make_directory, outcome_t, quantities, &
       quantity_value, raise, real_text, status_name, summary_table, table_t, trajectory_t, &
       version, wp, write_csv, write_hdf5, write_stdout
    implicit none
@@ -220,8 +220,32 @@ contains
       end if
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it')
+      call remark_on_data('sphere')
+      call remark_on_data('plate')
 
    contains
+
+      !> Data that do not cover the contact
+      subroutine remark_on_data(body)
+         !> Group of the body
+         character(len=*), intent(in) :: body
+
+         ! what counts is the material between the contact time and a hundredth of it
+         real(wp), parameter :: early = 0.01_wp
+         character(len=:), allocatable :: name
+         real(wp), allocatable :: times(:)
+         integer :: item
+
+         call job%case%get(body, 'material', name)
+         item = job%case%find_material(name)
+         if (data_file(job%case, item) == '') return
+         call job%case%get('material', 'times', times, item)
+         name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
+         if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
+            //short(times(1))//' s: before that the modulus is taken as constant')
+         if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
+            //short(times(size(times)))//' s: after that the modulus is taken as constant')
+      end subroutine remark_on_data
 
       !> One line
       subroutine add(line)

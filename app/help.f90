@@ -139,8 +139,8 @@ contains
                if (key%models /= '') note = note//'; '//trim(key%models)
                ! a line fits a screen
                if (len_trim(key%meaning) + len(note) > 66) then
-                  text = text//'   '//name//trim(key%meaning)//nl//repeat(' ', 31) &
-                     //note(verify(note, ' ,'):)//nl
+                  text = text//'   '//name//trim(key%meaning)//nl &
+                     //indented(note(verify(note, ' ,'):))
                else
                   text = text//'   '//name//trim(key%meaning)//note//nl
                end if
@@ -148,6 +148,27 @@ contains
          end do
       end do
    end function input_page
+
+   !> A note below its key, in lines that fit a screen
+   pure function indented(note) result(text)
+      !> The note
+      character(len=*), intent(in) :: note
+      !> The same in lines of 100 characters at most, below the meanings
+      character(len=:), allocatable :: text
+
+      integer, parameter :: margin = 31, width = 100 - margin
+      integer :: first, last
+
+      text = ''
+      first = 1
+      do while (len(note) - first >= width)
+         last = first - 1 + index(note(first:first + width), ' ', back=.true.)
+         if (last < first) exit
+         text = text//repeat(' ', margin)//note(first:last - 1)//nl
+         first = last + 1
+      end do
+      text = text//repeat(' ', margin)//note(first:)//nl
+   end function indented
 
    !> Page of the output, from the table of quantities
    function output_page() result(text)

@@ -1,8 +1,8 @@
 !> The cases of a call, read and ready to run
 module vcor_app_job
    use vcor_app_cli, only : request_t
-   use vcor, only : build_impact, build_solver, case_t, error_input, error_t, impact_t, join_path, &
-      method_for, override, raise, read_case, same_file, solver_t
+   use vcor, only : build_impact, build_solver, case_t, data_file, error_input, error_t, impact_t, &
+      join_path, method_for, override, raise, read_case, read_data, same_file, solver_t
    implicit none
    private
 
@@ -53,6 +53,8 @@ contains
             end do
             call job%case%validate(error)
             if (allocated(error)) return
+            call read_data(job%case, error)
+            if (allocated(error)) return
             call build_impact(job%case, job%impact, error)
             if (allocated(error)) return
             call build_solver(job%case, job%impact, job%solver, error)
@@ -60,7 +62,7 @@ contains
 
             call job%case%get('solver', 'method', method)
             call job%case%get('solver', 'scheme', scheme)
-            job%method = method_for(job%impact, method, scheme)
+            job%method = method_for(method, scheme)
             call job%case%get('output', 'directory', directory)
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)
@@ -81,7 +83,7 @@ contains
       end do
    end subroutine prepare
 
-   !> No file of one case may be a file of another, nor a case file itself
+   !> No file of one case may be a file of another, nor a case file itself, nor a data file
    subroutine refuse_clash(request, jobs, new, old, error)
       !> The request
       type(request_t), intent(in) :: request
@@ -97,6 +99,9 @@ contains
       integer :: i, j
 
       do i = 1, size(endings)
+         if (jobs(new)%writes(i)) call keep_data(new, old)
+         if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
+         if (allocated(error)) return
          if (.not. jobs(new)%writes(i)) cycle
          if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
             call raise(error, error_input, request%files(new)%text//': its results would replace ' &
@@ -114,6 +119,24 @@ contains
             end if
          end do
       end do
+
+   contains
+
+      !> No file of a case may be a data file of another or its own
+      subroutine keep_data(writer, reader)
+         !> The case whose results are written
+         integer, intent(in) :: writer
+         !> The case whose data files are read
+         integer, intent(in) :: reader
+
+         do j = 1, jobs(reader)%case%count('material')
+            if (.not. same_file(jobs(writer)%path//trim(endings(i)), &
+               data_file(jobs(reader)%case, j))) cycle
+            call raise(error, error_input, request%files(writer)%text//': its results would ' &
+               //'replace the data file '//data_file(jobs(reader)%case, j) &
+               //': give it another output.stem')
+         end do
+      end subroutine keep_data
    end subroutine refuse_clash
 
 end module vcor_app_job

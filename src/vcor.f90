@@ -11,6 +11,7 @@ module vcor
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_csv, only : write_csv
+   use vcor_io_data_file, only : data_file, read_data
    use vcor_io_file, only : join_path, make_directory, same_file, write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_number, only : integer_text, real_text
@@ -19,8 +20,10 @@ module vcor
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
@@ -44,15 +47,16 @@ module vcor
    public :: error_t, raise
    public :: error_internal, error_usage, error_input, error_file, error_numerical
    public :: material_t, material_data_t, new_material
-   public :: prony_t, power_law_t, cerf_t
+   public :: prony_t, power_law_t, cerf_t, mittag_leffler_t, tabulated_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
+   public :: new_mittag_leffler, new_tabulated
    public :: contact_modulus_t, new_contact_modulus
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: impact_t, new_impact
    public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
-   public :: case_t, read_case, read_case_text, override
+   public :: case_t, read_case, read_case_text, override, read_data, data_file
    public :: build_impact, build_material, build_solver
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law

@@ -3,8 +3,10 @@ module vcor_material
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -15,7 +17,7 @@ module vcor_material
    type :: material_data_t
       !> Name that cases call it by
       character(len=:), allocatable :: name
-      !> One of rigid, elastic, sls, prony, power_law, cerf
+      !> One of rigid, elastic, sls, prony, power_law, cerf, mittag_leffler, table
       character(len=:), allocatable :: model
       !> Mass density [kg/m3]; 0: not known
       real(wp) :: density = 0.0_wp
@@ -29,9 +31,9 @@ module vcor_material
       real(wp) :: alpha = 0.0_wp
       !> sls: rate of relaxation [1/s]; cerf: its root [s^(-1/2)]
       real(wp) :: beta = 0.0_wp
-      !> prony, power_law, cerf: equilibrium modulus [Pa]
+      !> prony, power_law, cerf, mittag_leffler: equilibrium modulus [Pa]
       real(wp) :: equilibrium_modulus = 0.0_wp
-      !> prony: moduli of the terms [Pa], shape (n)
+      !> prony: moduli of the terms; table: of the points [Pa], shape (n)
       real(wp), allocatable :: moduli(:)
       !> prony: rates of the terms [1/s], shape (n)
       real(wp), allocatable :: rates(:)
@@ -39,10 +41,14 @@ module vcor_material
       real(wp) :: viscosity = 0.0_wp
       !> power_law: coefficient [Pa s^a]
       real(wp) :: coefficient = 0.0_wp
-      !> power_law: exponent a [-]
+      !> power_law, mittag_leffler: exponent a [-]
       real(wp) :: exponent = 0.5_wp
-      !> cerf: relaxing modulus [Pa]
+      !> cerf, mittag_leffler: relaxing modulus [Pa]
       real(wp) :: relaxing_modulus = 0.0_wp
+      !> mittag_leffler: relaxation time [s]
+      real(wp) :: time = 0.0_wp
+      !> table: times of the points [s], shape (n)
+      real(wp), allocatable :: times(:)
    end type material_data_t
 
 contains
@@ -59,6 +65,8 @@ contains
       type(prony_t) :: prony
       type(power_law_t) :: power_law
       type(cerf_t) :: cerf
+      type(mittag_leffler_t) :: mittag_leffler
+      type(tabulated_t) :: table
 
       select case (data%model)
       case ('rigid')
@@ -81,9 +89,25 @@ contains
       case ('cerf')
          call new_cerf(cerf, data%equilibrium_modulus, data%relaxing_modulus, data%beta, error)
          call accept(cerf)
+      case ('mittag_leffler')
+         if (data%exponent < 1.0_wp .or. data%exponent > 1.0_wp &
+            .or. .not. data%time > tiny(1.0_wp)) then
+            call new_mittag_leffler(mittag_leffler, data%equilibrium_modulus, &
+               data%relaxing_modulus, data%exponent, data%time, error)
+            call accept(mittag_leffler)
+         else
+            ! the standard linear solid, a sum of one exponential
+            call new_prony(prony, data%equilibrium_modulus, [data%relaxing_modulus], &
+               [1.0_wp/data%time], 0.0_wp, error)
+            call accept(prony)
+         end if
+      case ('table')
+         call new_tabulated(table, data%times, data%moduli, error)
+         call accept(table)
       case default
          call raise(error, error_input, "unknown model '"//data%model &
-            //"'; known: rigid, elastic, sls, prony, power_law, cerf")
+            //"'; known: rigid, elastic, sls, prony, power_law, cerf, " &
+            //'mittag_leffler, table')
       end select
 
    contains

@@ -3,7 +3,6 @@ module vcor_solver
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_marching, only : marching_t, new_marching
    use vcor_solver_product, only : new_product, product_t
@@ -37,11 +36,8 @@ module vcor_solver
 
 contains
 
-   !> The method for an impact: `auto` is direct where a scheme other than product is asked for,
-   !> ive where the kernel is a sum of exponentials, direct elsewhere
-   pure function method_for(impact, method, scheme) result(name)
-      !> The impact
-      type(impact_t), intent(in) :: impact
+   !> The method: `auto` is ive but where a scheme other than product is asked for
+   pure function method_for(method, scheme) result(name)
       !> What the user asks for: auto, ive or direct
       character(len=*), intent(in) :: method
       !> Scheme of the direct method that the user asks for
@@ -49,17 +45,10 @@ contains
       !> ive or direct
       character(len=:), allocatable :: name
 
-      type(exponential_sum_t) :: terms
-      logical :: exact
-
       name = method
       if (method /= 'auto') return
-      call impact%kernel_exponentials(terms, exact)
-      if (exact .and. scheme == 'product') then
-         name = 'ive'
-      else
-         name = 'direct'
-      end if
+      name = 'direct'
+      if (scheme == 'product') name = 'ive'
    end function method_for
 
    !> Accuracy of the coefficient of restitution where none is asked for
@@ -84,12 +73,10 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(exponential_sum_t) :: terms
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(marching_t), allocatable :: marching
       real(wp) :: accuracy
-      logical :: exact
 
       if (impact%kernel_viscosity() > 0.0_wp) then
          if (abs(settings%second_coefficient) > 0.0_wp) then
@@ -104,14 +91,8 @@ contains
       end if
 
       accuracy = settings%accuracy
-      select case (method_for(impact, settings%method, settings%scheme))
+      select case (method_for(settings%method, settings%scheme))
       case ('ive')
-         call impact%kernel_exponentials(terms, exact)
-         if (.not. exact) then
-            call raise(error, error_input, "method = 'ive' needs a contact modulus that is a sum " &
-               //"of exponentials, which this one is not; use method = 'direct' (or 'auto')")
-            return
-         end if
          if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
          allocate (ive)
          call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &

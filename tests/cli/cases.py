@@ -73,6 +73,14 @@ MODELS = {
    beta = 700.0
 /
 """,
+    "mittag_leffler": """\
+   model = 'mittag_leffler'
+   equilibrium_modulus = 2.0e6
+   relaxing_modulus = 70.0e6
+   exponent = 0.6
+   time = 2.0e-5
+/
+""",
 }
 
 

@@ -4,7 +4,7 @@ import pytest
 from cases import SLS, case_text, edit
 from program import EXAMPLES, INPUT
 
-MODELS = ["elastic", "sls", "prony", "prony_times", "power_law", "cerf"]
+MODELS = ["elastic", "sls", "prony", "prony_times", "power_law", "cerf", "mittag_leffler"]
 
 
 def again(vcor, name):
@@ -20,6 +20,7 @@ def again(vcor, name):
     return once
 
 
+@pytest.mark.usefixtures("data_files")
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_examples(vcor, path):
     again(vcor, path)

@@ -9,6 +9,7 @@ from program import EXAMPLES, NUMERICAL
 
 # Examples with the paper's scheme are there to show its error
 CONVERGED = {path for path in EXAMPLES if "adams_bashforth" not in path.read_text()}
+pytestmark = pytest.mark.usefixtures("data_files")
 EACH = pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 
 

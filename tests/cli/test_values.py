@@ -1,7 +1,7 @@
 """Keys and values that a case cannot have."""
 
 import pytest
-from cases import SLS, add_line, case_text, edit, without
+from cases import MODELS, SLS, add_line, case_text, edit, without
 from program import INPUT
 
 # Model, group and key, for each key that has to be a positive number
@@ -16,6 +16,8 @@ POSITIVE = [
     ("cerf", "material", "relaxing_modulus"),
     ("cerf", "material", "beta"),
     ("power_law", "material", "coefficient"),
+    ("mittag_leffler", "material", "relaxing_modulus"),
+    ("mittag_leffler", "material", "time"),
     ("sls", "solver", "time_step"),
     ("sls", "solver", "end_time"),
 ]
@@ -27,6 +29,7 @@ NOT_NEGATIVE = [
     ("prony", "material", "viscosity"),
     ("power_law", "material", "equilibrium_modulus"),
     ("cerf", "material", "equilibrium_modulus"),
+    ("mittag_leffler", "material", "equilibrium_modulus"),
 ]
 # ... and each list of positive numbers
 LISTS = [
@@ -39,6 +42,7 @@ FREE = [("sls", "plate", "surface_radius"), ("sls", "solver", "volterra_coeffici
 RANGES = [
     ("sls", "material", "poisson_ratio"),
     ("power_law", "material", "exponent"),
+    ("mittag_leffler", "material", "exponent"),
     ("sls", "solver", "accuracy"),
 ]
 NUMBERS = POSITIVE + NOT_NEGATIVE + LISTS + FREE + RANGES
@@ -56,7 +60,7 @@ def ids(where):
     return f"{where[0]}-{where[2]}" if isinstance(where, tuple) else None
 
 
-@pytest.mark.parametrize("model", ["elastic", "sls", "prony", "prony_times", "power_law", "cerf"])
+@pytest.mark.parametrize("model", sorted(MODELS))
 def test_the_unspoiled_cases_are_right(vcor, model):
     vcor.write(case_text(model))
     assert vcor.numbers("case.nml")["status"] == "separated"
@@ -155,6 +159,34 @@ def test_exponent(vcor, value):
     spoiled(vcor, ("power_law", "material", "exponent"), value, [f"found {value}", "in (0, 1)"])
 
 
+@pytest.mark.parametrize("value", ["0.0", "1.2", "-0.5", "1.0000000000000002"])
+def test_exponent_of_mittag_leffler(vcor, value):
+    where = ("mittag_leffler", "material", "exponent")
+    spoiled(vcor, where, value, [f"found {value}", "in (0, 1]"])
+
+
+@pytest.mark.parametrize("value", ["1.0", "0.9999999999999999", "0.01"])
+def test_exponent_of_mittag_leffler_within(vcor, value):
+    text, _ = edit(case_text("mittag_leffler"), "material", "exponent", value)
+    vcor.write(text)
+    direct = ["--set", "solver.method=direct"]
+    assert vcor.numbers("case.nml", *direct)["status"] == "separated"
+
+
+def test_misspelt_time(vcor):
+    text = case_text("mittag_leffler").replace("   time =", "   tmie =")
+    vcor.write(text)
+    line = text.splitlines().index("   tmie = 2.0e-5") + 1
+    says = ["unknown key 'tmie'", "did you mean 'time'?"]
+    vcor.refuses("check", "case.nml", code=INPUT, at=f"case.nml:{line}", says=says)
+
+
+def test_time_missing(vcor):
+    text, _ = without(case_text("mittag_leffler"), "time = 2.0e-5")
+    vcor.write(text)
+    vcor.refuses("check", "case.nml", code=INPUT, says=["case.nml:", "'time' is missing"])
+
+
 @pytest.mark.parametrize("value", ["0.0", "1.0e-12", "0.2", "-1.0e-6"])
 def test_accuracy(vcor, value):
     spoiled(vcor, ("sls", "solver", "accuracy"), value, ["found", "expected a number in ["])
@@ -199,8 +231,6 @@ NOT_YET = [
     ("plate", "waves", "'hereditary'"),
     ("contact", "law", "'receding'"),
     ("contact", "pair", "'series'"),
-    ("material", "model", "'mittag_leffler'"),
-    ("material", "model", "'table'"),
 ]
 
 

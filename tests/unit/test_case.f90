@@ -204,6 +204,10 @@ contains
          & "density: found 0.0")
       call refuses_material("model='power_law' poisson_ratio=0 coefficient=1 exponent=1", &
          & "exponent: found 1.0|in (0, 1)")
+      call refuses_material("model='mittag_leffler' poisson_ratio=0 relaxing_modulus=1 time=1 " &
+         & //"exponent=1.2", "exponent: found 1.2|in (0, 1]")
+      call refuses_material("model='mittag_leffler' poisson_ratio=0 relaxing_modulus=1 time=0 " &
+         & //"exponent=1", "time: found 0.0|> 0 [s]")
       call refuses_material("model='cerf' poisson_ratio=0 relaxing_modulus=1 beta=0", &
          & "beta: found 0.0|> 0 [s^-1/2]")
       call refuses_material("model='sls' poisson_ratio=0 glassy_modulus=1 alpha=-1 beta=0", &
@@ -236,6 +240,10 @@ contains
       call accepts_material("model='Power_Law' coefficient=1e6 exponent=.5 poisson_ratio=-0.9")
       call accepts_material("model='cerf' relaxing_modulus=1 beta=1 poisson_ratio=0 " &
          & //"equilibrium_modulus=0")
+      call accepts_material("model='mittag_leffler' relaxing_modulus=1 exponent=1 time=1e-6 " &
+         & //"poisson_ratio=0")
+      call refuses_material("model='cerf' relaxing_modulus=1 beta=1 time=1 poisson_ratio=0", &
+         & "'time' does not belong to model 'cerf'")
       call accepts_material("model='sls' glassy_modulus=1 alpha=0 beta=0 poisson_ratio=0")
       call accepts_material("model='sls' glassy_modulus=1 alpha=3 beta=3 poisson_ratio=0")
       call refuses_material("model='sls' glassy_modulus=1 alpha=3.5 beta=3 poisson_ratio=0", &

@@ -9,6 +9,7 @@ program test_material
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_legendre, only : gauss_nodes
@@ -274,6 +275,7 @@ contains
       type(prony_t) :: prony
       type(cerf_t) :: cerf
       type(power_law_t) :: power_law
+      type(mittag_leffler_t) :: mittag_leffler
       type(error_t), allocatable :: error
 
       call new_prony(prony, 1.0e6_wp, [2.0e6_wp, 3.0e6_wp], [0.8_wp, 3.0_wp], 0.0_wp, error)
@@ -286,6 +288,10 @@ contains
       call consistent(power_law, "power_law a = 0.5")
       call new_power_law(power_law, 1.0e6_wp, 2.0e6_wp, 0.2_wp, error)
       call consistent(power_law, "power_law a = 0.2")
+      call new_mittag_leffler(mittag_leffler, 1.0e6_wp, 4.0e6_wp, 0.6_wp, 0.7_wp, error)
+      call consistent(mittag_leffler, "mittag_leffler a = 0.6")
+      call new_mittag_leffler(mittag_leffler, 1.0e6_wp, 4.0e6_wp, 0.97_wp, 0.7_wp, error)
+      call consistent(mittag_leffler, "mittag_leffler a = 0.97")
    end subroutine test_consistency
 
    !> One function of a material against another
@@ -395,6 +401,7 @@ contains
       type(prony_t) :: prony
       type(cerf_t) :: cerf
       type(power_law_t) :: power_law
+      type(mittag_leffler_t) :: mittag_leffler
       type(error_t), allocatable :: error
       real(wp) :: nan
       logical :: halting
@@ -430,6 +437,14 @@ contains
       call refused(error, "NaN as a coefficient", "")
       call new_power_law(power_law, 1.0_wp, 1.0_wp, nan, error)
       call refused(error, "NaN as an exponent", "")
+      call new_mittag_leffler(mittag_leffler, nan, 1.0_wp, 0.5_wp, 1.0_wp, error)
+      call refused(error, "NaN as equilibrium modulus of a Mittag-Leffler material", "")
+      call new_mittag_leffler(mittag_leffler, 1.0_wp, nan, 0.5_wp, 1.0_wp, error)
+      call refused(error, "NaN as its relaxing modulus", "")
+      call new_mittag_leffler(mittag_leffler, 1.0_wp, 1.0_wp, nan, 1.0_wp, error)
+      call refused(error, "NaN as its exponent", "")
+      call new_mittag_leffler(mittag_leffler, 1.0_wp, 1.0_wp, 0.5_wp, nan, error)
+      call refused(error, "NaN as its time", "")
       call ieee_set_flag(ieee_invalid, .false.)
       call ieee_set_halting_mode(ieee_invalid, halting)
    end subroutine test_not_a_number
@@ -452,8 +467,8 @@ contains
 
    !> Materials by the name of their model
    subroutine test_factory()
-      character(len=*), parameter :: model(6) = [character(len=9) :: 'rigid', 'elastic', 'sls', &
-         'prony', 'power_law', 'cerf']
+      character(len=*), parameter :: model(7) = [character(len=14) :: 'rigid', 'elastic', 'sls', &
+         'prony', 'power_law', 'cerf', 'mittag_leffler']
       type(material_data_t) :: data
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
@@ -473,6 +488,7 @@ contains
       data%coefficient = 7.0_wp
       data%exponent = 0.25_wp
       data%relaxing_modulus = 8.0e6_wp
+      data%time = 9.0_wp
       do i = 1, size(model)
          data%model = trim(model(i))
          call new_material(material, data, error)
@@ -496,6 +512,11 @@ contains
                + 3.5_wp/gamma(0.75_wp), rounding, "power_law has its parameters")
          case (6)
             call check_relative(material%glassy(), 11.0e6_wp, rounding, "cerf has its parameters")
+         case (7)
+            call check_relative(material%glassy(), 11.0e6_wp, rounding, "mittag_leffler: moduli")
+            call check_relative(real(material%complex_modulus((1.0_wp, 0.0_wp)), wp), &
+               3.0e6_wp + 8.0e6_wp*9.0_wp**0.25_wp/(1.0_wp + 9.0_wp**0.25_wp), rounding, &
+               "mittag_leffler: exponent and time")
          case default
             call check(.not. material%glassy() < huge(1.0_wp), "rigid has no parameters")
          end select
@@ -503,7 +524,8 @@ contains
 
       data%model = 'rubber'
       call new_material(material, data, error)
-      call refused(error, "an unknown model", "known: rigid, elastic, sls, prony, power_law, cerf")
+      call refused(error, "an unknown model", &
+         "known: rigid, elastic, sls, prony, power_law, cerf, mittag_leffler")
       call check(.not. allocated(material), "an unknown model makes no material")
       data%model = 'sls'
       data%alpha = 5.0_wp

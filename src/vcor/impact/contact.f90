@@ -77,7 +77,7 @@ contains
       else if (same) then
          allocate (self%first, source=sphere)
          self%first_factor = 0.5_wp*sphere%plane_strain_factor()
-      else if (is_elastic(sphere) .and. is_elastic(plate)) then
+      else if (sphere%elastic() .and. plate%elastic()) then
          a = sphere%glassy()*sphere%plane_strain_factor()
          b = plate%glassy()*plate%plane_strain_factor()
          call new_elastic(elastic, a*(b/(a + b)), error)
@@ -93,19 +93,6 @@ contains
          self%second_factor = plate%plane_strain_factor()
       end if
    end subroutine new_contact_modulus
-
-   !> Whether a material neither relaxes nor flows
-   pure function is_elastic(material)
-      !> The material
-      class(material_t), intent(in) :: material
-      !> Whether its modulus is constant
-      logical :: is_elastic
-
-      type(exponential_sum_t) :: terms
-
-      call material%exponentials(terms, is_elastic)
-      if (is_elastic) is_elastic = size(terms%moduli) == 0 .and. .not. terms%viscosity > 0.0_wp
-   end function is_elastic
 
    !> Contact modulus E'(t) at t > 0, Eq. (1)
    elemental function relaxation(self, t) result(value)
@@ -268,19 +255,20 @@ contains
    end function viscosity
 
    !> The contact modulus as a sum of exponentials
-   pure subroutine exponentials(self, terms, exact)
+   pure subroutine exponentials(self, window, accuracy, terms)
       !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
-      !> The sum; defined if `exact`
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum, its `error` told
       type(exponential_sum_t), intent(out) :: terms
-      !> Whether the contact modulus is a finite sum of exponentials
-      logical, intent(out) :: exact
 
       type(exponential_sum_t) :: one
 
-      exact = .not. allocated(self%second)
-      if (exact) call self%first%exponentials(one, exact)
-      if (exact) terms = one%scaled(self%first_factor)
+      call self%first%exponentials(window, accuracy, one)
+      terms = one%scaled(self%first_factor)
    end subroutine exponentials
 
 end module vcor_impact_contact

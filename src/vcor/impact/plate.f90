@@ -103,17 +103,26 @@ contains
    end function frozen
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
-   elemental function alpha_rate(self, t) result(value)
+   elemental function alpha_rate(self, t, alpha) result(value)
       !> The plate
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
+      !> Plate parameter at that time, where it is known [m/(N s)]
+      real(wp), intent(in), optional :: alpha
       !> Rate [m/(N s^2)], >= 0
       real(wp) :: value
 
-      real(wp) :: alpha
+      real(wp) :: other
 
-      call self%alpha_and_rate(t, alpha, value)
+      if (.not. allocated(self%material)) then
+         value = 0.0_wp
+      else if (present(alpha)) then
+         ! 1/E_b = (alpha/coefficient)^2
+         value = -0.5_wp*alpha*(self%material%rate(t)*(alpha/self%coefficient)**2)
+      else
+         call self%alpha_and_rate(t, other, value)
+      end if
    end function alpha_rate
 
    !> Plate parameter and its rate

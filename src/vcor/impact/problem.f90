@@ -151,19 +151,21 @@ contains
       value = self%hertz_factor*self%modulus%step_integrals(dt, n)
    end function kernel_step_integrals
 
-   !> The kernel as a sum of exponentials, Eq. (17)
-   pure subroutine kernel_exponentials(self, terms, exact)
+   !> The kernel as a sum of exponentials, Eq. (17): itself where it is one, else an approximation
+   pure subroutine kernel_exponentials(self, window, accuracy, terms)
       !> The impact
       class(impact_t), intent(in) :: self
-      !> The sum, in [N/m^1.5]; defined if `exact`
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum, in [N/m^1.5], its `error` told
       type(exponential_sum_t), intent(out) :: terms
-      !> Whether the kernel is a finite sum of exponentials
-      logical, intent(out) :: exact
 
       type(exponential_sum_t) :: modulus
 
-      call self%modulus%exponentials(modulus, exact)
-      if (exact) terms = modulus%scaled(self%hertz_factor)
+      call self%modulus%exponentials(window, accuracy, modulus)
+      terms = modulus%scaled(self%hertz_factor)
    end subroutine kernel_exponentials
 
    !> Viscosity of the kernel's dashpot

@@ -10,34 +10,41 @@ module vcor_io_text_file
    public :: read_text_file, largest_file
 
    !> Largest file that is read [bytes]; a case has a few hundred, a long Prony series a few
-   !> thousand
+   !> thousand, a table of 10,000 points half a million
    integer, parameter :: largest_file = 4*1024**2
-   character(len=*), parameter :: too_large = "the file is larger than 4 MB, expected a case file"
+   character(len=*), parameter :: too_large = "the file is larger than 4 MB, expected "
+   !> What a file is unless the caller says otherwise
+   character(len=*), parameter :: usual_kind = "a case file"
 
 contains
 
    !> Read a file as it is
-   subroutine read_text_file(filename, text, error)
+   subroutine read_text_file(filename, text, error, kind)
       !> Name of the file
       character(len=*), intent(in) :: filename
       !> Its bytes
       character(len=:), allocatable, intent(out) :: text
       !> Error of code `error_file` when it cannot be read, `error_input` when it is too large
       type(error_t), allocatable, intent(out) :: error
+      !> What the file is to be, for messages; absent: a case file
+      character(len=*), intent(in), optional :: kind
       character(len=256) :: message
+      character(len=:), allocatable :: expected
       integer(int64) :: bytes
       integer :: unit, status
       logical :: found
 
+      expected = usual_kind
+      if (present(kind)) expected = kind
       if (len_trim(filename) == 0) then
-         call raise(error, error_file, "the name of the case file is empty")
+         call raise(error, error_file, "the name of the file is empty, expected that of "//expected)
          return
       end if
       ! gfortran opens a directory as if it were a file
       inquire(file=trim(filename)//"/.", exist=found)
       if (found) then
          call raise(error, error_file, printable(filename) &
-            & //": found a directory, expected a case file")
+            & //": found a directory, expected "//expected)
          return
       end if
       inquire(file=trim(filename), exist=found)
@@ -54,24 +61,26 @@ contains
       end if
       inquire(unit=unit, size=bytes)
       if (bytes > largest_file) then
-         call raise(error, error_input, printable(filename)//": "//too_large)
+         call raise(error, error_input, printable(filename)//": "//too_large//expected)
       else if (bytes > 0) then
          allocate(character(len=int(bytes)) :: text)
          read(unit, iostat=status, iomsg=message) text
          if (status /= 0) call raise(error, error_file, &
             & printable(filename)//": cannot read the file: "//reason(message))
       else
-         call read_pipe(unit, filename, text, error)
+         call read_pipe(unit, filename, expected, text, error)
       end if
       close(unit)
    end subroutine read_text_file
 
    !> Read what has no size beforehand, such as a pipe, byte by byte
-   subroutine read_pipe(unit, filename, text, error)
+   subroutine read_pipe(unit, filename, expected, text, error)
       !> Unit, open for stream access
       integer, intent(in) :: unit
       !> Name for messages
       character(len=*), intent(in) :: filename
+      !> What the file is to be, for messages
+      character(len=*), intent(in) :: expected
       !> The bytes
       character(len=:), allocatable, intent(out) :: text
       !> Error, unallocated on success
@@ -86,7 +95,7 @@ contains
          if (status /= 0) exit
          call buffer%add(byte)
          if (buffer%length > largest_file) then
-            call raise(error, error_input, printable(filename)//": "//too_large)
+            call raise(error, error_input, printable(filename)//": "//too_large//expected)
             return
          end if
       end do

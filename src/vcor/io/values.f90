@@ -1,15 +1,11 @@
 !> Values as they are written to values of a key's kind
-!>
-!> The compiler reads each number, so Fortran's rules hold. What it would take in silence is
-!> refused before: NaN,
-!> infinity, numbers beyond the range of the kind, and whatever is not a number from its first to
-!> its last byte.
 module vcor_io_values
    use vcor_io_namelist, only : value_t, values_of
+   use vcor_io_real, only : read_real
    use vcor_io_scanner, only : end_token, scan_text, token_t
    use vcor_kinds, only : wp
-   use vcor_study_interval, only : largest, smallest
-   use vcor_study_keys, only : integer_key, key_t, list_key, logical_key, real_key, text_key, wanted
+   use vcor_study_keys, only : integer_key, key_t, list_key, logical_key, real_key, spelled, &
+      & text_key, wanted
    use vcor_study_store, only : entry_t
    use vcor_study_text, only : integer_text, is_utf8, lower, quoted, shortened
    implicit none
@@ -22,8 +18,6 @@ module vcor_io_values
    !> Longest text [bytes]
    integer, parameter :: longest_text = 4096
    character(len=*), parameter :: digits = "0123456789"
-   !> Power of ten beyond which a number is not read at all
-   integer, parameter :: largest_power = 300
 
 contains
 
@@ -101,7 +95,7 @@ contains
          end if
          select case (key%value_kind)
          case (real_key)
-            call convert_real(key, word, entry%number, message)
+            call read_real(word, wanted(key), entry%number, message)
          case (integer_key)
             call convert_integer(key, word, entry%whole, message)
          case (logical_key)
@@ -124,9 +118,11 @@ contains
       real(wp), allocatable, intent(inout) :: list(:)
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
+      character(len=:), allocatable :: expected
       real(wp) :: number
       integer :: i, n
 
+      expected = wanted(key)
       n = 0
       do i = 1, size(values)
          if (values(i)%repeats > longest_list - n) then
@@ -141,9 +137,9 @@ contains
       do i = 1, size(values)
          associate (word => text(values(i)%first:values(i)%last))
             if (values(i)%in_quotes) then
-               message = "found a text in quotes, "//shortened(word)//", expected "//wanted(key)
+               message = "found a text in quotes, "//shortened(word)//", expected "//expected
             else
-               call convert_real(key, word, number, message)
+               call read_real(word, expected, number, message)
             end if
          end associate
          if (allocated(message)) return
@@ -151,98 +147,6 @@ contains
          n = n + values(i)%repeats
       end do
    end subroutine convert_list
-
-   !> Convert a real number
-   subroutine convert_real(key, word, number, message)
-      !> The key, for what is expected
-      type(key_t), intent(in) :: key
-      !> The number as it is written
-      character(len=*), intent(in) :: word
-      !> The number
-      real(wp), intent(out) :: number
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-      logical :: good
-      integer :: power, status
-
-      number = 0.0_wp
-      status = 0
-      call look_at_number(word, good, power)
-      ! Reading a number beyond the range of the kind traps in a debug build
-      if (good .and. abs(power) <= largest_power) read(word, *, iostat=status) number
-      if (.not. good .or. status /= 0) then
-         message = "found '"//shortened(word)//"', expected "//wanted(key)
-         if (is_not_finite(word)) message = message//", finite"
-      else if (power > largest_power .or. abs(number) > largest) then
-         message = "found "//shortened(word) &
-            & //", which is too large, expected at most 1e300 in magnitude"
-      else if (power < -largest_power .or. (abs(number) > 0.0_wp .and. abs(number) < smallest)) then
-         message = "found "//shortened(word) &
-            & //", which is too small, expected 0 or at least 1e-300 in magnitude"
-      end if
-   end subroutine convert_real
-
-   !> Whether a word is a number by Fortran's rules, and how large it is about
-   pure subroutine look_at_number(word, good, power)
-      !> The word
-      character(len=*), intent(in) :: word
-      !> Whether it is sign, digits with or without a point, and perhaps an exponent with its letter
-      logical, intent(out) :: good
-      !> Power of ten of its first digit that is not zero; 0 for zero
-      integer, intent(out) :: power
-      integer :: i, first, point, after, leading, shift
-      integer, parameter :: most_digits = 6
-
-      power = 0
-      first = 1
-      if (scan(word, "+-") == 1) first = 2
-      ! The mantissa: digits first to after - 1, among them at most one point
-      after = verify(word(first:), digits//".") + first - 1
-      if (after < first) after = len(word) + 1
-      point = index(word(first:after-1), ".") + first - 1
-      if (point < first) point = after
-      good = scan(word(first:after-1), digits) > 0
-      if (good .and. point < after) good = index(word(point+1:after-1), ".") == 0
-      if (.not. good) return
-
-      leading = scan(word(first:after-1), "123456789") + first - 1
-      if (leading >= first) power = merge(point - leading - 1, point - leading, leading < point)
-      if (after > len(word)) return
-
-      good = scan(word(after:after), "eEdD") == 1 .and. after < len(word)
-      if (.not. good) return
-      i = after + 1
-      if (scan(word(i:i), "+-") == 1) i = i + 1
-      good = i <= len(word)
-      if (good) good = verify(word(i:), digits) == 0
-      if (.not. good .or. leading < first) return
-      first = verify(word(i:), "0") + i - 1
-      if (first < i) return
-      if (len(word) - first + 1 > most_digits) then
-         power = merge(-huge(power), huge(power), word(after+1:after+1) == "-")
-      else
-         read(word(first:), *) shift
-         power = power + merge(-shift, shift, word(after+1:after+1) == "-")
-      end if
-   end subroutine look_at_number
-
-   !> Whether a word means infinity or not a number
-   pure function is_not_finite(word) result(yes)
-      !> The word
-      character(len=*), intent(in) :: word
-      !> True if it does
-      logical :: yes
-      integer :: first
-
-      first = 1
-      if (scan(word, "+-") == 1) first = 2
-      select case (lower(word(first:)))
-      case ("nan", "inf", "infinity")
-         yes = .true.
-      case default
-         yes = .false.
-      end select
-   end function is_not_finite
 
    !> Convert an integer
    subroutine convert_integer(key, word, whole, message)
@@ -294,7 +198,7 @@ contains
       character(len=*), intent(in) :: word
       !> Whether it is in quotes
       logical, intent(in) :: in_quotes
-      !> The text without quotes; a choice in lower case
+      !> The text without quotes; a choice as the catalogue has it
       character(len=:), allocatable, intent(inout) :: string
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
@@ -304,7 +208,7 @@ contains
          return
       end if
       string = without_quotes(word)
-      if (key%choices /= "") string = trim(adjustl(lower(string)))
+      if (key%choices /= "") string = spelled(key%choices, trim(adjustl(string)))
       if (.not. is_utf8(string)) then
          message = "found a text that is not UTF-8, '"//shortened(string)//"'"
       else if (len(string) > longest_text) then

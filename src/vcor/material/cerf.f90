@@ -6,6 +6,7 @@ module vcor_material_cerf
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -167,17 +168,18 @@ contains
       modulus = self%equilibrium
    end function rubbery
 
-   !> A CERF material is no finite sum of exponentials
-   pure subroutine exponentials(self, terms, exact)
+   !> The modulus as a sum of exponentials, from its relaxation spectrum
+   pure subroutine exponentials(self, window, accuracy, terms)
       !> The material
       class(cerf_t), intent(in) :: self
-      !> Without terms
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
       type(exponential_sum_t), intent(out) :: terms
-      !> .false.
-      logical, intent(out) :: exact
 
-      exact = .false.
-      terms%equilibrium = self%equilibrium
+      call sum_of_spectrum(self, window, accuracy, terms)
    end subroutine exponentials
 
 end module vcor_material_cerf

@@ -18,6 +18,8 @@ module vcor_material_exponential_sum
       real(wp), allocatable :: rates(:)
       !> Viscosity of the dashpot in parallel [Pa s], >= 0
       real(wp) :: viscosity = 0.0_wp
+      !> Largest relative error against the modulus that it stands for [-]; 0: it is that modulus
+      real(wp) :: error = 0.0_wp
    contains
       !> The same sum times a factor
       procedure :: scaled
@@ -38,6 +40,7 @@ contains
       allocate (product%moduli, source=factor*self%moduli)
       allocate (product%rates, source=self%rates)
       product%viscosity = factor*self%viscosity
+      product%error = self%error
    end function scaled
 
 end module vcor_material_exponential_sum

@@ -227,16 +227,19 @@ contains
       modulus = self%equilibrium
    end function rubbery
 
-   !> The series itself
-   pure subroutine exponentials(self, terms, exact)
+   !> The series itself, whatever the window and the accuracy
+   pure subroutine exponentials(self, window, accuracy, terms)
       !> The material
       class(prony_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s]
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy
+      real(wp), intent(in) :: accuracy
       !> The series
       type(exponential_sum_t), intent(out) :: terms
-      !> .true.
-      logical, intent(out) :: exact
 
-      exact = .true.
+      associate (not_needed => [window, accuracy])
+      end associate
       terms%equilibrium = self%equilibrium
       allocate (terms%moduli, source=self%moduli)
       allocate (terms%rates, source=self%rates)

@@ -35,6 +35,8 @@ module vcor_material_type
       procedure(limit_i), deferred :: rubbery
       !> The modulus as a sum of exponentials
       procedure(exponentials_i), deferred :: exponentials
+      !> Whether the modulus is constant
+      procedure :: elastic
       !> Factor 1/(1 - nu^2) from E to the plane-strain modulus E' of Eq. (1)
       procedure :: plane_strain_factor
    end type material_t
@@ -71,15 +73,17 @@ module vcor_material_type
          real(wp) :: modulus
       end function limit_i
 
-      !> The modulus as a sum of exponentials
-      pure subroutine exponentials_i(self, terms, exact)
-         import :: exponential_sum_t, material_t
+      !> The modulus as a sum of exponentials: itself where it is one, else an approximation
+      pure subroutine exponentials_i(self, window, accuracy, terms)
+         import :: exponential_sum_t, material_t, wp
          !> The material
          class(material_t), intent(in) :: self
-         !> The sum; defined if `exact`
+         !> Time up to which the sum is to hold [s], > 0
+         real(wp), intent(in) :: window
+         !> Wanted relative accuracy, > 0
+         real(wp), intent(in) :: accuracy
+         !> The sum, its `error` told
          type(exponential_sum_t), intent(out) :: terms
-         !> Whether the material is a finite sum of exponentials
-         logical, intent(out) :: exact
       end subroutine exponentials_i
    end interface
 
@@ -94,5 +98,15 @@ contains
 
       factor = 1.0_wp/(1.0_wp - self%poisson_ratio**2)
    end function plane_strain_factor
+
+   !> Whether the modulus is constant: the material neither relaxes nor flows
+   pure function elastic(self)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> Whether it is
+      logical :: elastic
+
+      elastic = .not. (self%glassy() > self%rubbery() .or. self%viscosity > 0.0_wp)
+   end function elastic
 
 end module vcor_material_type

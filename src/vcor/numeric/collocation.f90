@@ -263,22 +263,20 @@ contains
       !> Value
       real(wp) :: y
 
-      real(wp) :: numerator, denominator, d, w
+      real(wp) :: before(0:width), after
       integer :: j
 
-      numerator = 0.0_wp
-      denominator = 0.0_wp
-      do j = 0, self%stages
-         d = theta - self%point(j)
-         if (abs(d) < 1.0e-15_wp) then
-            y = value(j)
-            return
-         end if
-         w = self%barycentric(j)/d
-         numerator = numerator + w*value(j)
-         denominator = denominator + w
+      ! Lagrange's form: the products of all differences before and after a point
+      before(0) = 1.0_wp
+      do j = 1, self%stages
+         before(j) = before(j - 1)*(theta - self%point(j - 1))
       end do
-      y = numerator/denominator
+      after = 1.0_wp
+      y = 0.0_wp
+      do j = self%stages, 0, -1
+         y = y + value(j)*self%barycentric(j)*before(j)*after
+         after = after*(theta - self%point(j))
+      end do
    end function interpolate
 
    !> Zero of the polynomial with the given values between two arguments where its signs differ,

@@ -6,14 +6,15 @@ module vcor_solver_collocator
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, new_collocation
    use vcor_solver_general_panel, only : solve_general_panel
-   use vcor_solver_panel, only : advance_modes, panel_t, solve_panel, start_t
+   use vcor_solver_modes, only : advance_modes, start_t
+   use vcor_solver_panel, only : panel_t, solve_panel
    use vcor_solver_step, only : step_t
    implicit none
    private
 
    public :: collocator_t, new_collocator
    public :: guess, solve_step, refine, advance, plate_velocity
-   public :: most_steps, newton_tolerance, refinement_tolerance
+   public :: most_steps
 
    !> Stages of the solution: enough that four panels make an impact, few enough that the
    !> eigenvectors of the integration matrices cost three digits only
@@ -22,11 +23,6 @@ module vcor_solver_collocator
    integer, parameter :: fine_stages = 8
    !> Steps in x = sqrt(t) are taken from x = 0, h, .. most_steps*h
    integer, parameter :: most_steps = 12
-   !> End of Newton's method on a panel: what is left is the square of it, at the end of an elastic
-   !> contact, where u'' is infinite, its power 1.5
-   real(wp), parameter :: newton_tolerance = 3.0e-8_wp
-   !> End of Newton's method where the guess is that close already
-   real(wp), parameter :: refinement_tolerance = 1.0e-6_wp
 
    !> Collocation rules; immutable once built
    type :: collocator_t
@@ -38,20 +34,26 @@ module vcor_solver_collocator
       real(wp) :: to_fine(fine_stages, 0:stages) = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp) :: second_coefficient = 0.0_wp
+      !> Error that Newton's method may leave in the indentation, over its largest value
+      real(wp) :: tolerance = 0.0_wp
    end type collocator_t
 
 contains
 
    !> Build the rules
-   subroutine new_collocator(self, error)
+   subroutine new_collocator(self, accuracy, error)
       !> The rules
       type(collocator_t), intent(out) :: self
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      real(wp), parameter :: tightest = 1.0e-14_wp, tolerance_share = 1.0e-4_wp
       real(wp) :: unit(0:stages)
       integer :: i, j
 
+      self%tolerance = max(tightest, tolerance_share*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
       call new_collocation(self%fine, fine_stages, most_steps, error)
@@ -102,7 +104,7 @@ contains
    end subroutine guess
 
    !> Solve the panel of a step
-   pure subroutine solve_step(self, rule, step, impact, kernel, start, panel, tolerance)
+   pure subroutine solve_step(self, rule, step, impact, kernel, start, panel)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Collocation rule
@@ -117,15 +119,13 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry its indentation is guessed
       type(panel_t), intent(inout) :: panel
-      !> End of Newton's iteration
-      real(wp), intent(in) :: tolerance
 
       if (abs(self%second_coefficient) > 0.0_wp .or. impact%plate%frozen()) then
          call solve_general_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, &
-            self%second_coefficient, start, panel, tolerance)
+            self%second_coefficient, start, panel, self%tolerance)
       else
          call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, &
-            panel, tolerance)
+            panel, self%tolerance)
       end if
    end subroutine solve_step
 
@@ -147,7 +147,7 @@ contains
       type(panel_t), intent(out) :: fine
 
       fine%indentation(1:fine_stages) = matmul(self%to_fine, panel%indentation(0:stages))
-      call solve_step(self, self%fine, step, impact, kernel, start, fine, refinement_tolerance)
+      call solve_step(self, self%fine, step, impact, kernel, start, fine)
    end subroutine refine
 
    !> Make the end of a panel the start of the next one
@@ -164,7 +164,8 @@ contains
       type(start_t), intent(inout) :: start
 
       associate (n => rule%stages)
-         call advance_modes(rule, rule%map(step%index), step%map_scale(), kernel, panel, start%q)
+         call advance_modes(rule, rule%map(step%index), step%map_scale(), kernel, &
+            panel%indentation(1:), start%q)
          start%time = panel%time(n)
          start%indentation = panel%indentation(n)
          start%force = panel%force(n)
@@ -191,7 +192,8 @@ contains
       if (impact%plate%frozen()) then
          velocity = velocity - panel%drift(j)
       else
-         velocity = velocity + impact%plate%alpha_rate(panel%time(j))*panel%impulse(j)
+         velocity = velocity + panel%impulse(j) &
+            *impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
       end if
    end function plate_velocity
 

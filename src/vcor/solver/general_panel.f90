@@ -15,8 +15,9 @@ module vcor_solver_general_panel
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
-   use vcor_numeric_linear, only : solve_linear
-   use vcor_solver_panel, only : panel_t, resolve_modes, start_t
+   use vcor_solver_modes, only : resolve_modes, start_t
+   use vcor_solver_newton, only : most_iterations, newton_t
+   use vcor_solver_panel, only : panel_t
    implicit none
    private
 
@@ -43,11 +44,9 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry `indentation` holds a guess at the stages
       type(panel_t), intent(inout) :: panel
-      !> Newton's iteration ends with the first correction below this part of the largest
-      !> indentation
+      !> Wanted error of the indentation over its largest value
       real(wp), intent(in) :: tolerance
 
-      integer, parameter :: most_iterations = 25
       complex(wp), dimension(width) :: lambda, stiffness, memory
       real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
       real(wp), dimension(width) :: impulse, drift
@@ -55,7 +54,8 @@ contains
       real(wp) :: lag(width, width, size(kernel%rates))
       complex(wp) :: factor
       integer :: n, iteration, j, k, m
-      logical :: regular, frozen
+      type(newton_t) :: newton
+      logical :: frozen
 
       n = rule%stages
       frozen = impact%plate%frozen()
@@ -105,24 +105,25 @@ contains
       s = 0.0_wp
       s(1:n) = panel%indentation(1:n)
       right(n + 1:) = 0.0_wp
-      panel%converged = .false.
       do iteration = 1, most_iterations
          u = hertz(s)
          force = matmul(s_matrix, u) - b
          slope = s_matrix
          call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
          change = right - s - matmul(response, force)
-         jacobian = matmul(response, slope)
-         do j = 1, width
-            jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
-            jacobian(j, j) = jacobian(j, j) + 1.0_wp
-         end do
-         call solve_linear(jacobian, change, regular)
-         if (.not. regular) return
-         s = s + change
-         panel%converged = maxval(abs(change)) <= tolerance*maxval(abs(s))
-         if (panel%converged) exit
+         if (newton%stale) then
+            jacobian = matmul(response, slope)
+            do j = 1, width
+               jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
+               jacobian(j, j) = jacobian(j, j) + 1.0_wp
+            end do
+            newton%jacobian%matrix = jacobian
+         end if
+         call newton%correct(change, s, tolerance)
+         if (newton%converged .or. newton%failed) exit
       end do
+      panel%converged = newton%converged
+      if (.not. panel%converged) return
 
       u = hertz(s)
       force = matmul(s_matrix, u) - b
@@ -145,7 +146,6 @@ contains
       panel%deflection(0) = start%deflection
       panel%deflection(1:) = start%deflection + matmul(h, alpha*force - drift)
       panel%alpha(1:) = alpha
-      panel%end_stiffness = slope(n, n)
    end subroutine solve_general_panel
 
    !> Add the second term of the Volterra series to the force and its derivative to the stiffness

@@ -3,9 +3,9 @@ module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_collocator, only : collocator_t, guess, newton_tolerance, plate_velocity, &
-      solve_step
-   use vcor_solver_panel, only : panel_t, start_t
+   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_step
+   use vcor_solver_modes, only : start_t
+   use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private
@@ -67,12 +67,13 @@ contains
       theta = self%rule%crossing(crossing%force(0:n), self%rule%point(k - 1), self%rule%point(k))
       time = theta*(crossing%map(1) + crossing%map(2)*theta)
 
-      ! Write F = kappa u - M with any kappa that is about dF/du: the indentation s and the memory
+      ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
+      ! left out: the indentation s and the memory
       ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
       ! kappa u(s) = M with s and M linear in time, the slope of M from the polynomials of the panel
       ! and then from the last two iterations
-      tolerance = 1.0e-3_wp*min(accuracy, 1.0e-7_wp)
-      kappa = crossing%end_stiffness
+      tolerance = 0.1_wp*min(accuracy, 1.0e-7_wp)
+      kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
       memory_rate = (kappa*slope_at(hertz(crossing%indentation(0:n))) &
          - slope_at(crossing%force(0:n)))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
@@ -83,7 +84,7 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_step(self, self%rule, step, impact, kernel, start, panel, newton_tolerance)
+         call solve_step(self, self%rule, step, impact, kernel, start, panel)
          if (.not. panel%converged) return
          last = panel
          velocity = impact%velocity - panel%impulse(n)/impact%mass &

@@ -294,7 +294,6 @@ contains
          type(exponential_sum_t) :: terms
          real(wp), allocatable :: longer(:), kernel(:), bend(:)
          integer :: i, values
-         logical :: exact
 
          ! one node more for the end of contact
          call trajectory%reserve(room + 1)
@@ -311,7 +310,8 @@ contains
          else
             kernel = impact%hertz_factor*impact%modulus%rate([(dt*real(i, wp), i = 0, values - 1)])
             if (two_terms) then
-               call impact%kernel_exponentials(terms, exact)
+               ! a finite sum, whatever the accuracy: others are refused
+               call impact%kernel_exponentials(dt*real(room, wp), 1.0_wp, terms)
                allocate (bend(0:2*room - 1))
                do i = 0, 2*room - 1
                   bend(i) = sum(terms%moduli*terms%rates**2*exp(-terms%rates*(dt*real(i, wp))))

@@ -117,7 +117,6 @@ contains
       real(wp), parameter :: early = 1.0e-12_wp, noticeable = 1.01_wp
       type(exponential_sum_t) :: terms
       real(wp) :: time
-      logical :: exact
 
       if (impact%kernel_viscosity() > 0.0_wp) then
          call raise(error, error_input, "scheme = 'adams_bashforth' has no term for a viscosity; " &
@@ -132,9 +131,9 @@ contains
             call raise(error, error_input, "form = 'b' needs a modulus with a finite rate at " &
                //"t = 0, which this contact does not have; use form = 'a'")
          else if (abs(self%scheme%second_coefficient) > 0.0_wp) then
-            call impact%kernel_exponentials(terms, exact)
-            if (.not. exact) call raise(error, error_input, "the second Volterra term in form = " &
-               //"'b' needs a modulus that is a sum of exponentials; use form = 'a'")
+            call impact%kernel_exponentials(impact%time_scale(), 1.0_wp, terms)
+            if (terms%error > 0.0_wp) call raise(error, error_input, 'the second Volterra term ' &
+               //"in form = 'b' needs a modulus that is a sum of exponentials; use form = 'a'")
          end if
       end if
    end subroutine refuse

@@ -6,10 +6,10 @@ module vcor_solver_recording
       contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t
-   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, refinement_tolerance, &
-      solve_step
-   use vcor_solver_panel, only : panel_t, start_t
+   use vcor_numeric_collocation, only : collocation_t, width
+   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_step
+   use vcor_solver_modes, only : start_t
+   use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private
@@ -40,7 +40,7 @@ contains
    end subroutine begin
 
    !> Add a panel to the trajectory
-   subroutine append(self, impact, kernel, start, panel, trajectory)
+   subroutine append(self, impact, kernel, start, panel, fine, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -51,6 +51,10 @@ contains
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
+      !> The panel of the finer solution
+      type(panel_t), intent(in) :: fine
+      !> Wanted relative accuracy of the maxima
+      real(wp), intent(in) :: accuracy
       !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
@@ -80,11 +84,11 @@ contains
       end do
       if (trajectory%status == contact_separated) return
       trajectory%last = trajectory%final
-      call find_peaks(self, impact, kernel, start, panel, trajectory)
+      call find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
    end subroutine append
 
    !> Largest indentation and force so far
-   subroutine find_peaks(self, impact, kernel, start, panel, trajectory)
+   subroutine find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -95,64 +99,84 @@ contains
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
+      !> The panel of the finer solution
+      type(panel_t), intent(in) :: fine
+      !> Wanted relative accuracy of the maxima
+      real(wp), intent(in) :: accuracy
       !> The trajectory, the panel added
       type(trajectory_t), intent(inout) :: trajectory
 
-      type(panel_t) :: peak
-      integer :: n, j
+      integer :: n
 
       n = panel%stages
-      if (rises_and_falls(panel%indentation(0:n))) then
-         call solve_to_peak(panel%indentation(0:n))
-         if (peak%converged .and. peak%indentation(n) > trajectory%max_indentation) then
-            trajectory%max_indentation = peak%indentation(n)
-            trajectory%time_of_max_indentation = peak%time(n)
-         end if
-      end if
-      if (rises_and_falls(panel%force(0:n))) then
-         call solve_to_peak(panel%force(0:n))
-         if (peak%converged .and. peak%force(n) > trajectory%max_force) then
-            trajectory%max_force = peak%force(n)
-            trajectory%time_of_max_force = peak%time(n)
-         end if
-      end if
-      do j = 1, n
-         if (panel%indentation(j) > trajectory%max_indentation) then
-            trajectory%max_indentation = panel%indentation(j)
-            trajectory%time_of_max_indentation = panel%time(j)
-         end if
-         if (panel%force(j) > trajectory%max_force) then
-            trajectory%max_force = panel%force(j)
-            trajectory%time_of_max_force = panel%time(j)
-         end if
-      end do
+      call look_for_peak(panel%indentation, fine%indentation, .true., &
+         trajectory%max_indentation, trajectory%time_of_max_indentation)
+      call look_for_peak(panel%force, fine%force, .false., trajectory%max_force, &
+         trajectory%time_of_max_force)
 
    contains
 
-      !> Whether a polynomial has a maximum inside the panel
-      pure function rises_and_falls(value)
-         !> Values at the points, shape (0:n)
+      !> Larger value in the panel than so far, if there is one
+      subroutine look_for_peak(value, fine_value, of_indentation, largest, time)
+         !> Values at the points of the panel
+         real(wp), intent(in) :: value(0:width)
+         !> Values at the points of the finer solution
+         real(wp), intent(in) :: fine_value(0:width)
+         !> Whether they are those of the indentation, otherwise of the force
+         logical, intent(in) :: of_indentation
+         !> Largest value so far
+         real(wp), intent(inout) :: largest
+         !> Its time [s]
+         real(wp), intent(inout) :: time
+
+         real(wp) :: peak, peak_time
+         integer :: j
+
+         if (sum(self%rule%derivative(0, 0:n)*value(0:n)) > 0.0_wp .and. &
+             sum(self%rule%derivative(n, 0:n)*value(0:n)) < 0.0_wp) then
+            call find_peak(value(0:n), fine_value, of_indentation, peak, peak_time)
+            if (peak > largest) then
+               largest = peak
+               time = peak_time
+            end if
+         end if
+         do j = 1, n
+            if (value(j) > largest) then
+               largest = value(j)
+               time = panel%time(j)
+            end if
+         end do
+      end subroutine look_for_peak
+
+      !> Maximum inside the panel: where the polynomials of both solutions agree from them, otherwise
+      !> by solving the panel up to there, as it is more accurate at its end
+      subroutine find_peak(value, fine_value, of_indentation, peak, time)
+         !> Values at the points of the panel
          real(wp), intent(in) :: value(0:)
-         !> Whether it rises at the start and falls at the end
-         logical :: rises_and_falls
+         !> Values at the points of the finer solution
+         real(wp), intent(in) :: fine_value(0:width)
+         !> Whether they are those of the indentation, otherwise of the force
+         logical, intent(in) :: of_indentation
+         !> Maximum
+         real(wp), intent(out) :: peak
+         !> Its time [s]
+         real(wp), intent(out) :: time
 
-         rises_and_falls = sum(self%rule%derivative(0, 0:n)*value) > 0.0_wp &
-            .and. sum(self%rule%derivative(n, 0:n)*value) < 0.0_wp
-      end function rises_and_falls
-
-      !> Solve the panel up to a maximum: inside, its polynomials are less accurate than at its end
-      subroutine solve_to_peak(value)
-         !> Values at the points, shape (0:n)
-         real(wp), intent(in) :: value(0:)
-
+         type(panel_t) :: cut
          type(step_t) :: step
          real(wp) :: theta
 
          theta = self%rule%crossing(matmul(self%rule%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
-         step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
-         call guess(self%rule, impact, panel, start, step, peak)
-         call solve_step(self, self%rule, step, impact, kernel, start, peak, refinement_tolerance)
-      end subroutine solve_to_peak
+         time = theta*(panel%map(1) + panel%map(2)*theta)
+         peak = self%fine%interpolate(fine_value(0:self%fine%stages), theta)
+         if (.not. abs(peak - self%rule%interpolate(value, theta)) <= accuracy*peak) then
+            step = step_to(start%time, time)
+            call guess(self%rule, impact, panel, start, step, cut)
+            call solve_step(self, self%rule, step, impact, kernel, start, cut)
+            if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
+         end if
+         time = start%time + time
+      end subroutine find_peak
    end subroutine find_peaks
 
 end module vcor_solver_recording

@@ -13,6 +13,9 @@ module vcor_solver_step
       integer :: index = 0
       !> Length in x [s^0.5] or in t [s]
       real(wp) :: length = 0.0_wp
+      !> Length in x that the first step was meant to have [s^0.5]; shorter ones are owed to the
+      !> start and grow as they leave it
+      real(wp) :: reach = 0.0_wp
    contains
       !> Scale of the map of the panel
       procedure :: map_scale
@@ -76,7 +79,7 @@ contains
 
       select case (self%index)
       case (0)
-         self%length = sqrt(time)
+         self%length = 0.5_wp*self%length
       case (1)
          self%length = 0.5_wp*self%length
          self%index = 2
@@ -99,7 +102,7 @@ contains
          self%length = self%length*growth
       else
          self%index = self%index + 1
-         if (growth >= 2.0_wp .and. mod(self%index, 2) == 0) then
+         if (mod(self%index, 2) == 0 .and. (growth >= 2.0_wp .or. self%length < 0.6_wp*self%reach)) then
             self%index = self%index/2
             self%length = 2.0_wp*self%length
          end if

@@ -148,9 +148,9 @@ contains
       data%beta = number(case, 'material', 'beta', item)
       data%equilibrium_modulus = number(case, 'material', 'equilibrium_modulus', item)
       call case%get('material', 'moduli', data%moduli, item)
+      call case%get('material', 'times', data%times, item)
       if (case%given('material', 'times', item)) then
-         call case%get('material', 'times', data%rates, item)
-         data%rates = 1.0_wp/data%rates
+         data%rates = 1.0_wp/data%times
       else
          call case%get('material', 'rates', data%rates, item)
       end if
@@ -158,6 +158,7 @@ contains
       data%coefficient = number(case, 'material', 'coefficient', item)
       data%exponent = number(case, 'material', 'exponent', item)
       data%relaxing_modulus = number(case, 'material', 'relaxing_modulus', item)
+      data%time = number(case, 'material', 'time', item)
       call new_material(material, data, error)
       if (allocated(error)) call locate(case, 'material', 'name', error, item)
    end subroutine build_material

@@ -36,7 +36,7 @@ contains
 
       type(solver_settings_t) :: settings
 
-      comparison%two_methods = size(methods_for(impact)) == 2
+      comparison%two_methods = size(methods_for()) == 2
       call take_settings(case, comparison%two_methods, settings)
       call comparison%attempts(attempt_first)%try(settings, impact, error)
       if (allocated(error)) return
@@ -47,7 +47,7 @@ contains
       end if
       call halve(comparison%attempts, settings, impact, error)
       if (allocated(error)) return
-      if (is_another(case, impact, comparison%two_methods)) then
+      if (is_another(case, comparison%two_methods)) then
          call comparison%attempts(attempt_case)%try_case(case, impact, error)
          if (allocated(error)) return
       end if
@@ -79,11 +79,9 @@ contains
    end subroutine take_settings
 
    !> Whether the case's own solver is none of those that are tried anyway
-   function is_another(case, impact, two_methods)
+   function is_another(case, two_methods)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Its impact
-      type(impact_t), intent(in) :: impact
       !> Whether the internal variables were tried
       logical, intent(in) :: two_methods
       !> Whether it is
@@ -92,7 +90,7 @@ contains
       character(len=:), allocatable :: scheme
 
       call case%get('solver', 'scheme', scheme)
-      is_another = method_of_case(case, impact) == 'direct' .and. (two_methods &
+      is_another = method_of_case(case) == 'direct' .and. (two_methods &
          .or. scheme /= 'product' .or. case%given('solver', 'time_step'))
    end function is_another
 

@@ -153,7 +153,7 @@ contains
       character(len=*), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: key
-      !> The value; choices in lower case
+      !> The value; choices as the catalogue has them
       character(len=:), allocatable, intent(out) :: value
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item

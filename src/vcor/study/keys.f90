@@ -15,7 +15,7 @@ module vcor_study_keys
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       & list_key
    public :: find_group, find_key, first_row, last_row, row_for_model, contains_word
-   public :: kind_name, range_text, wanted, keys_of, group_names, join_words
+   public :: kind_name, range_text, wanted, keys_of, group_names, join_words, spelled
 
    !> Kinds of values: a real number
    integer, parameter :: real_key = 1
@@ -43,12 +43,12 @@ module vcor_study_keys
       !> Range of a number, or of every number of a list
       type(interval_t) :: range = interval_t()
       !> Words a text may be, separated by blanks; blank: any text
-      character(len=48) :: choices = ""
+      character(len=64) :: choices = ""
       !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the
       !> empty text
       character(len=12) :: default = ""
       !> Models of the group's selector this row is for, separated by blanks; blank: all
-      character(len=40) :: models = ""
+      character(len=56) :: models = ""
       !> Whether the key must be given
       logical :: required = .false.
    end type key_t
@@ -75,6 +75,8 @@ module vcor_study_keys
       & interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
    type(interval_t), parameter :: unit_open = &
       & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
+   type(interval_t), parameter :: unit_half_open = &
+      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
@@ -117,10 +119,10 @@ module vcor_study_keys
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices="rigid elastic sls prony power_law cerf", required=.true.), &
+      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
       & key_t("material", "density", real_key, "Density", "kg/m3", positive), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
-      &    models="elastic sls prony power_law cerf", required=.true.), &
+      &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &
       &    range=poisson_range, models="rigid"), &
       & key_t("material", "modulus", real_key, "Young's modulus", "Pa", positive, &
@@ -134,7 +136,7 @@ module vcor_study_keys
       & key_t("material", "beta", real_key, "Root of the rate of relaxation", "s^-1/2", positive, &
       &    models="cerf", required=.true.), &
       & key_t("material", "equilibrium_modulus", real_key, "Modulus after a long time", "Pa", &
-      &    not_negative, models="prony power_law cerf", default="0.0"), &
+      &    not_negative, models="prony power_law cerf mittag_leffler", default="0.0"), &
       & key_t("material", "moduli", list_key, "Moduli of the relaxing terms", "Pa", positive, &
       &    models="prony"), &
       & key_t("material", "rates", list_key, "Rates of the relaxing terms; or give times", "1/s", &
@@ -147,8 +149,18 @@ module vcor_study_keys
       &    "Pa s^a", positive, models="power_law", required=.true.), &
       & key_t("material", "exponent", real_key, "Exponent a of C t^-a / Gamma(1-a)", &
       &    range=unit_open, models="power_law", required=.true.), &
+      & key_t("material", "exponent", real_key, "Exponent a of the function E_a(-(t/time)^a)", &
+      &    range=unit_half_open, models="mittag_leffler", required=.true.), &
       & key_t("material", "relaxing_modulus", real_key, "Part of the modulus that relaxes", "Pa", &
-      &    positive, models="cerf", required=.true.), &
+      &    positive, models="cerf mittag_leffler", required=.true.), &
+      & key_t("material", "time", real_key, "Relaxation time", "s", positive, &
+      &    models="mittag_leffler", required=.true.), &
+      & key_t("material", "file", text_key, "File of times and moduli; from the case's folder", &
+      &    models="table", required=.true.), &
+      & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
+      &    choices="ns us ms s min h", models="table", default="s"), &
+      & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
+      &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
       !
       & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
       &    choices="auto ive direct", default="auto"), &
@@ -273,6 +285,22 @@ contains
       yes = len_trim(word) > 0 .and. index(trim(word), " ") == 0
       if (yes) yes = index(" "//words//" ", " "//trim(word)//" ") > 0
    end function contains_word
+
+   !> A word as it is spelled in a list of words: upper and lower case make no difference
+   pure function spelled(words, word) result(same)
+      !> Words separated by blanks
+      character(len=*), intent(in) :: words
+      !> The word
+      character(len=*), intent(in) :: word
+      !> The word of the list; in lower case when it is not there
+      character(len=len(word)) :: same
+      integer :: place
+
+      same = lower(word)
+      if (.not. contains_word(lower(words), same)) return
+      place = index(" "//lower(words)//" ", " "//same//" ")
+      same = words(place:place + len(word) - 1)
+   end function spelled
 
    !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
    pure function range_text(key) result(text)

@@ -12,7 +12,8 @@ module vcor_study_verification
    use vcor_study_verification_elastic, only : hertz, zener
    use vcor_study_verification_golden, only : golden, printed
    use vcor_study_verification_kelvin_voigt, only : exact, pade, series, zener_relation
-   use vcor_study_verification_memory, only : limits, power_law, scaling, weak_maxwell
+   use vcor_study_verification_memory, only : limits, mittag_leffler, &
+      power_law, scaling, weak_maxwell
    use vcor_study_verification_row, only : accuracy_of, judge, law_t, row_t, verdict_t
    implicit none
    private
@@ -20,7 +21,7 @@ module vcor_study_verification
    public :: law_count, build_law, verify_law
 
    !> Number of laws
-   integer, parameter :: law_count = 12
+   integer, parameter :: law_count = 13
 
 contains
 
@@ -51,10 +52,12 @@ contains
       case (8)
          call power_law(law)
       case (9)
-         call scaling(law)
+         call mittag_leffler(law)
       case (10)
-         call limits(law)
+         call scaling(law)
       case (11)
+         call limits(law)
+      case (12)
          call golden(law)
       case (law_count)
          call printed(law)

@@ -31,7 +31,7 @@ contains
       character(len=*), parameter :: why = 'accuracy that the method is asked for'
       character(len=*), parameter :: why_other = 'ten times the accuracy asked of cor'
       type(impact_t) :: impact
-      character(len=6), allocatable :: methods(:)
+      character(len=6) :: methods(2)
       real(wp) :: scale, tolerance
       integer :: i
 
@@ -40,7 +40,7 @@ contains
       call strike(impact, law%error, elastic(modulus))
       if (allocated(law%error)) return
       scale = hertz_scale(impact)
-      methods = methods_for(impact)
+      methods = methods_for()
       do i = 1, size(methods)
          tolerance = accuracy_of(methods(i))
          call law%add('cor', methods(i), 1.0_wp, tolerance, why, impact)
@@ -73,7 +73,7 @@ contains
          [character(len=8) :: 'constant', 'relaxing']
       character(len=*), parameter :: why = 'accuracy that the method is asked for'
       type(impact_t) :: impact
-      character(len=6), allocatable :: methods(:)
+      character(len=6) :: methods(2)
       integer :: i, j, waves
 
       call law%begin('Elastic sphere on an elastic plate with waves: cor depends on lambda', &
@@ -82,7 +82,7 @@ contains
          do waves = waves_constant, waves_relaxing
             call zener_plate(impact, law%error, elastic(modulus), waves, lambda(i))
             if (allocated(law%error)) return
-            methods = methods_for(impact)
+            methods = methods_for()
             do j = 1, size(methods)
                call law%add('cor, lambda = '//label(i)//', '//trim(name(waves)), &
                   methods(j), cor(i), accuracy_of(methods(j)), why, impact)

@@ -70,7 +70,7 @@ contains
       character(len=*), parameter :: why = &
          'accuracy asked for, and the first term left out, b^5.5'
       type(impact_t) :: impact, two(2)
-      character(len=6), allocatable :: methods(:)
+      character(len=6) :: methods(2)
       real(wp) :: b, scale, order, order_tolerance
       integer :: i, j
 
@@ -84,7 +84,7 @@ contains
          call strike(impact, law%error, kelvin_voigt(modulus, damping/1.5_wp*scale*modulus), &
             velocity=velocity(i))
          if (allocated(law%error)) return
-         methods = methods_for(impact)
+         methods = methods_for()
          do j = 1, size(methods)
             call law%add(trim(name(i)), methods(j), polynomial(coefficient, sqrt(b)), &
                accuracy_of(methods(j)) + b**5.5_wp, why, impact)
@@ -143,7 +143,7 @@ contains
          0.02509570443151839241_wp]
       character(len=*), parameter :: label(3) = [' 0.1', ' 1.0', '10.0']
       type(impact_t) :: impact
-      character(len=6), allocatable :: methods(:)
+      character(len=6) :: methods(2)
       integer :: i, j
 
       call law%begin('Kelvin-Voigt contact, F = 0 at the end, weak to strong', &
@@ -151,7 +151,7 @@ contains
       do i = 1, size(b)
          call damped(law, b(i), impact)
          if (allocated(law%error)) return
-         methods = methods_for(impact)
+         methods = methods_for()
          do j = 1, size(methods)
             call law%add('cor, b = '//label(i), methods(j), cor(i), accuracy_of(methods(j)), &
                'accuracy that the method is asked for', impact)
@@ -168,7 +168,7 @@ contains
       real(wp), parameter :: lambda(3) = [0.05_wp, 0.2_wp, 0.3_wp]
       character(len=*), parameter :: label(3) = ['0.05', '0.20', '0.30']
       type(impact_t) :: two(2)
-      character(len=6), allocatable :: methods(:)
+      character(len=6) :: methods(2)
       real(wp) :: p, left_out
       integer :: i, j
 
@@ -181,7 +181,7 @@ contains
          ! at most, e being below 1
          p = (1.5_wp*lambda(i))**2.5_wp
          left_out = ends(6)*p**7/(1.0_wp - p)
-         methods = methods_for(two(1))
+         methods = methods_for()
          do j = 1, size(methods)
             call law%add_measure('cor, lambda = '//label(i), methods(j), 0.0_wp, &
                2.0_wp*accuracy_of(methods(j)) + left_out, &

@@ -1,0 +1,289 @@
+!> Data files of materials: points of a relaxation modulus, a time and a modulus to a line
+!>
+!> Between the two stands a comma, a semicolon, a tab or blanks. Blank lines and what follows a #
+!> do not count, one line before the first number may say what the columns are, lines end as
+!> they do on any system, and a byte-order mark is passed over.
+module vcor_io_data_file
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_io_file, only : join_path
+   use vcor_io_real, only : looks_numeric, read_real
+   use vcor_io_text_file, only : read_text_file
+   use vcor_kinds, only : wp
+   use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
+   use vcor_study_case, only : case_t
+   use vcor_study_store, only : entry_t
+   use vcor_study_text, only : integer_text, printable, real_text
+   implicit none
+   private
+
+   public :: read_data, data_file
+
+   character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
+   character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+   character(len=*), parameter :: blanks = " "//achar(9)
+   !> What the columns hold
+   character(len=*), parameter :: names(2) = [character(len=7) :: "time", "modulus"]
+
+contains
+
+   !> Read the data files of a validated case: the points become `times` and `moduli` of their
+   !> material, which no user can give to it
+   subroutine read_data(case, error)
+      !> The case
+      type(case_t), intent(inout) :: case
+      !> Error of code `error_file` when a file cannot be read, `error_input` when its contents are
+      !> wrong; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      type(entry_t) :: times, moduli
+      character(len=:), allocatable :: path, text, unit
+      real(wp) :: scale(2)
+      integer :: item
+
+      do item = 1, case%count("material")
+         path = data_file(case, item)
+         if (path == "") cycle
+         call read_text_file(path, text, error, kind="a file of times and moduli")
+         if (allocated(error)) then
+            error%message = case%location("material", "file", item)//": "//error%message
+            return
+         end if
+         call case%get("material", "time_unit", unit, item)
+         scale(1) = size_of(unit)
+         call case%get("material", "modulus_unit", unit, item)
+         scale(2) = size_of(unit)
+         call read_points(text, printable(path), scale, times%list, moduli%list, error)
+         if (allocated(error)) return
+         call case%assign(case%handle("material", "times", item), times)
+         call case%assign(case%handle("material", "moduli", item), moduli)
+      end do
+   end subroutine read_data
+
+   !> Path of the data file of a material, from the folder of the case file
+   pure function data_file(case, item) result(path)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> The path; empty when there is no such file
+      character(len=:), allocatable :: path
+
+      call case%get("material", "file", path, item)
+      if (path /= "") path = join_path(case%source(:index(case%source, "/", back=.true.)), path)
+   end function data_file
+
+   !> A unit in that of the SI
+   pure function size_of(unit) result(scale)
+      !> One of the choices of time_unit and modulus_unit
+      character(len=*), intent(in) :: unit
+      !> In seconds or Pa
+      real(wp) :: scale
+
+      select case (unit)
+      case ("ns")
+         scale = 1.0e-9_wp
+      case ("us")
+         scale = 1.0e-6_wp
+      case ("ms")
+         scale = 1.0e-3_wp
+      case ("min")
+         scale = 60.0_wp
+      case ("h")
+         scale = 3600.0_wp
+      case ("kPa")
+         scale = 1.0e3_wp
+      case ("MPa")
+         scale = 1.0e6_wp
+      case ("GPa")
+         scale = 1.0e9_wp
+      case default
+         scale = 1.0_wp
+      end select
+   end function size_of
+
+   !> Read the points
+   subroutine read_points(text, name, scale, times, moduli, error)
+      !> Contents of the file
+      character(len=*), intent(in) :: text
+      !> Its name for messages
+      character(len=*), intent(in) :: name
+      !> Units of times and moduli [s], [Pa]
+      real(wp), intent(in) :: scale(2)
+      !> Times [s], shape (n), n >= 2
+      real(wp), allocatable, intent(out) :: times(:)
+      !> Moduli [Pa], shape (n)
+      real(wp), allocatable, intent(out) :: moduli(:)
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: content, message
+      real(wp), allocatable :: points(:, :)
+      integer :: start, line, n, last_line, columns, from(2), to(2)
+      logical :: first
+
+      allocate(points(2, lines_in(text)))
+      start = 1
+      if (index(text, byte_order_mark) == 1) start = 1 + len(byte_order_mark)
+      line = 0
+      n = 0
+      first = .true.
+      do while (start <= len(text))
+         call take_line(text, start, content)
+         line = line + 1
+         call split(content, columns, from, to)
+         if (columns == 0) cycle
+         if (first) then
+            first = .false.
+            if (.not. any([looks_numeric(content(from(1):to(1))), &
+               & looks_numeric(content(from(2):to(2)))])) cycle
+         end if
+         if (columns == 2) then
+            call read_point(content, from, to, scale, points(:, n+1), message)
+            if (.not. allocated(message) .and. n > 0) &
+               & call compare(points(:, n), points(:, n+1), last_line, message)
+         else
+            message = "found "//integer_text(columns)//" columns, expected 2, a time and a " &
+               & //"modulus, with a comma, a semicolon, a tab or blanks between them"
+         end if
+         if (allocated(message)) then
+            call raise(error, error_input, name//":"//integer_text(line)//": "//message)
+            return
+         end if
+         n = n + 1
+         last_line = line
+      end do
+      if (n < 2) then
+         call raise(error, error_input, name//": found "//integer_text(n)//" points, expected 2 " &
+            & //"at least, a time and a modulus to a line")
+         return
+      end if
+      times = points(1, :n)*scale(1)
+      moduli = points(2, :n)*scale(2)
+   end subroutine read_points
+
+   !> Number of lines in a text, or a little more
+   pure function lines_in(text) result(n)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The number
+      integer :: n
+      integer :: i
+
+      n = 1
+      do i = 1, len(text)
+         if (text(i:i) == line_feed .or. text(i:i) == carriage_return) n = n + 1
+      end do
+   end function lines_in
+
+   !> Take a line from a text
+   pure subroutine take_line(text, start, content)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where the line begins, on return where the next one does
+      integer, intent(inout) :: start
+      !> The line without its end and without what follows a #
+      character(len=:), allocatable, intent(out) :: content
+      integer :: last, mark
+
+      last = scan(text(start:), carriage_return//line_feed) + start - 2
+      if (last < start - 1) last = len(text)
+      mark = index(text(start:last), "#")
+      content = text(start:merge(start + mark - 2, last, mark > 0))
+      start = last + 2
+      if (start > len(text)) return
+      if (text(start-1:start) == carriage_return//line_feed) start = start + 1
+   end subroutine take_line
+
+   !> Find the columns of a line: between commas or semicolons if there are any, else between blanks
+   pure subroutine split(content, columns, from, to)
+      !> The line
+      character(len=*), intent(in) :: content
+      !> Their number, 0 in a blank line
+      integer, intent(out) :: columns
+      !> Where each of the first two begins
+      integer, intent(out) :: from(2)
+      !> Where it ends, blanks left out
+      integer, intent(out) :: to(2)
+      integer :: start, last, column
+
+      columns = 0
+      from = 1
+      to = 0
+      if (verify(content, blanks) == 0) return
+      start = 1
+      do
+         if (scan(content, ",;") > 0) then
+            last = scan(content(start:), ",;") + start - 2
+         else
+            start = verify(content(start:), blanks) + start - 1
+            last = scan(content(start:), blanks) + start - 2
+         end if
+         if (last < start - 1) last = len(content)
+         columns = columns + 1
+         column = min(columns, 2)
+         if (columns <= 2) then
+            from(column) = start
+            to(column) = start - 1 + verify(content(start:last), blanks, back=.true.)
+            if (to(column) >= start) from(column) = start - 1 &
+               & + verify(content(start:last), blanks)
+         end if
+         start = last + 2
+         if (last == len(content)) exit
+         if (scan(content, ",;") == 0 .and. verify(content(last+1:), blanks) == 0) exit
+      end do
+   end subroutine split
+
+   !> Read time and modulus
+   subroutine read_point(content, from, to, scale, point, message)
+      !> The line
+      character(len=*), intent(in) :: content
+      !> Where the columns begin
+      integer, intent(in) :: from(2)
+      !> Where they end
+      integer, intent(in) :: to(2)
+      !> Units of time and modulus [s], [Pa]
+      real(wp), intent(in) :: scale(2)
+      !> Time and modulus, in these units
+      real(wp), intent(out) :: point(2)
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+      character(len=:), allocatable :: expected
+      integer :: i
+
+      point = 0.0_wp
+      do i = 1, 2
+         expected = "a "//trim(names(i))//" > 0"
+         call read_real(content(from(i):to(i)), expected, point(i), message)
+         if (allocated(message)) return
+         if (.not. point(i) > 0.0_wp) then
+            message = "found "//real_text(point(i))//", expected "//expected
+         else if (.not. (point(i) >= smallest_value/scale(i) &
+            & .and. point(i) <= largest_value/scale(i))) then
+            message = "found "//real_text(point(i))//", expected "//expected//", between " &
+               & //real_text(smallest_value)//" and "//real_text(largest_value) &
+               & //" in units of the SI"
+         end if
+         if (allocated(message)) return
+      end do
+   end subroutine read_point
+
+   !> Compare a point with the one before it
+   pure subroutine compare(before, point, line, message)
+      !> The point before
+      real(wp), intent(in) :: before(2)
+      !> The point
+      real(wp), intent(in) :: point(2)
+      !> Line of the point before
+      integer, intent(in) :: line
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+
+      if (.not. point(1) > before(1)) then
+         message = "found time "//real_text(point(1))//" after "//real_text(before(1)) &
+            & //" in line "//integer_text(line)//", expected times that increase"
+      else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
+         message = "found modulus "//real_text(point(2))//" after "//real_text(before(2)) &
+            & //" in line "//integer_text(line)//", expected moduli that fall: a relaxation " &
+            & //"modulus never grows with time"
+      end if
+   end subroutine compare
+
+end module vcor_io_data_file

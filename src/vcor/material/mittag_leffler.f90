@@ -1,0 +1,218 @@
+!> Fractional Zener solid: a spring beside a spring and a fractional dashpot in series. CERF is
+!> the one of exponent 1/2, the standard linear solid its limit of exponent 1
+module vcor_material_mittag_leffler
+   use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
+   use vcor_constants, only : pi
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_spectrum, only : sum_of_spectrum
+   use vcor_material_type, only : material_t
+   use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
+   implicit none
+   private
+
+   public :: mittag_leffler_t, new_mittag_leffler
+
+   !> E(t) = E_0 + E_1 E_a(-(t/tau)^a)
+   type, extends(material_t) :: mittag_leffler_t
+      private
+      !> Equilibrium modulus E_0 [Pa]
+      real(wp) :: equilibrium = 0.0_wp
+      !> Relaxing modulus E_1 [Pa]
+      real(wp) :: relaxing = 0.0_wp
+      !> Exponent a
+      real(wp) :: exponent = 0.5_wp
+      !> Relaxation time tau [s]
+      real(wp) :: time = 1.0_wp
+      !> The function E_a, its derivative and its integral
+      type(mittag_leffler_rule_t) :: rule
+   contains
+      procedure :: relaxation
+      procedure :: rate
+      procedure :: integral
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+      procedure, private :: power
+   end type mittag_leffler_t
+
+contains
+
+   !> Build a Mittag-Leffler material
+   pure subroutine new_mittag_leffler(self, equilibrium, relaxing, exponent, time, error)
+      !> The material
+      type(mittag_leffler_t), intent(out) :: self
+      !> Equilibrium modulus E_0 [Pa], >= 0
+      real(wp), intent(in) :: equilibrium
+      !> Relaxing modulus E_1 [Pa], > 0
+      real(wp), intent(in) :: relaxing
+      !> Exponent a, 0 < a < 1; for a = 1 the material is a Prony series of one term, and is built
+      !> as one by `new_material` of module vcor_material
+      real(wp), intent(in) :: exponent
+      !> Relaxation time tau [s], > 0
+      real(wp), intent(in) :: time
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. (equilibrium >= 0.0_wp .and. relaxing > 0.0_wp .and. time > 0.0_wp)) then
+         call raise(error, error_input, 'a Mittag-Leffler material needs ' &
+            //'equilibrium_modulus >= 0, relaxing_modulus > 0 and time > 0')
+      else if (.not. (exponent > 0.0_wp .and. exponent < 1.0_wp)) then
+         call raise(error, error_input, &
+            'the exponent of a Mittag-Leffler material must lie between 0 and 1')
+      end if
+      if (allocated(error)) return
+
+      self%equilibrium = equilibrium
+      self%relaxing = relaxing
+      self%exponent = exponent
+      self%time = time
+      self%rule = new_mittag_leffler_rule(exponent)
+   end subroutine new_mittag_leffler
+
+   !> (t/tau)^a
+   elemental function power(self, t) result(u)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Time [s], >= 0
+      real(wp), intent(in) :: t
+      !> Argument of the Mittag-Leffler function [-]
+      real(wp) :: u
+
+      ! where t/tau would overflow nothing is left to relax
+      u = (min(t, 0.5_wp*huge(t)*min(self%time, 1.0_wp))/self%time)**self%exponent
+   end function power
+
+   !> Relaxation modulus E(t)
+   elemental function relaxation(self, t) result(value)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      value = self%equilibrium + self%relaxing*self%rule%value(self%power(t))
+   end function relaxation
+
+   !> Rate of relaxation: -E_1 u E_{a,a}(-u)/t with u = (t/tau)^a, minus infinity at t = 0
+   elemental function rate(self, t) result(value)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Rate [Pa/s], <= 0
+      real(wp) :: value
+
+      real(wp) :: fall
+
+      fall = self%relaxing*self%rule%slope(self%power(t))
+      ! a quotient that would overflow is infinite as well
+      if (fall < huge(t)*min(t, 1.0_wp)) then
+         value = -fall/t
+      else
+         value = ieee_value(1.0_wp, ieee_negative_inf)
+      end if
+   end function rate
+
+   !> Integral of E from 0 to t: t (E_0 + E_1 E_{a,2}(-u)) with u = (t/tau)^a
+   elemental function integral(self, t) result(value)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Upper limit [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      value = t*(self%equilibrium + self%relaxing*self%rule%mean(self%power(t)))
+   end function integral
+
+   !> Complex modulus E_0 + E_1 p/(1 + p) with p = (s tau)^a = q exp(i phi)
+   !>
+   !> On the upper side of the negative real axis its imaginary part is pi times rate times the
+   !> relaxation spectrum. That is small for a near 0 or 1, as sin(phi) is, and for a near 1 it has
+   !> a narrow peak at q = 1, where 1 + p is small. To keep the digits, phi is measured from the
+   !> nearest half axis, and p or 1/p taken, whichever is smaller: both have the same |1 + p|^2/|p|
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Laplace variable [1/s]; on the negative real axis the sign of the imaginary part, which
+      !> may be a zero, says which side
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      real(wp) :: x, y, r, q, h, angle, sine, cosine, shifted, square, storage
+
+      ! the conjugate of a value above the real axis is that below it
+      x = real(s, wp)
+      y = abs(aimag(s))
+      r = min(abs(s), 0.5_wp*huge(r)/max(self%time, 1.0_wp))*self%time
+      if (.not. r > 0.0_wp) then
+         modulus = self%equilibrium
+         return
+      end if
+      q = r**self%exponent
+      h = q
+      if (q > 1.0_wp) h = 1.0_wp/q
+
+      ! real part of 1 + h exp(i phi)
+      if (x < 0.0_wp) then
+         angle = pi*(1.0_wp - self%exponent) + self%exponent*atan2(y, -x)
+         sine = sin(angle)
+         cosine = -cos(angle)
+         shifted = (1.0_wp - h) + 2.0_wp*h*sin(0.5_wp*angle)**2
+      else
+         sine = sin(self%exponent*atan2(y, x))
+         cosine = sin(0.5_wp*pi*(1.0_wp - self%exponent) + self%exponent*atan2(x, y))
+         shifted = 1.0_wp + h*cosine
+      end if
+      square = shifted**2 + (h*sine)**2
+      if (q > 1.0_wp) then
+         storage = shifted/square
+      else
+         storage = h*(h + cosine)/square
+      end if
+      modulus = cmplx(self%equilibrium + self%relaxing*storage, &
+         sign(self%relaxing*h*sine/square, aimag(s)), wp)
+   end function complex_modulus
+
+   !> Glassy modulus E_0 + E_1
+   pure function glassy(self) result(modulus)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium + self%relaxing
+   end function glassy
+
+   !> Rubbery modulus E_0
+   pure function rubbery(self) result(modulus)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium
+   end function rubbery
+
+   !> The modulus as a sum of exponentials, from its relaxation spectrum
+   pure subroutine exponentials(self, window, accuracy, terms)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+
+      ! Q has its poles where (s tau)^a = -1
+      call sum_of_spectrum(self, window, accuracy, terms, peak=-log(self%time), &
+         distance=pi*(1.0_wp - self%exponent)/self%exponent)
+   end subroutine exponentials
+
+end module vcor_material_mittag_leffler

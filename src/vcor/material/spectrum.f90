@@ -1,0 +1,149 @@
+!> Materials with a continuous spectrum of relaxation as sums of exponentials
+!>
+!> A completely monotone modulus is E(t) = E_0 + int_0^inf H(l) exp(-l t) dl, and its complex
+!> modulus Q gives the spectrum at once: H(l) = Im Q(-l + i0)/(pi l). In y = ln(l) the trapezoidal
+!> rule of step h converges exponentially, as exp(-pi^2/h), since the integrand is analytic for
+!> |Im y| < pi/2. It is applied in x, with
+!>
+!>     y + c asinh((y - y_p)/d) = x - exp(x_a - x) + exp(x - x_b),   x = 0, +-h, +-2 h ..
+!>
+!> The right-hand side runs away doubly exponentially below x_a and above x_b, where exp(-l t) has
+!> become 1 - l t + .. and (delta(t) - ..)/l on the window: few nodes cover what would be
+!> many decades (H. Takahasi and M. Mori, Publ. RIMS 9 (1974) 721). The left-hand side is y but for
+!> spectra with a peak at y_p so narrow that their poles, at y_p +- i d, lie inside the strip; with
+!> c = 1 - 2 d/pi they move out to its edge.
+!> What lies below all nodes is a constant, what lies above them a dashpot.
+module vcor_material_spectrum
+   use vcor_constants, only : pi
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_type, only : material_t
+   implicit none
+   private
+
+   public :: sum_of_spectrum
+
+   !> Where exp(-l t) becomes 1 - l t + .., as l times the window
+   real(wp), parameter :: slow = 0.5_wp
+   !> A rate this small against that of the window is a constant, its inverse a dashpot
+   real(wp), parameter :: constant = 1.0e-14_wp
+
+contains
+
+   !> Sum of exponentials for a material with a continuous spectrum
+   pure subroutine sum_of_spectrum(material, window, accuracy, terms, peak, distance)
+      !> The material; its rubbery modulus is E_0
+      class(material_t), intent(in) :: material
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum; its error is the largest one found at some times of the window
+      type(exponential_sum_t), intent(out) :: terms
+      !> ln of the rate [1/s] at which the spectrum has a peak; absent: there is none
+      real(wp), intent(in), optional :: peak
+      !> Distance d of the poles from the peak in ln(l), > 0
+      real(wp), intent(in), optional :: distance
+
+      ! beyond all rates that can be computed with
+      real(wp), parameter :: farthest = 650.0_wp, fewest_digits = 1.0e-2_wp
+      real(wp) :: h, x, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift
+      real(wp), allocatable :: rates(:), moduli(:)
+      integer :: first, last, j, n
+
+      h = -pi**2/log(min(accuracy, fewest_digits))
+      turn_low = log(slow)
+      turn_high = -log(min(accuracy, fewest_digits))/3.0_wp
+      shift = -log(window)
+      c = 0.0_wp
+      d = 1.0_wp
+      y_p = 0.0_wp
+      if (present(peak) .and. present(distance)) then
+         y_p = peak - shift
+         d = distance
+         c = max(0.0_wp, 1.0_wp - 2.0_wp*d/pi)
+         turn_low = turn_low + c*asinh((turn_low - y_p)/d)
+         turn_high = turn_high + c*asinh((turn_high - y_p)/d)
+      end if
+
+      first = ceiling((turn_low - log(farthest))/h)
+      last = floor((turn_high + log(farthest))/h)
+      allocate (rates(last - first + 1), moduli(last - first + 1))
+      terms%equilibrium = material%rubbery()
+      n = 0
+      do j = first, last
+         x = real(j, wp)*h
+         y = x - exp(turn_low - x) + exp(x - turn_high)
+         slope = 1.0_wp + exp(turn_low - x) + exp(x - turn_high)
+         if (abs(y) > farthest) cycle
+         if (c > 0.0_wp) then
+            w = spread_over_peak((y - y_p)/d, c/d)
+            y = y_p + d*sinh(w)
+            slope = slope*d*cosh(w)/(d*cosh(w) + c)
+         end if
+         rate = exp(y + shift)
+         modulus = h*slope/pi*aimag(material%complex_modulus(cmplx(-rate, 0.0_wp, wp)))
+         if (rate*window < constant) then
+            terms%equilibrium = terms%equilibrium + modulus
+         else if (rate*window > 1.0_wp/constant) then
+            terms%viscosity = terms%viscosity + modulus/rate
+         else
+            n = n + 1
+            rates(n) = rate
+            moduli(n) = modulus
+         end if
+      end do
+      allocate (terms%moduli, source=moduli(:n))
+      allocate (terms%rates, source=rates(:n))
+      terms%error = largest_error(material, window, terms)
+   end subroutine sum_of_spectrum
+
+   !> Solve sinh(w) + b w = x by Newton's method: sinh is convex on the side of the root, so from an
+   !> upper bound of |w| it descends
+   pure function spread_over_peak(x, b) result(w)
+      !> Right-hand side
+      real(wp), intent(in) :: x
+      !> Coefficient, > 0
+      real(wp), intent(in) :: b
+      !> Solution
+      real(wp) :: w
+
+      real(wp) :: correction
+      integer :: iteration
+
+      w = sign(min(abs(x)/b, asinh(abs(x))), x)
+      do iteration = 1, 60
+         correction = (sinh(w) + b*w - x)/(cosh(w) + b)
+         w = w - correction
+         if (abs(correction) <= 1.0e-12_wp*abs(w)) exit
+      end do
+   end function spread_over_peak
+
+   !> Largest relative error of a sum at some times of the window. For shorter times the error may
+   !> be larger; what counts there are the integrals of the modulus, which are kept
+   pure function largest_error(material, window, terms) result(error)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> Time up to which the sum is to hold [s]
+      real(wp), intent(in) :: window
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Error
+      real(wp) :: error
+
+      real(wp), parameter :: part(5) = [1.0_wp, 0.5_wp, 0.25_wp, 0.12_wp, 0.06_wp]
+      real(wp) :: value, expected
+      integer :: i, k
+
+      error = 0.0_wp
+      do i = 1, size(part)
+         expected = material%relaxation(part(i)*window)
+         value = terms%equilibrium
+         do k = 1, size(terms%rates)
+            value = value + terms%moduli(k)*exp(-terms%rates(k)*(part(i)*window))
+         end do
+         error = max(error, abs(value/expected - 1.0_wp))
+      end do
+   end function largest_error
+
+end module vcor_material_spectrum

@@ -1,0 +1,348 @@
+!> Material given by points of its relaxation modulus
+module vcor_material_table
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_fit, only : fit_exponentials
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_type, only : material_t
+   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
+   implicit none
+   private
+
+   public :: tabulated_t, new_tabulated, modulus_rounding, smallest_value, largest_value
+
+   !> Growth of the modulus from one point to the next, relative, that counts as rounding
+   real(wp), parameter :: modulus_rounding = 1.0e-10_wp
+   !> Smallest time [s] and modulus [Pa]; beyond these bounds products leave the range of numbers
+   real(wp), parameter :: smallest_value = 1.0e-30_wp
+   !> Largest time [s] and modulus [Pa]
+   real(wp), parameter :: largest_value = 1.0e30_wp
+
+   !> Nodes of the quadrature over a panel, on which E t changes by a factor of 50 at most: 1e-13
+   integer, parameter :: order = 8
+   !> Largest change of ln t, and of ln E, over a panel
+   real(wp), parameter :: longest_panel = 1.0_wp
+   !> Samples per decade for the sum of exponentials, whose terms are three to the decade
+   real(wp), parameter :: samples_per_decade = 20.0_wp
+   !> Fewest samples
+   integer, parameter :: fewest_samples = 48
+
+   !> E(t) through given points: ln E is a monotone piecewise cubic of ln t, exact for a power law;
+   !> constant before the first point and after the last. With x = ln(t/t_1) and y = ln(E/E_1)
+   type, extends(material_t) :: tabulated_t
+      private
+      !> Time of the first point t_1 [s]
+      real(wp) :: first_time = 1.0_wp
+      !> Modulus there E_1 [Pa]
+      real(wp) :: first_modulus = 0.0_wp
+      !> Ends of the panels: x at the points, and between them where they are far apart, shape (n)
+      real(wp), allocatable :: x(:)
+      !> y there, shape (n)
+      real(wp), allocatable :: y(:)
+      !> dy/dx there, shape (n)
+      real(wp), allocatable :: slope(:)
+      !> Integral of E up to there, in units of E_1 t_1, shape (n)
+      real(wp), allocatable :: area(:)
+      !> Nodes of the quadrature on (0, 1)
+      real(wp) :: node(order) = 0.0_wp
+      !> Their weights
+      real(wp) :: weight(order) = 0.0_wp
+      !> The sum of exponentials fitted to it
+      type(exponential_sum_t) :: terms
+      !> What the integral of the sum is more than that of E up to the first point [Pa s]
+      real(wp) :: early_excess = 0.0_wp
+   contains
+      procedure :: relaxation
+      procedure :: rate
+      procedure :: integral
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type tabulated_t
+
+contains
+
+   !> Build a material from points of E(t)
+   pure subroutine new_tabulated(self, times, moduli, error)
+      !> The material
+      type(tabulated_t), intent(out) :: self
+      !> Times [s], > 0, strictly increasing, shape (n), n >= 2
+      real(wp), intent(in) :: times(:)
+      !> Moduli at these times [Pa], > 0, not increasing but for rounding, shape (n)
+      real(wp), intent(in) :: moduli(:)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      ! the logarithm is to tell two times apart
+      real(wp), parameter :: rounding = 1.0e-12_wp
+      real(wp) :: falling(size(moduli))
+      integer :: i, n
+
+      n = size(times)
+      if (n < 2 .or. size(moduli) /= n) then
+         call raise(error, error_input, &
+            'a table needs at least two points, and as many moduli as times')
+      else if (.not. (all(times >= smallest_value) .and. all(times <= largest_value) &
+          .and. all(moduli >= smallest_value) .and. all(moduli <= largest_value))) then
+         call raise(error, error_input, &
+            'the times and moduli of a table must be positive, between 1e-30 and 1e30')
+      else if (.not. all(times(2:) > times(:n - 1)*(1.0_wp + rounding))) then
+         call raise(error, error_input, 'the times of a table must increase strictly')
+      else if (.not. all(moduli(2:) <= moduli(:n - 1)*(1.0_wp + modulus_rounding))) then
+         call raise(error, error_input, 'the moduli of a table must not increase with time')
+      end if
+      if (allocated(error)) return
+
+      self%first_time = times(1)
+      self%first_modulus = moduli(1)
+      falling = moduli
+      do i = 2, n
+         falling(i) = min(falling(i), falling(i - 1))
+      end do
+      call set_panels(self, log(times/times(1)), log(falling/moduli(1)))
+      call set_terms(self)
+   end subroutine new_tabulated
+
+   !> Cut the intervals between the points into panels, and integrate over them
+   pure subroutine set_panels(self, x, y)
+      !> The material
+      type(tabulated_t), intent(inout) :: self
+      !> x at the points, shape (n)
+      real(wp), intent(in) :: x(:)
+      !> y at the points, shape (n)
+      real(wp), intent(in) :: y(:)
+
+      real(wp) :: slope(size(x))
+      integer :: parts(size(x) - 1), i, j, k, n
+
+      n = size(x)
+      slope = monotone_slopes(x, y)
+      parts = ceiling(max(x(2:) - x(:n - 1), y(:n - 1) - y(2:))/longest_panel)
+      n = 1 + sum(parts)
+      allocate (self%x(n), self%y(n), self%slope(n), self%area(n))
+      k = 0
+      do i = 1, size(parts)
+         do j = 0, parts(i) - 1
+            k = k + 1
+            self%x(k) = x(i) + (x(i + 1) - x(i))*real(j, wp)/real(parts(i), wp)
+            call cubic(x(i), x(i + 1), y(i), y(i + 1), slope(i), slope(i + 1), self%x(k), &
+               self%y(k), self%slope(k))
+         end do
+      end do
+      self%x(n) = x(size(x))
+      self%y(n) = y(size(x))
+      self%slope(n) = slope(size(x))
+
+      call gauss_nodes(self%node, self%weight)
+      self%area(1) = 1.0_wp
+      do k = 2, n
+         self%area(k) = self%area(k - 1) + area_of(self, k - 1, self%x(k))
+      end do
+   end subroutine set_panels
+
+   !> Fit the sum of exponentials
+   pure subroutine set_terms(self)
+      !> The material, its panels set
+      type(tabulated_t), intent(inout) :: self
+
+      real(wp), allocatable :: time(:)
+      real(wp) :: step
+      integer :: i, n
+
+      if (.not. self%glassy() > self%rubbery()) then
+         self%terms%equilibrium = self%first_modulus
+         allocate (self%terms%moduli(0), self%terms%rates(0))
+         return
+      end if
+      associate (length => self%x(size(self%x)))
+         n = max(fewest_samples, ceiling(length/log(10.0_wp)*samples_per_decade))
+         step = length/real(n, wp)
+      end associate
+      time = self%first_time*exp([(real(i, wp)*step, i=0, n)])
+      call fit_exponentials(time, self%relaxation(time), self%terms)
+      ! the misfit between the samples counts too, and at the points
+      time = self%first_time*exp([[(0.25_wp*real(i, wp)*step, i=1, 4*n)], self%x])
+      self%early_excess = self%first_time*(self%terms%equilibrium - self%first_modulus) &
+         + sum(self%terms%moduli/self%terms%rates &
+         *(1.0_wp - exp(-self%terms%rates*self%first_time)))
+      self%terms%error = maxval(abs(sum_at(self%terms, time)/self%relaxation(time) - 1.0_wp))
+   end subroutine set_terms
+
+   !> Value of the sum of exponentials
+   elemental function sum_at(terms, t) result(value)
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Time [s], >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      value = terms%equilibrium + sum(terms%moduli*exp(-terms%rates*t))
+   end function sum_at
+
+   !> y and its slope at x within the data
+   elemental subroutine interpolate(self, x, y, slope)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> ln(t/t_1)
+      real(wp), intent(in) :: x
+      !> ln(E/E_1)
+      real(wp), intent(out) :: y
+      !> d ln E/d ln t, <= 0
+      real(wp), intent(out) :: slope
+
+      integer :: i
+
+      i = piece(self%x, x)
+      call cubic(self%x(i), self%x(i + 1), self%y(i), self%y(i + 1), self%slope(i), &
+         self%slope(i + 1), x, y, slope)
+   end subroutine interpolate
+
+   !> Integral of E over a panel from its start to x, in units of E_1 t_1: that of exp(y + x)
+   pure function area_of(self, panel, x) result(area)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> The panel
+      integer, intent(in) :: panel
+      !> End of the integral, in the panel
+      real(wp), intent(in) :: x
+      !> Integral
+      real(wp) :: area
+
+      real(wp) :: at(order), y(order), slope(order)
+
+      associate (start => self%x(panel))
+         at = start + (x - start)*self%node
+         call cubic(start, self%x(panel + 1), self%y(panel), self%y(panel + 1), &
+            self%slope(panel), self%slope(panel + 1), at, y, slope)
+         area = (x - start)*sum(self%weight*exp(y + at))
+      end associate
+   end function area_of
+
+   !> Relaxation modulus E(t)
+   elemental function relaxation(self, t) result(value)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: value
+
+      real(wp) :: x, y, slope
+
+      if (t <= self%first_time) then
+         value = self%first_modulus
+         return
+      end if
+      x = log(t/self%first_time)
+      if (x < self%x(size(self%x))) then
+         call interpolate(self, x, y, slope)
+         value = self%first_modulus*exp(y)
+      else
+         value = self%rubbery()
+      end if
+   end function relaxation
+
+   !> Rate of relaxation dE/dt = (E/t) d ln E/d ln t, 0 outside of the data
+   elemental function rate(self, t) result(value)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Time since the strain step [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Rate [Pa/s], <= 0
+      real(wp) :: value
+
+      real(wp) :: x, y, slope
+
+      value = 0.0_wp
+      if (t <= self%first_time) return
+      x = log(t/self%first_time)
+      if (.not. x < self%x(size(self%x))) return
+      call interpolate(self, x, y, slope)
+      value = self%first_modulus*exp(y)*slope/t
+   end function rate
+
+   !> Integral of E from 0 to t
+   elemental function integral(self, t) result(value)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Upper limit [s], t >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      real(wp) :: x
+      integer :: i
+
+      if (t <= self%first_time) then
+         value = self%first_modulus*t
+         return
+      end if
+      x = log(t/self%first_time)
+      associate (last => size(self%x))
+         if (x < self%x(last)) then
+            i = piece(self%x, x)
+            value = self%first_modulus*self%first_time*(self%area(i) + area_of(self, i, x))
+         else
+            value = self%first_modulus*self%first_time*self%area(last) &
+               + self%rubbery()*(t - self%first_time*exp(self%x(last)))
+         end if
+      end associate
+   end function integral
+
+   !> Complex modulus of the sum of exponentials, E_0 + sum E_k s/(s + l_k)
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Laplace variable [1/s], not on the negative real axis
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      modulus = self%terms%equilibrium + sum(self%terms%moduli*s/(s + self%terms%rates))
+   end function complex_modulus
+
+   !> Glassy modulus: that of the first point
+   pure function glassy(self) result(modulus)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%first_modulus
+   end function glassy
+
+   !> Rubbery modulus: that of the last point
+   pure function rubbery(self) result(modulus)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%first_modulus*exp(self%y(size(self%y)))
+   end function rubbery
+
+   !> The sum of exponentials fitted to the data, whatever the window and the accuracy
+   pure subroutine exponentials(self, window, accuracy, terms)
+      !> The material
+      class(tabulated_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s]
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy: has no effect, as the sum says all that the data say
+      real(wp), intent(in) :: accuracy
+      !> The sum; its `error` is the largest relative misfit from the first point to the window's
+      !> end, and what the integral is off by at the first point, over that of the window
+      type(exponential_sum_t), intent(out) :: terms
+
+      associate (not_needed => accuracy)
+      end associate
+      terms = self%terms
+      if (size(terms%rates) == 0) return
+      terms%error = max(terms%error, &
+         abs(sum_at(terms, window)/self%relaxation(window) - 1.0_wp)) &
+         + abs(self%early_excess)/self%integral(window)
+   end subroutine exponentials
+
+end module vcor_material_table

@@ -1,0 +1,87 @@
+!> Newton's iteration on the equations of a panel, with the Jacobian kept while it serves
+module vcor_solver_newton
+   use vcor_kinds, only : wp
+   use vcor_numeric_collocation, only : width
+   use vcor_numeric_linear, only : factorise, factors_t
+   implicit none
+   private
+
+   public :: newton_t, most_iterations
+
+   !> Iterations after which there is no hope
+   integer, parameter :: most_iterations = 40
+
+   !> State of the iteration
+   type :: newton_t
+      !> Whether the next correction needs a new Jacobian
+      logical :: stale = .true.
+      !> Jacobian, to be given where `stale`, otherwise its factors
+      type(factors_t) :: jacobian
+      !> Size of the last correction
+      real(wp), private :: last = 0.0_wp
+      !> Whether the equations are solved
+      logical :: converged = .false.
+      !> Whether they cannot be
+      logical :: failed = .false.
+   contains
+      !> Correct the solution
+      procedure :: correct
+   end type newton_t
+
+contains
+
+   !> Correct the solution and judge what is left of its error: next to a fresh Jacobian it falls
+   !> with the power 2 of the correction, or 1.5 where u = s^1.5 has its branch point, otherwise
+   !> linearly
+   pure subroutine correct(self, residual, s, tolerance)
+      !> State of the iteration
+      class(newton_t), intent(inout) :: self
+      !> Residual, on return the correction
+      real(wp), intent(inout) :: residual(width)
+      !> Solution
+      real(wp), intent(inout) :: s(width)
+      !> Wanted error over the largest component
+      real(wp), intent(in) :: tolerance
+
+      ! a Jacobian made this close contracts the error at least tenfold
+      real(wp), parameter :: close = 0.05_wp, slow = 0.1_wp
+      real(wp) :: size, rate, left
+      logical :: regular
+
+      if (self%stale) then
+         call factorise(self%jacobian, regular)
+         self%failed = .not. regular
+         if (self%failed) return
+      end if
+      call self%jacobian%solve(residual)
+      s = s + residual
+      size = largest(residual)/largest(s)
+      if (self%stale) then
+         left = size*sqrt(size)
+         self%stale = size > close
+      else
+         rate = min(1.0_wp, size/self%last)
+         left = size*rate/(1.0_wp - 0.5_wp*rate)
+         self%stale = rate > slow
+      end if
+      self%last = size
+      self%converged = left <= tolerance
+   end subroutine correct
+
+   !> Largest magnitude
+   pure function largest(x)
+      !> Vector
+      real(wp), intent(in) :: x(width)
+      !> Its norm
+      real(wp) :: largest
+
+      real(wp) :: half(width/2)
+      integer :: i
+
+      do i = 1, width/2
+         half(i) = max(abs(x(i)), abs(x(i + width/2)))
+      end do
+      largest = max(max(half(1), half(2)), max(half(3), half(4)))
+   end function largest
+
+end module vcor_solver_newton
