@@ -14,6 +14,7 @@ LAWS = [
     "Mueller",
     "Maxwell",
     "Power law",
+    "Mittag-Leffler",
     "mass, radius and speed",
     "elastic limits",
     "BUTYL",
@@ -214,13 +215,6 @@ def test_scheme_that_fails(vcor):
     done = vcor("verify", "case.nml", *sets)
     complaint(done, NUMERICAL, "adams_bashforth", at="case.nml")
     assert "not verified" in done.out and "failed" in done.out
-
-
-def test_one_method(vcor):
-    """Two different viscoelastic bodies are no sum of exponentials."""
-    out = vcor.succeeds("verify", ROOT / "tests" / "reference" / "cases" / "two_sls.nml")
-    assert "note: the contact modulus is no sum of exponentials" in out
-    assert {line[0] for line in solutions(out)} == {"direct"}
 
 
 @pytest.mark.parametrize("rate", ["1.0e5", "1.0e6", "1.0e7"])
