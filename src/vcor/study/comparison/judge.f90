@@ -182,7 +182,8 @@ contains
             if (i == 1) then
                allowed = allowed + honest_factor*error_of_best(self)
             else
-               allowed = allowed + other_quantities*self%attempts(attempt_first)%accuracy*this%scale
+               allowed = allowed + other_quantities*this%scale &
+                  *max(self%attempts(attempt_first)%accuracy, error_of_best(self))
             end if
             if (.not. within(this%value(attempt_halved(3)) - this%best, allowed)) &
                call object(self, 'the methods do not agree on '//trim(this%name))
