@@ -8,11 +8,13 @@ module vcor_app_cli
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check help'
+   character(len=*), parameter :: commands = 'run check verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --quiet --help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
+   !> Options of verify
+   character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
    character(len=*), parameter :: help_options = '--help --version'
 
@@ -49,7 +51,7 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, help ' &
+         call raise(error, error_usage, 'no command; known: run, check, verify, help ' &
             //'(vcor help says more)')
          return
       end if
@@ -59,6 +61,8 @@ contains
          known = run_options
       case ('check')
          known = check_options
+      case ('verify')
+         known = verify_options
       case ('help', '--help', '-h')
          known = help_options
       case ('--version')
@@ -131,13 +135,23 @@ contains
          if (allocated(error)) return
       end do
 
-      if (request%command /= 'help' .and. size(request%files) == 0) &
-         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
-         //' CASE.nml')
+      if (size(request%files) == 0) call refuse_no_case(request, error)
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
    end subroutine parse
+
+   !> Refuse a request without a case file where it needs one: verify does for its settings only
+   subroutine refuse_no_case(request, error)
+      !> The request, without files
+      type(request_t), intent(in) :: request
+      !> Error of code `error_usage`, unallocated where no case is needed
+      type(error_t), allocatable, intent(inout) :: error
+
+      if (request%command == 'help') return
+      if (request%command == 'verify' .and. size(request%settings) == 0) return
+      call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+   end subroutine refuse_no_case
 
    !> Take the value of an option
    subroutine apply(option, value, request, error)

@@ -1,11 +1,12 @@
 !> What the screen shows of an impact
 module vcor_app_screen
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor, only : contact_separated, integer_text, outcome_t, quantities, quantity_value, &
       status_name, version, wp
    implicit none
    private
 
-   public :: report, short
+   public :: report, short, significant
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -137,26 +138,38 @@ contains
       end function share
    end function budget
 
-   !> A number with eight significant digits, 16 characters
-   pure function significant(value) result(text)
+   !> A number with so many significant digits, right-justified
+   pure function significant(value, digits, width) result(text)
       !> The number
       real(wp), intent(in) :: value
+      !> Digits, 2 .. 15; absent: 8
+      integer, intent(in), optional :: digits
+      !> Characters, at least digits + 8; absent: 16
+      integer, intent(in), optional :: width
       !> Its text
-      character(len=16) :: text
+      character(len=:), allocatable :: text
 
-      integer, parameter :: digits = 8
-      character(len=8) :: form
-      integer :: whole
+      character(len=24) :: buffer
+      character(len=12) :: form
+      integer :: d, w
 
-      if (.not. abs(value) > 0.0_wp) then
-         text = repeat(' ', 15)//'0'
+      d = 8
+      if (present(digits)) d = digits
+      w = 16
+      if (present(width)) w = width
+      if (.not. ieee_is_finite(value)) then
+         buffer = 'nan'
+      else if (.not. abs(value) > 0.0_wp) then
+         buffer = '0'
       else if (abs(value) < 0.1_wp .or. abs(value) >= 1.0e6_wp) then
-         write (text, '(es16.7e2)') value
+         write (form, '(a, i0, a)') '(es24.', d - 1, 'e2)'
+         write (buffer, form) value
       else
-         whole = max(0, floor(log10(abs(value))) + 1)
-         write (form, '(a,i1,a)') '(f16.', digits - whole, ')'
-         write (text, form) value
+         write (form, '(a, i0, a)') '(f24.', d - max(0, floor(log10(abs(value))) + 1), ')'
+         write (buffer, form) value
       end if
+      buffer = adjustl(buffer)
+      text = repeat(' ', max(0, w - len_trim(buffer)))//trim(buffer)
    end function significant
 
    !> A number with two significant digits

@@ -27,11 +27,18 @@ module vcor
    use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
+   use vcor_study_comparison, only : compare
+   use vcor_study_comparison_attempt, only : attempt_t
+   use vcor_study_comparison_judge, only : error_of_best, is_honest
+   use vcor_study_comparison_type, only : attempt_case, attempt_count, attempt_first, &
+      attempt_halved, attempt_refined, compared_t, comparison_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
    use vcor_study_nearest, only : suggestion
    use vcor_study_quantity, only : quantities, quantity_names, quantity_t, quantity_value, &
       status_name
    use vcor_study_text, only : printable
+   use vcor_study_verification, only : build_law, law_count, verify_law
+   use vcor_study_verification_row, only : law_t, row_t, verdict_t
    use vcor_version, only : version
    implicit none
    private
@@ -52,6 +59,9 @@ module vcor
    public :: case_t, read_case, read_case_text, override, read_data, data_file
    public :: build_impact, build_material, build_solver
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
+   public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
+   public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
+   public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: write_stdout, make_directory, join_path, same_file

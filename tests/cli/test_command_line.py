@@ -21,7 +21,7 @@ FILES = {"case.csv", "case.h5", "case_summary.csv"}
 
 
 def test_no_command(vcor):
-    vcor.refuses(code=USAGE, says=["no command", "run", "check", "help"])
+    vcor.refuses(code=USAGE, says=["no command", "run", "check", "verify", "help"])
 
 
 @pytest.mark.parametrize("word, nearest", [("runn", "run"), ("chek", "check"), ("hlep", "help")])
@@ -55,6 +55,8 @@ def test_empty_name_of_a_file(vcor, command):
 @pytest.mark.parametrize(
     "command, word, nearest",
     [
+        ("verify", "--sett", "--set"),
+        ("verify", "--quite", "--quiet"),
         ("run", "--quite", "--quiet"),
         ("run", "--ouput", "--output"),
         ("run", "--prnt=cor", "--print"),
@@ -74,6 +76,11 @@ def test_option_like_no_other(sls, word):
         sls.refuses("run", word, code=FILE, at="-", says="no such file")
     else:
         sls.refuses("run", "case.nml", word, "2", code=USAGE, says="unknown option")
+
+
+@pytest.mark.parametrize("word", ["--output", "--print"])
+def test_option_of_run_not_of_verify(sls, word):
+    sls.refuses("verify", "case.nml", word, "x", code=USAGE, says=[f"'{word}'", "verify"])
 
 
 @pytest.mark.parametrize("word", ["--output", "--print", "--quiet"])

@@ -5,7 +5,7 @@ import tomllib
 import pytest
 from program import NAMES, ROOT, USAGE
 
-TOPICS = ["run", "check", "help", "input", "output"]
+TOPICS = ["run", "check", "verify", "help", "input", "output"]
 
 
 def test_version_is_that_of_the_package(vcor):
@@ -19,7 +19,7 @@ def test_version_is_that_of_the_package(vcor):
 def test_overview(vcor, words):
     page = vcor.succeeds(*words)
     assert page == vcor.succeeds("help")
-    for word in ("vcor run", "vcor check", "vcor help", "--version", "exit codes"):
+    for word in ("vcor run", "vcor check", "vcor verify", "vcor help", "--version", "exit codes"):
         assert word in page
 
 
@@ -37,7 +37,7 @@ def test_the_overview_names_every_topic(vcor, topic):
     assert topic in vcor.succeeds("help")
 
 
-@pytest.mark.parametrize("command", ["run", "check"])
+@pytest.mark.parametrize("command", ["run", "check", "verify"])
 @pytest.mark.parametrize("option", ["--help", "-h"])
 def test_help_after_a_command(vcor, command, option):
     page = vcor.succeeds("help", command)
@@ -52,6 +52,11 @@ def test_page_of_run(vcor, option):
 
 def test_page_of_check(vcor):
     assert "--set" in vcor.succeeds("help", "check")
+
+
+@pytest.mark.parametrize("word", ["--set", "--quiet", "digits", "honest", "exit code 5"])
+def test_page_of_verify(vcor, word):
+    assert word in vcor.succeeds("help", "verify")
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,0 +1,142 @@
+!> The cases of a call, read and ready to run
+module vcor_app_job
+   use vcor_app_cli, only : request_t
+   use vcor, only : build_impact, build_solver, case_t, data_file, error_input, error_t, impact_t, &
+      join_path, method_for, override, raise, read_case, read_data, same_file, solver_t
+   implicit none
+   private
+
+   public :: job_t, prepare, endings
+
+   !> One case of a call, ready to run
+   type :: job_t
+      !> The case
+      type(case_t) :: case
+      !> Its impact
+      type(impact_t) :: impact
+      !> Its solver
+      class(solver_t), allocatable :: solver
+      !> Its method
+      character(len=:), allocatable :: method
+      !> Directory and stem of its files
+      character(len=:), allocatable :: path
+      !> Which of its files it writes, in the order of `endings`
+      logical :: writes(3) = .true.
+   end type job_t
+
+   !> What the names of the files end with
+   character(len=*), parameter :: endings(3) = [character(len=12) :: '_summary.csv', '.csv', '.h5']
+
+contains
+
+   !> Read, override, validate and build all cases of a request
+   subroutine prepare(request, jobs, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The cases
+      type(job_t), allocatable, intent(out) :: jobs(:)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory, stem, method, scheme
+      logical :: csv, hdf5, history
+      integer :: i, j
+
+      allocate (jobs(size(request%files)))
+      do i = 1, size(jobs)
+         associate (job => jobs(i))
+            call read_case(job%case, request%files(i)%text, error)
+            if (allocated(error)) return
+            do j = 1, size(request%settings)
+               call override(job%case, request%settings(j)%text, error)
+               if (allocated(error)) return
+            end do
+            call job%case%validate(error)
+            if (allocated(error)) return
+            call read_data(job%case, error)
+            if (allocated(error)) return
+            call build_impact(job%case, job%impact, error)
+            if (allocated(error)) return
+            call build_solver(job%case, job%impact, job%solver, error)
+            if (allocated(error)) return
+
+            call job%case%get('solver', 'method', method)
+            call job%case%get('solver', 'scheme', scheme)
+            job%method = method_for(method, scheme)
+            call job%case%get('output', 'directory', directory)
+            if (allocated(request%directory)) directory = request%directory
+            call job%case%get('output', 'stem', stem)
+            job%path = join_path(directory, stem)
+            call job%case%get('output', 'csv', csv)
+            call job%case%get('output', 'hdf5', hdf5)
+            call job%case%get('output', 'history', history)
+            job%writes = [csv, csv .and. history, hdf5]
+            ! bare numbers are for scripts, which would be surprised by files
+            if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
+               job%writes = .false.
+            if (request%command == 'verify') job%writes = .false.
+         end associate
+         do j = 1, i
+            call refuse_clash(request, jobs, i, j, error)
+            if (allocated(error)) return
+         end do
+      end do
+   end subroutine prepare
+
+   !> No file of one case may be a file of another, nor a case file itself, nor a data file
+   subroutine refuse_clash(request, jobs, new, old, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The cases
+      type(job_t), intent(in) :: jobs(:)
+      !> A case
+      integer, intent(in) :: new
+      !> A case that comes no later
+      integer, intent(in) :: old
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i, j
+
+      do i = 1, size(endings)
+         if (jobs(new)%writes(i)) call keep_data(new, old)
+         if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
+         if (allocated(error)) return
+         if (.not. jobs(new)%writes(i)) cycle
+         if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
+            call raise(error, error_input, request%files(new)%text//': its results would replace ' &
+               //'the case file '//request%files(old)%text//': give it another output.stem')
+            return
+         end if
+         if (old == new) cycle
+         do j = 1, size(endings)
+            if (.not. jobs(old)%writes(j)) cycle
+            if (same_file(jobs(new)%path//trim(endings(i)), jobs(old)%path//trim(endings(j)))) then
+               call raise(error, error_input, request%files(new)%text//': its files would ' &
+                  //'replace those of '//request%files(old)%text//': give one of them another ' &
+                  //'output.stem')
+               return
+            end if
+         end do
+      end do
+
+   contains
+
+      !> No file of a case may be a data file of another or its own
+      subroutine keep_data(writer, reader)
+         !> The case whose results are written
+         integer, intent(in) :: writer
+         !> The case whose data files are read
+         integer, intent(in) :: reader
+
+         do j = 1, jobs(reader)%case%count('material')
+            if (.not. same_file(jobs(writer)%path//trim(endings(i)), &
+               data_file(jobs(reader)%case, j))) cycle
+            call raise(error, error_input, request%files(writer)%text//': its results would ' &
+               //'replace the data file '//data_file(jobs(reader)%case, j) &
+               //': give it another output.stem')
+         end do
+      end subroutine keep_data
+   end subroutine refuse_clash
+
+end module vcor_app_job

@@ -1,0 +1,56 @@
+!> Richardson's extrapolation from three values with steps h, h/2 and h/4
+module vcor_numeric_richardson
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: richardson_t, richardson
+
+   !> What three values tell
+   type :: richardson_t
+      !> Order of convergence that they show; NaN where they show none, being equal or erratic
+      real(wp) :: order = 0.0_wp
+      !> Limit for steps of no length
+      real(wp) :: limit = 0.0_wp
+      !> Estimate of the error of the last value, on the safe side
+      real(wp) :: error = 0.0_wp
+   end type richardson_t
+
+contains
+
+   !> Extrapolate. Orders outside of `lowest` and `highest` are chance: the limit is then taken with
+   !> the nearer of the two. The error is taken with an order between one and two, and not below
+   !> what the larger steps say, as the last two values may agree by chance. Values that are not
+   !> finite tell nothing: NaN
+   pure function richardson(value) result(found)
+      !> Values with steps h, h/2 and h/4
+      real(wp), intent(in) :: value(3)
+      !> What they tell
+      type(richardson_t) :: found
+
+      real(wp), parameter :: lowest = 0.5_wp, highest = 4.0_wp, best_ratio = 8.0_wp
+      real(wp) :: first, second, ratio, order
+
+      if (.not. all(ieee_is_finite(value))) then
+         found%order = ieee_value(order, ieee_quiet_nan)
+         found%limit = found%order
+         found%error = found%order
+         return
+      end if
+      first = value(2) - value(1)
+      second = value(3) - value(2)
+      found%order = ieee_value(found%order, ieee_quiet_nan)
+      found%limit = value(3)
+      found%error = max(abs(second), abs(first)/best_ratio)
+      if (.not. found%error > 0.0_wp) return
+      ratio = min(max(abs(first)/found%error, 2.0_wp), 4.0_wp)
+      found%error = found%error/(ratio - 1.0_wp)
+      ! differences of different signs, or one of them none at all, are no convergence
+      if (.not. min(first, second) > 0.0_wp .and. .not. max(first, second) < 0.0_wp) return
+      found%order = log(first/second)/log(2.0_wp)
+      order = min(max(found%order, lowest), highest)
+      found%limit = value(3) + second/(2.0_wp**order - 1.0_wp)
+   end function richardson
+
+end module vcor_numeric_richardson
