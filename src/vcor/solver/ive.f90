@@ -152,8 +152,9 @@ contains
       logical :: ends, last, inherited, shallow
 
       n = self%collocator%rule%stages
-      ! finer than the kernel makes no sense
-      accuracy = max(self%accuracy, kernel%error)
+      ! the noise of moduli of both signs is not to be resolved
+      accuracy = self%accuracy
+      if (any(kernel%moduli < 0.0_wp)) accuracy = max(accuracy, sensitivity*kernel%error)
       complete = .true.
       end_time = patience
       allocate (start%q(size(kernel%rates)))
@@ -216,7 +217,8 @@ contains
 
          refused = huge(1.0_wp)
          if (ends) then
-            trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, fine, shallow)
+            trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, fine, &
+               trajectory%steps + 1, shallow)
             ! the finer solution is next to its zero
             fine%force(n + 1) = 0.0_wp
          end if
@@ -289,7 +291,7 @@ contains
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
    !> finer solution reaches F = 0 a little earlier or later, which only alpha' feels
-   pure function error_of_cor(rule, impact, panel, fine, shallow) result(estimate)
+   pure function error_of_cor(rule, impact, panel, fine, panels, shallow) result(estimate)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The impact
@@ -298,13 +300,15 @@ contains
       type(panel_t), intent(in) :: panel
       !> The last panel of the finer solution
       type(panel_t), intent(in) :: fine
+      !> Number of panels
+      integer, intent(in) :: panels
       !> Whether the indentation ends next to zero
       logical, intent(in) :: shallow
       !> Estimate [-]
       real(wp) :: estimate
 
-      ! what rounding may add, mostly through the eigenvectors of the integration matrices
-      real(wp), parameter :: rounding = 5.0e-12_wp
+      ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
+      real(wp), parameter :: rounding = 5.0e-13_wp
       ! the difference is the error of the coarser solution: that of the finer one is less, where
       ! the solution is smooth by orders, where it is not by a factor of this size
       real(wp), parameter :: finer = 0.3_wp
@@ -314,9 +318,10 @@ contains
          impulse_error = abs(fine%impulse(n + 1) - panel%impulse(n))
          time_error = abs((fine%force(n + 1) - panel%force(n))/slope_at_end(rule, panel))
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
-         estimate = rounding + merge(1.0_wp, finer, shallow)*(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
+         estimate = rounding*real(panels, wp) + merge(1.0_wp, finer, shallow)/impact%velocity &
+            *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
-            + abs(fine%drift(n + 1) - panel%drift(n)))/impact%velocity
+            + abs(fine%drift(n + 1) - panel%drift(n)))
       end associate
    end function error_of_cor
 

@@ -122,7 +122,7 @@ contains
 
       settings%method = trim(method)
       settings%scheme = 'product'
-      settings%accuracy = accuracy_of(method)
+      settings%accuracy = 0.5_wp*accuracy_of(method)
       call new_solver(solver, settings, impact, error)
       if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
       separated = .not. allocated(error)

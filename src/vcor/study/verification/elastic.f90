@@ -28,7 +28,7 @@ contains
       !> The law
       type(law_t), intent(inout) :: law
 
-      character(len=*), parameter :: why = 'accuracy that the method is asked for'
+      character(len=*), parameter :: why = 'twice what the method is asked for'
       character(len=*), parameter :: why_other = 'ten times the accuracy asked of cor'
       type(impact_t) :: impact
       character(len=6) :: methods(2)
@@ -71,7 +71,7 @@ contains
          0.18412287416504999366_wp]
       character(len=*), parameter :: name(waves_constant:waves_relaxing) = &
          [character(len=8) :: 'constant', 'relaxing']
-      character(len=*), parameter :: why = 'accuracy that the method is asked for'
+      character(len=*), parameter :: why = 'twice what the method is asked for'
       type(impact_t) :: impact
       character(len=6) :: methods(2)
       integer :: i, j, waves

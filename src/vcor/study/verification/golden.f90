@@ -61,7 +61,7 @@ contains
          do j = 1, size(methods)
             tolerance = accuracy_of(methods(j))
             call law%add(trim(title(i))//': '//trim(label(1)), methods(j), value(1, i), &
-               tolerance, 'accuracy that the method is asked for', impact)
+               tolerance, 'twice what the method is asked for', impact)
             do k = 2, size(quantity)
                call law%add(trim(title(i))//': '//trim(label(k)), methods(j), value(k, i), &
                   other_quantities*tolerance*max(1.0_wp, value(k, i)), &

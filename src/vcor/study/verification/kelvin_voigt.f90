@@ -154,7 +154,7 @@ contains
          methods = methods_for()
          do j = 1, size(methods)
             call law%add('cor, b = '//label(i), methods(j), cor(i), accuracy_of(methods(j)), &
-               'accuracy that the method is asked for', impact)
+               'twice what the method is asked for', impact)
          end do
       end do
    end subroutine exact

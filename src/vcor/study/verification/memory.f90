@@ -17,7 +17,7 @@ module vcor_study_verification_memory
    !> Glassy modulus of the paper's standard linear solid [Pa]
    real(wp), parameter :: glassy = 15.0e6_wp
    !> Why most tolerances are what they are
-   character(len=*), parameter :: as_asked = 'accuracy that the method is asked for'
+   character(len=*), parameter :: as_asked = 'twice what the method is asked for'
 
 contains
 
