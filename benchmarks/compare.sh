@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
-# vcor beside general-purpose ODE solvers, on the same impacts at the same error of cor (below
+# vcor beside other ODE solvers, on the same impacts at the same error of cor (below
 # 1e-8): a table on the screen, or with --csv FILE the lines behind it in a file.
 #
 #   benchmarks/compare.sh [--csv FILE]
+#
+# The general-purpose solvers are CVODE of SUNDIALS and those of SciPy; runge_kutta is an explicit
+# method written for the impact, which does for materials with long relaxation times only.
 #
 # Environment: BUILD, the build folder (default build/release); PYTHON, one with numpy and scipy
 # (default python3). Needs the programs of the build folder. CVODE and SciPy are left out where they
@@ -36,7 +39,7 @@ take() {
    local what=$1
    shift
    "$@" >>"$lines" 2>"$scratch/stderr" && return
-   note "$what is left out: $(grep -E '^(benchmark|cvode|solve_ivp):' "$scratch/stderr" \
+   note "$what is left out: $(grep -E '^(benchmark|solve_ivp):' "$scratch/stderr" \
       || tail -n 1 "$scratch/stderr")"
 }
 
@@ -60,6 +63,7 @@ for name in sls butyl_prony butyl_cerf butyl_power_law; do
    fi
    if [ $have_problems = yes ] && [ -x "$programs/cvode" ]; then
       take "CVODE for $name" "$programs/cvode" "$scratch/$name.txt"
+      take "Runge-Kutta for $name" "$programs/runge_kutta" "$scratch/$name.txt"
    fi
    if [ $have_scipy = yes ]; then
       take "SciPy for $name" "$python" "$here/solve_ivp.py" $name

@@ -122,7 +122,8 @@ def timed(work):
         start = time.process_time()
         work()
         times.append(1e6 * (time.process_time() - start))
-    return float(np.median(times)), float(np.median(np.abs(times - np.median(times))) / np.median(times))
+    median = float(np.median(times))
+    return median, float(np.median(np.abs(np.array(times) - median))) / median
 
 
 def attempt(problem, method, root):
