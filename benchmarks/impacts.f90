@@ -1,9 +1,10 @@
 !> Times of the solvers on the paper's impacts, on one core: a table to be read by hand. Each time
 !> is the median of several batches, so that a disturbed batch does not count
 program impacts
-   use, intrinsic :: iso_fortran_env, only : int64, output_unit
-   use vcor, only : build_impact, build_solver, case_t, error_t, evaluate, impact_t, outcome_t, &
-      override, read_case, solver_t, trajectory_t, wp
+   use, intrinsic :: iso_fortran_env, only : output_unit
+   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, override, read_case, &
+      solver_t, trajectory_t, wp
+   use vcor_benchmark_stopwatch, only : measure, measurement_t, median, seconds, stop_on
    use vcor_numeric_dot, only : dot
    implicit none
 
@@ -77,18 +78,14 @@ contains
       character(len=*), intent(in) :: name
       !> Overrides, group.key=value
       character(len=*), intent(in) :: settings(:)
-      !> Time per impact [s]
+      !> Time per impact [us]
       real(wp), intent(out), optional :: per_impact
 
       type(case_t) :: case
-      type(impact_t) :: impact
-      type(trajectory_t) :: trajectory
-      type(outcome_t) :: outcome
-      class(solver_t), allocatable :: solver
+      type(measurement_t) :: measurement
       type(error_t), allocatable :: error
-      real(wp) :: time(batches)
       character(len=48) :: label
-      integer :: i, j, repeats
+      integer :: i
 
       call read_case(case, folder//name//'.nml', error)
       call stop_on(error)
@@ -98,35 +95,11 @@ contains
          call stop_on(error)
          label = trim(label)//' '//settings(i)(index(settings(i), '.') + 1:)
       end do
-      call case%validate(error)
+      call measure(case, measurement, error)
       call stop_on(error)
-      call build_impact(case, impact, error)
-      call stop_on(error)
-      call build_solver(case, impact, solver, error)
-      call stop_on(error)
-
-      repeats = 1
-      do
-         time(1) = seconds()
-         do j = 1, repeats
-            call solver%solve(impact, trajectory, error)
-         end do
-         time(1) = seconds() - time(1)
-         call stop_on(error)
-         if (time(1) > 0.02_wp) exit
-         repeats = 2*repeats
-      end do
-      do i = 1, batches
-         time(i) = seconds()
-         do j = 1, repeats
-            call solver%solve(impact, trajectory, error)
-         end do
-         time(i) = (seconds() - time(i))/real(repeats, wp)
-      end do
-      if (present(per_impact)) per_impact = median(time)
-      outcome = evaluate(impact, trajectory)
+      if (present(per_impact)) per_impact = measurement%time
       write (output_unit, '(a16, a48, f13.1, i8, es15.1)') name//repeat(' ', 16), adjustl(label), &
-         1.0e6_wp*median(time), outcome%steps, outcome%cor_error
+         measurement%time, measurement%outcome%steps, measurement%outcome%cor_error
    end subroutine report
 
    !> The history sum of product integration against plain dot products of the same lengths
@@ -160,42 +133,4 @@ contains
       ! the sums are used, so that none is optimised away
       if (.not. total > 0.0_wp) write (output_unit, '(a)') 'impossible'
    end subroutine history_sum
-
-   !> Wall time
-   function seconds() result(time)
-      !> Time [s]
-      real(wp) :: time
-
-      integer(int64) :: count, rate
-
-      call system_clock(count, rate)
-      time = real(count, wp)/real(rate, wp)
-   end function seconds
-
-   !> Median of an odd number of values
-   pure function median(values) result(middle)
-      !> Values, shape (n)
-      real(wp), intent(in) :: values(:)
-      !> Median
-      real(wp) :: middle
-
-      real(wp) :: rest(size(values))
-      integer :: i
-
-      rest = values
-      do i = 1, size(values)/2
-         rest(maxloc(rest, 1)) = -1.0_wp
-      end do
-      middle = maxval(rest)
-   end function median
-
-   !> A benchmark has no use for errors
-   subroutine stop_on(error)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-
-      if (.not. allocated(error)) return
-      write (output_unit, '(a)') 'impacts: '//error%message
-      error stop
-   end subroutine stop_on
 end program impacts
