@@ -49,9 +49,51 @@ module vcor_material
       real(wp) :: time = 0.0_wp
       !> table: times of the points [s], shape (n)
       real(wp), allocatable :: times(:)
+   contains
+      !> Set a number by its name
+      procedure :: set
    end type material_data_t
 
 contains
+
+   !> Set a number by its name, that of the component
+   pure subroutine set(self, name, value)
+      !> The description
+      class(material_data_t), intent(inout) :: self
+      !> Name of a number; any other changes nothing
+      character(len=*), intent(in) :: name
+      !> Its value, in the unit of the component
+      real(wp), intent(in) :: value
+
+      select case (name)
+      case ('density')
+         self%density = value
+      case ('poisson_ratio')
+         self%poisson_ratio = value
+      case ('modulus')
+         self%modulus = value
+      case ('glassy_modulus')
+         self%glassy_modulus = value
+      case ('alpha')
+         self%alpha = value
+      case ('beta')
+         self%beta = value
+      case ('equilibrium_modulus')
+         self%equilibrium_modulus = value
+      case ('viscosity')
+         self%viscosity = value
+      case ('coefficient')
+         self%coefficient = value
+      case ('exponent')
+         self%exponent = value
+      case ('relaxing_modulus')
+         self%relaxing_modulus = value
+      case ('time')
+         self%time = value
+      case default
+         continue
+      end select
+   end subroutine set
 
    !> Build a material
    subroutine new_material(material, data, error)

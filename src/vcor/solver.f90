@@ -10,7 +10,8 @@ module vcor_solver
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
+   public :: solver_t, solver_settings_t, new_solver, check_settings, method_for
+   public :: default_accuracy
 
    !> How an impact is to be solved
    type :: solver_settings_t
@@ -33,6 +34,12 @@ module vcor_solver
       !> Go on after the separation
       logical :: ghost = .false.
    end type solver_settings_t
+
+   !> Build a solver
+   interface new_solver
+      module procedure new_solver_for_impact
+      module procedure new_solver_for_all
+   end interface new_solver
 
 contains
 
@@ -62,8 +69,32 @@ contains
       if (method == 'ive') accuracy = 1.0e-8_wp
    end function default_accuracy
 
-   !> Build a solver
-   subroutine new_solver(solver, settings, impact, error)
+   !> Check that an impact can be solved as it is to be; the solver itself is the same for all of
+   !> them
+   subroutine check_settings(settings, impact, error)
+      !> How the impact is to be solved
+      type(solver_settings_t), intent(in) :: settings
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
+         .and. .not. settings%time_step < settings%end_time) then
+         call raise(error, error_input, 'solver.time_step must be below solver.end_time')
+      else if (impact%kernel_viscosity() > 0.0_wp) then
+         if (abs(settings%second_coefficient) > 0.0_wp) then
+            call raise(error, error_input, 'the second term of the Volterra series has no ' &
+               //'meaning with a viscosity, whose kernel is a delta function')
+         else if (impact%plate%frozen()) then
+            call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
+               //"without a viscosity; use waves = 'relaxing'")
+         end if
+      end if
+   end subroutine check_settings
+
+   !> Build a solver for an impact
+   subroutine new_solver_for_impact(solver, settings, impact, error)
       !> The solver; not allocated on failure
       class(solver_t), allocatable, intent(out) :: solver
       !> How the impact is to be solved
@@ -73,22 +104,23 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      call check_settings(settings, impact, error)
+      if (.not. allocated(error)) call new_solver_for_all(solver, settings, error)
+   end subroutine new_solver_for_impact
+
+   !> Build a solver for any impact that passes `check_settings`
+   subroutine new_solver_for_all(solver, settings, error)
+      !> The solver; not allocated on failure
+      class(solver_t), allocatable, intent(out) :: solver
+      !> How impacts are to be solved
+      type(solver_settings_t), intent(in) :: settings
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(marching_t), allocatable :: marching
       real(wp) :: accuracy
-
-      if (impact%kernel_viscosity() > 0.0_wp) then
-         if (abs(settings%second_coefficient) > 0.0_wp) then
-            call raise(error, error_input, 'the second term of the Volterra series has no ' &
-               //'meaning with a viscosity, whose kernel is a delta function')
-            return
-         else if (impact%plate%frozen()) then
-            call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
-               //"without a viscosity; use waves = 'relaxing'")
-            return
-         end if
-      end if
 
       accuracy = settings%accuracy
       select case (method_for(settings%method, settings%scheme))
@@ -119,6 +151,6 @@ contains
          call raise(error, error_input, "unknown method '"//settings%method &
             //"'; known: auto, ive, direct")
       end select
-   end subroutine new_solver
+   end subroutine new_solver_for_all
 
 end module vcor_solver

@@ -1,0 +1,289 @@
+!> The numbers of a case in a form that impacts are built from quickly: nothing is looked up by
+!> name twice, what does not change is built once
+module vcor_study_blueprint
+   use vcor_constants, only : pi
+   use vcor_error, only : error_t
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
+      waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, new_impact
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, material_t, new_material
+   use vcor_solver, only : solver_settings_t
+   use vcor_study_describe, only : describe_material, describe_solver, number
+   use vcor_study_entries, only : entries_t
+   use vcor_study_keys, only : catalogue, groups
+   implicit none
+   private
+
+   public :: blueprint_t, new_blueprint, place_t, place_of, solver_place
+
+   !> Place of a number in a case
+   type :: place_t
+      !> Group
+      character(len=len(groups%name)) :: group = ''
+      !> Key
+      character(len=len(catalogue%name)) :: key = ''
+      !> Number of the item
+      integer :: item = 1
+   end type place_t
+
+   !> One of the two bodies
+   type :: body_t
+      !> Number of its material
+      integer :: item = 0
+      !> Description of its material
+      type(material_data_t) :: data
+      !> Its material; not allocated as long as it varies and was never built
+      class(material_t), allocatable :: material
+      !> Whether the modulus varies, so that the material has to be built for each impact
+      logical :: varies = .false.
+   end type body_t
+
+   !> What an impact is built from
+   type :: blueprint_t
+      private
+      !> Velocity of approach [m/s]
+      real(wp) :: velocity = 0.0_wp
+      !> Radius of the sphere [m]
+      real(wp) :: radius = 0.0_wp
+      !> Mass of the sphere [kg]; 0: from radius and density
+      real(wp) :: mass = 0.0_wp
+      !> Radius of the plate's surface [m]: 0 = flat, negative = concave
+      real(wp) :: surface_radius = 0.0_wp
+      !> Half thickness of the plate [m]; 0: not known
+      real(wp) :: half_thickness = 0.0_wp
+      !> One of the `waves_*` constants
+      integer :: waves = waves_relaxing
+      !> The sphere
+      type(body_t) :: sphere
+      !> The plate
+      type(body_t) :: plate
+      !> Whether the Volterra series has its second term
+      logical :: second_term = .false.
+      !> How the impact is to be solved
+      type(solver_settings_t), public :: settings
+   contains
+      !> Set a number
+      procedure :: set
+      !> Build the impact
+      procedure :: build
+   end type blueprint_t
+
+contains
+
+   !> Take the numbers out of a case and build what does not vary
+   subroutine new_blueprint(self, case, varying, error, cause)
+      !> The blueprint
+      type(blueprint_t), intent(out) :: self
+      !> A validated case
+      class(entries_t), intent(in) :: case
+      !> Numbers that will be set, shape (n)
+      type(place_t), intent(in) :: varying(:)
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(out) :: cause
+
+      character(len=:), allocatable :: waves
+      integer :: order
+
+      self%velocity = number(case, 'impact', 'velocity')
+      self%radius = number(case, 'sphere', 'radius')
+      self%mass = number(case, 'sphere', 'mass')
+      self%surface_radius = number(case, 'plate', 'surface_radius')
+      self%half_thickness = number(case, 'plate', 'half_thickness')
+      call case%get('plate', 'waves', waves)
+      select case (waves)
+      case ('none')
+         self%waves = waves_none
+      case ('constant')
+         self%waves = waves_constant
+      case ('frozen')
+         self%waves = waves_frozen
+      case default
+         self%waves = waves_relaxing
+      end select
+
+      call describe_solver(case, self%settings)
+      call case%get('solver', 'volterra_order', order)
+      self%second_term = order == 2
+
+      call describe_body(case, 'sphere', varying, self%sphere)
+      call describe_body(case, 'plate', varying, self%plate)
+      if (.not. self%sphere%varies) call build_material_of(self%sphere, error, cause)
+      if (allocated(error)) return
+      if (self%plate%item /= self%sphere%item .and. .not. self%plate%varies) &
+         call build_material_of(self%plate, error, cause)
+   end subroutine new_blueprint
+
+   !> Describe the material of a body
+   subroutine describe_body(case, group, varying, body)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> sphere or plate
+      character(len=*), intent(in) :: group
+      !> Numbers that will be set, shape (n)
+      type(place_t), intent(in) :: varying(:)
+      !> The body, its material not built
+      type(body_t), intent(out) :: body
+
+      character(len=:), allocatable :: name
+
+      call case%get(group, 'material', name)
+      body%item = case%find_material(name)
+      call describe_material(case, body%item, body%data)
+      body%varies = any(varying%group == 'material' .and. varying%item == body%item &
+         .and. varying%key /= 'density' .and. varying%key /= 'poisson_ratio')
+   end subroutine describe_body
+
+   !> Place of an entry
+   pure function place_of(case, handle) result(place)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> Handle of the entry
+      integer, intent(in) :: handle
+      !> Its place
+      type(place_t) :: place
+
+      integer :: group, row
+
+      call case%locate(handle, group, row, place%item)
+      place%group = groups(group)%name
+      place%key = catalogue(row)%name
+   end function place_of
+
+   !> What in a case an error about the solver is about
+   pure function solver_place(settings) result(place)
+      !> How the impact is to be solved
+      type(solver_settings_t), intent(in) :: settings
+      !> Place of the method or its scheme
+      type(place_t) :: place
+
+      place = place_t('solver', 'scheme')
+      if (settings%scheme == 'product') place%key = 'method'
+   end function solver_place
+
+   !> Set a number; nothing is checked before the impact is built
+   pure subroutine set(self, place, value)
+      !> The blueprint
+      class(blueprint_t), intent(inout) :: self
+      !> Place of a real number, one of those announced as varying
+      type(place_t), intent(in) :: place
+      !> Its value, in the unit of the key
+      real(wp), intent(in) :: value
+
+      if (place%group == 'material') then
+         if (place%item == self%sphere%item) call self%sphere%data%set(place%key, value)
+         if (place%item == self%plate%item) call self%plate%data%set(place%key, value)
+         return
+      end if
+      select case (place%key)
+      case ('velocity')
+         self%velocity = value
+      case ('radius')
+         self%radius = value
+      case ('mass')
+         self%mass = value
+      case ('surface_radius')
+         self%surface_radius = value
+      case ('half_thickness')
+         self%half_thickness = value
+      case ('time_step')
+         self%settings%time_step = value
+      case ('end_time')
+         self%settings%end_time = value
+      case ('accuracy')
+         self%settings%accuracy = value
+      case ('volterra_coefficient')
+         if (self%second_term) self%settings%second_coefficient = value
+      case default
+         continue
+      end select
+   end subroutine set
+
+   !> Build the impact
+   subroutine build(self, impact, error, cause)
+      !> The blueprint; its materials are built anew where they vary
+      class(blueprint_t), intent(inout) :: self
+      !> The impact
+      type(impact_t), intent(out) :: impact
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(out) :: cause
+
+      type(contact_modulus_t) :: modulus
+      type(plate_t) :: plate
+      real(wp) :: mass
+
+      call build_materials(self, error, cause)
+      if (allocated(error)) return
+      call new_contact_modulus(modulus, self%sphere%material, self%plate%material, &
+         self%sphere%item == self%plate%item, error)
+      if (allocated(error)) then
+         cause = place_t('plate', 'material')
+         return
+      end if
+      call new_plate(plate, self%plate%material, self%half_thickness, self%waves, error)
+      if (allocated(error)) then
+         cause = place_t('plate', 'waves')
+         return
+      end if
+      mass = self%mass
+      if (.not. mass > 0.0_wp) &
+         mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density
+      call new_impact(impact, self%velocity, mass, self%radius, self%surface_radius, modulus, &
+         plate, error)
+      if (allocated(error)) cause = place_t('sphere', 'radius')
+   end subroutine build
+
+   !> Build the materials that vary or were never built, and set what does not take part in the
+   !> modulus: points of data need not be fitted anew for another density
+   subroutine build_materials(self, error, cause)
+      !> The blueprint
+      class(blueprint_t), intent(inout) :: self
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(out) :: cause
+
+      call build_material_of(self%sphere, error, cause)
+      if (allocated(error)) return
+      if (self%plate%item /= self%sphere%item) then
+         call build_material_of(self%plate, error, cause)
+      else if (self%plate%varies .or. .not. allocated(self%plate%material)) then
+         if (allocated(self%plate%material)) deallocate (self%plate%material)
+         allocate (self%plate%material, source=self%sphere%material)
+      else
+         call set_constants(self%plate)
+      end if
+   end subroutine build_materials
+
+   !> Build the material of a body where that has to be
+   subroutine build_material_of(body, error, cause)
+      !> The body
+      type(body_t), intent(inout) :: body
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(inout) :: cause
+
+      if (.not. body%varies .and. allocated(body%material)) then
+         call set_constants(body)
+         return
+      end if
+      call new_material(body%material, body%data, error)
+      if (allocated(error)) cause = place_t('material', 'name', body%item)
+   end subroutine build_material_of
+
+   !> Set what does not take part in the modulus
+   pure subroutine set_constants(body)
+      !> The body, its material built
+      type(body_t), intent(inout) :: body
+
+      body%material%density = body%data%density
+      body%material%poisson_ratio = body%data%poisson_ratio
+   end subroutine set_constants
+
+end module vcor_study_blueprint
