@@ -1,7 +1,8 @@
 !> The command line as a request
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
-   use vcor, only : error_t, error_usage, printable, quantity_names, raise, suggestion
+   use vcor, only : error_t, error_usage, integer_text, most_threads, printable, quantity_names, &
+      raise, suggestion
    implicit none
    private
 
@@ -10,7 +11,8 @@ module vcor_app_cli
    !> Known commands
    character(len=*), parameter :: commands = 'run check verify help'
    !> Options of run
-   character(len=*), parameter :: run_options = '--set --output --print --quiet --help --version'
+   character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
+      //'--help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
    !> Options of verify
@@ -30,6 +32,8 @@ module vcor_app_cli
       type(argument_t), allocatable :: names(:)
       !> Directory of --output; unallocated without it
       character(len=:), allocatable :: directory
+      !> Threads of --threads; 0 without it
+      integer :: threads = 0
       !> Nothing on the screen
       logical :: quiet = .false.
    end type request_t
@@ -173,10 +177,35 @@ contains
          call append_word(request%settings, value)
       case ('--output')
          request%directory = value
+      case ('--threads')
+         call read_threads(value, request%threads, error)
       case default
          call add_names(value, request, error)
       end select
    end subroutine apply
+
+   !> Read the value of --threads
+   subroutine read_threads(value, threads, error)
+      !> The number as it is written
+      character(len=*), intent(in) :: value
+      !> The number
+      integer, intent(out) :: threads
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: digits
+      integer, parameter :: most_digits = 9
+      integer :: status
+
+      threads = 0
+      digits = trim(adjustl(value))
+      status = 0
+      if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
+         read (digits, *, iostat=status) threads
+      if (status /= 0 .or. threads < 1 .or. threads > most_threads) call raise(error, error_usage, &
+         "--threads: found '"//printable(digits)//"', expected a whole number from 1 to " &
+         //integer_text(most_threads))
+   end subroutine read_threads
 
    !> Split the value of --print
    subroutine add_names(list, request, error)
@@ -207,7 +236,8 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. has_word(quantity_names(), name)) then
+      ! what has a dot is a parameter of a sweep, and whether there is one the case says
+      if (index(name, '.') == 0 .and. .not. has_word(quantity_names(), name)) then
          call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
             //suggestion(name, quantity_names()))
       else

@@ -65,12 +65,17 @@ contains
       text = 'usage: vcor run CASE.nml ... [options]'//nl//nl &
          //'Solves the impact of each case and writes STEM_summary.csv, STEM.csv (the time'//nl &
          //'history) and STEM.h5 (both), STEM being the name of the case file.'//nl//nl &
+         //'Where a case has &sweep groups, the impacts of its grid: a row for each in the'//nl &
+         //'summary, no history. A point that has no result (out of range, no separation,'//nl &
+         //'numerical failure) has its status and nan in the row, the others go on, and the'//nl &
+         //'exit code is 5.'//nl//nl &
          //'  --set GROUP.KEY=VALUE   replace a value of the case; a material is addressed'//nl &
          //"                          by its name: --set rubber.beta=600; may be repeated"//nl &
          //'  --output DIR            directory of the files, made if it is not there'//nl &
-         //'  --print NAME,NAME       print bare numbers instead of the table, and write'//nl &
-         //'                          files only if --output is given; names: vcor help output' &
-         //nl &
+         //'  --print NAME,NAME       print bare numbers instead of the table, a line per'//nl &
+         //'                          impact, and write files only if --output is given;'//nl &
+         //'                          names: vcor help output, or a parameter that is swept'//nl &
+         //'  --threads N             threads of a sweep; default: as many as there are cores'//nl &
          //'  --quiet                 print nothing'//nl
    end function run_page
 
@@ -187,8 +192,8 @@ contains
       name = 'steps'
       text = text//'   '//name//'number of time steps'//nl
       name = 'status'
-      text = text//'   '//name//'separated, or no_separation or sticks with nan for ' &
-         //'the numbers'//nl
+      text = text//'   '//name//'separated; else nan for the numbers: no_separation, sticks;'//nl &
+         //repeat(' ', 31)//'in a sweep also invalid (there is no such impact), failed'//nl
    end function output_page
 
 end module vcor_app_help

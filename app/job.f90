@@ -1,8 +1,10 @@
 !> The cases of a call, read and ready to run
 module vcor_app_job
+   use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
-   use vcor, only : build_impact, build_solver, case_t, data_file, error_input, error_t, impact_t, &
-      join_path, method_for, override, raise, read_case, read_data, same_file, solver_t
+   use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
+      join_path, method_for, new_sweep, override, printable, quantity_names, raise, read_case, &
+      read_data, same_file, single_impact, suggestion, sweep_t
    implicit none
    private
 
@@ -12,16 +14,18 @@ module vcor_app_job
    type :: job_t
       !> The case
       type(case_t) :: case
-      !> Its impact
+      !> Its impacts
+      type(sweep_t) :: sweep
+      !> Its impact where it has one only
       type(impact_t) :: impact
-      !> Its solver
-      class(solver_t), allocatable :: solver
       !> Its method
       character(len=:), allocatable :: method
       !> Directory and stem of its files
       character(len=:), allocatable :: path
       !> Which of its files it writes, in the order of `endings`
       logical :: writes(3) = .true.
+      !> Whether there is a time history in them
+      logical :: history = .true.
    end type job_t
 
    !> What the names of the files end with
@@ -55,9 +59,16 @@ contains
             if (allocated(error)) return
             call read_data(job%case, error)
             if (allocated(error)) return
-            call build_impact(job%case, job%impact, error)
+            call new_sweep(job%sweep, job%case, error)
             if (allocated(error)) return
-            call build_solver(job%case, job%impact, job%solver, error)
+            if (.not. job%sweep%is_grid()) then
+               call single_impact(job%sweep, job%case, job%impact, error)
+            else if (request%command == 'verify') then
+               call raise(error, error_input, job%case%location('sweep', 'parameter', 1) &
+                  //': verify takes single impacts, found a &sweep group')
+            end if
+            if (allocated(error)) return
+            call check_names(request, job%sweep%grid, error)
             if (allocated(error)) return
 
             call job%case%get('solver', 'method', method)
@@ -70,6 +81,9 @@ contains
             call job%case%get('output', 'csv', csv)
             call job%case%get('output', 'hdf5', hdf5)
             call job%case%get('output', 'history', history)
+            ! a time history is that of one impact
+            history = history .and. .not. job%sweep%is_grid()
+            job%history = history
             job%writes = [csv, csv .and. history, hdf5]
             ! bare numbers are for scripts, which would be surprised by files
             if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
@@ -82,6 +96,30 @@ contains
          end do
       end do
    end subroutine prepare
+
+   !> Names of --print with a dot are parameters that the case sweeps
+   subroutine check_names(request, grid, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> Points of a case
+      type(grid_t), intent(in) :: grid
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: known
+      integer :: i, j
+
+      known = quantity_names()
+      do j = 1, size(grid%axes)
+         known = known//' '//grid%axes(j)%name
+      end do
+      do i = 1, size(request%names)
+         if (has_word(known, request%names(i)%text)) cycle
+         call raise(error, error_usage, "unknown name '"//printable(request%names(i)%text) &
+            //"' in --print; "//suggestion(request%names(i)%text, known))
+         return
+      end do
+   end subroutine check_names
 
    !> No file of one case may be a file of another, nor a case file itself, nor a data file
    subroutine refuse_clash(request, jobs, new, old, error)

@@ -6,7 +6,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, short, significant
+   public :: report, short, shown, significant
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')

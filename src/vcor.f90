@@ -16,6 +16,7 @@ module vcor
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_results, only : history_table, summary_table
+   use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
@@ -32,11 +33,17 @@ module vcor
    use vcor_study_comparison_judge, only : error_of_best, is_honest
    use vcor_study_comparison_type, only : attempt_case, attempt_count, attempt_first, &
       attempt_halved, attempt_refined, compared_t, comparison_t
+   use vcor_study_failures, only : failure_t, failures_t
+   use vcor_study_grid, only : axis_t, grid_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
    use vcor_study_nearest, only : suggestion
-   use vcor_study_quantity, only : quantities, quantity_names, quantity_t, quantity_value, &
-      status_name
+   use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
+      quantity_t, quantity_value, status_name
+   use vcor_study_summary, only : new_summary, summary_t
+   use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
+      worker_t
    use vcor_study_text, only : printable
+   use vcor_study_threads, only : default_threads, most_threads
    use vcor_study_verification, only : build_law, law_count, verify_law
    use vcor_study_verification_row, only : law_t, row_t, verdict_t
    use vcor_version, only : version
@@ -59,11 +66,15 @@ module vcor
    public :: case_t, read_case, read_case_text, override, read_data, data_file
    public :: build_impact, build_material, build_solver
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
+   public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
+   public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
+   public :: default_threads, most_threads
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
+   public :: place_in_table, write_rows
    public :: write_stdout, make_directory, join_path, same_file
    public :: real_text, integer_text, printable, suggestion
 

@@ -126,12 +126,6 @@ def test_unknown_group(vcor, name, nearest):
     vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=[name, nearest])
 
 
-def test_sweep_is_not_there_yet(vcor):
-    vcor.write(SLS + "&sweep\n   parameter = 'impact.velocity'\n/\n")
-    line = SLS.count("\n") + 1
-    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="sweep")
-
-
 def test_group_given_twice(vcor):
     vcor.write(SLS + "&impact velocity = 5.0 /\n")
     line = SLS.count("\n") + 1

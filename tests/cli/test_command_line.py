@@ -70,7 +70,7 @@ def test_unknown_option(sls, command, word, nearest):
     sls.refuses(command, word, "case.nml", code=USAGE, says=[f"'{option}'", f"'{nearest}'"])
 
 
-@pytest.mark.parametrize("word", ["-q", "-o", "--threads", "-", "--Quiet", "-–set", "--set\n"])
+@pytest.mark.parametrize("word", ["-q", "-o", "--jobs", "-", "--Quiet", "-–set", "--set\n"])
 def test_option_like_no_other(sls, word):
     if word == "-":
         sls.refuses("run", word, code=FILE, at="-", says="no such file")

@@ -45,7 +45,7 @@ def test_help_after_a_command(vcor, command, option):
     assert vcor.succeeds(command, "no.nml", option) == page
 
 
-@pytest.mark.parametrize("option", ["--set", "--output", "--print", "--quiet"])
+@pytest.mark.parametrize("option", ["--set", "--output", "--print", "--threads", "--quiet"])
 def test_page_of_run(vcor, option):
     assert option in vcor.succeeds("help", "run")
 
@@ -65,7 +65,7 @@ def test_page_of_the_output(vcor, name):
 
 
 @pytest.mark.parametrize(
-    "group", ["case", "impact", "sphere", "plate", "material", "solver", "output"]
+    "group", ["case", "impact", "sphere", "plate", "material", "solver", "sweep", "output"]
 )
 def test_page_of_the_input(vcor, group):
     assert f"\n&{group} " in vcor.succeeds("help", "input")

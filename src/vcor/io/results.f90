@@ -1,10 +1,11 @@
 !> Outcomes and trajectories as tables
 module vcor_io_results
-   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : col_time, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, new_table, table_t
+   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_study_quantity, only : history_quantities, quantities, quantity_value, status_name
+   use vcor_study_grid, only : grid_t
+   use vcor_study_quantity, only : history_quantities, longest_status, quantities, status_name
+   use vcor_study_summary, only : summary_t
    use vcor_version, only : version
    implicit none
    private
@@ -16,36 +17,52 @@ module vcor_io_results
 
 contains
 
-   !> Summary: a row per impact
-   subroutine summary_table(table, title, case_text, outcomes)
+   !> Summary: a row per impact. Its dimensions are what is swept, each by its path; a single impact
+   !> has the dimension `impact` of length one
+   subroutine summary_table(table, title, case_text, grid, summary)
       !> The table
       type(table_t), intent(out) :: table
       !> Title of the case
       character(len=*), intent(in) :: title
       !> Full case
       character(len=*), intent(in) :: case_text
-      !> Outcomes, shape (n)
-      type(outcome_t), intent(in) :: outcomes(:)
+      !> Points
+      type(grid_t), intent(in) :: grid
+      !> Their outcomes; they move to the table, so that there are not two of a million
+      type(summary_t), intent(inout) :: summary
 
-      real(wp) :: values(size(outcomes))
-      character(len=13) :: status(size(outcomes))
-      integer :: i, j
+      character(len=longest_status), allocatable :: status(:)
+      integer :: i
 
       call new_table(table, version, title, case_text)
-      call add_dimension(table, 'impact', size(outcomes))
-      do j = 1, size(quantities)
-         do i = 1, size(outcomes)
-            values(i) = quantity_value(outcomes(i), j)
-         end do
-         call add_column(table, trim(quantities(j)%name), values, trim(quantities(j)%unit), &
-            trim(quantities(j)%meaning))
+      do i = 1, size(grid%axes)
+         associate (axis => grid%axes(i))
+            call add_dimension(table, axis%name, axis%values, unit_of(axis%unit), axis%meaning)
+         end associate
       end do
-      call add_column(table, 'steps', outcomes%steps, '1', 'number of time steps')
-      do i = 1, size(outcomes)
-         status(i) = status_name(outcomes(i)%status)
+      if (size(grid%axes) == 0) call add_dimension(table, 'impact', 1)
+      do i = 1, size(quantities)
+         call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
+            trim(quantities(i)%unit), trim(quantities(i)%meaning))
+      end do
+      call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
+      allocate (status(size(summary%status)))
+      do i = 1, size(status)
+         status(i) = status_name(summary%status(i))
       end do
       call add_column(table, 'status', status, '', 'how the contact ended')
    end subroutine summary_table
+
+   !> Unit as tables have it
+   pure function unit_of(unit) result(name)
+      !> Unit of a key; blank for a pure number
+      character(len=*), intent(in) :: unit
+      !> Unit, 1 for a pure number
+      character(len=:), allocatable :: name
+
+      name = unit
+      if (name == '') name = '1'
+   end function unit_of
 
    !> History: a row per time
    subroutine history_table(table, title, case_text, trajectory)

@@ -21,7 +21,7 @@ module vcor_io_table
    private
 
    public :: table_t, column_t, dimension_t
-   public :: new_table, add_dimension, add_column, check_table
+   public :: new_table, add_dimension, add_column, move_in_column, check_table
    public :: row_count, coordinate_row, text_value
    public :: real_column, integer_column, text_column
 
@@ -96,6 +96,12 @@ module vcor_io_table
       module procedure add_integer_column
       module procedure add_text_column
    end interface add_column
+
+   !> Add a column whose values move to the table: nothing is copied, which counts for millions
+   interface move_in_column
+      module procedure move_in_real_column
+      module procedure move_in_integer_column
+   end interface move_in_column
 
 contains
 
@@ -302,6 +308,42 @@ contains
       if (allocated(table%fault)) return
       call join_texts(table%columns(table%column_count), values)
    end subroutine add_text_column
+
+   !> Add a column of real numbers, which move
+   pure subroutine move_in_real_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name of the column
+      character(len=*), intent(in) :: name
+      !> Values, shape (rows); not allocated afterwards
+      real(wp), allocatable, intent(inout) :: values(:)
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: long_name
+
+      call take_column(table, name, unit, long_name, real_column, size(values))
+      if (allocated(table%fault)) return
+      call move_alloc(values, table%columns(table%column_count)%reals)
+   end subroutine move_in_real_column
+
+   !> Add a column of whole numbers, which move
+   pure subroutine move_in_integer_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name of the column
+      character(len=*), intent(in) :: name
+      !> Values, shape (rows); not allocated afterwards
+      integer, allocatable, intent(inout) :: values(:)
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: long_name
+
+      call take_column(table, name, unit, long_name, integer_column, size(values))
+      if (allocated(table%fault)) return
+      call move_alloc(values, table%columns(table%column_count)%integers)
+   end subroutine move_in_integer_column
 
    !> Make room for a column and describe it; its values are set by the caller
    pure subroutine take_column(table, name, unit, long_name, kind, length)

@@ -2,8 +2,10 @@
 !> contradicts itself
 module vcor_study_checks
    use vcor_error, only : error_input, error_t, raise
+   use vcor_study_axes, only : new_grid, swept_handles
    use vcor_study_consistency, only : check_consistency
    use vcor_study_entries, only : entries_t
+   use vcor_study_grid, only : grid_t
    use vcor_study_keys, only : catalogue, find_key, first_row, groups, join_words, keys_of, &
       & last_row, row_for_model, wanted
    use vcor_study_store, only : entry_t, range_message
@@ -15,14 +17,19 @@ module vcor_study_checks
 
 contains
 
-   !> Check a case; the first thing that is wrong becomes the error
+   !> Check a case; the first thing that is wrong becomes the error. What a sweep varies need not be
+   !> given, and its values are not checked here: a point that makes no sense is a point without
+   !> result, not a case that is wrong
    subroutine check_case(self, error)
       !> The case
       class(entries_t), intent(in) :: self
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      type(grid_t) :: grid
+      integer, allocatable :: swept(:)
       integer :: group, item
 
+      allocate(swept, source=swept_handles(self))
       do group = 1, size(groups)
          if (groups(group)%required .and. self%count(groups(group)%name) == 0) then
             call raise(error, error_input, printable(self%source)//": there is no &" &
@@ -33,11 +40,13 @@ contains
       do group = 1, size(groups)
          do item = 1, max(1, self%count(groups(group)%name))
             if (self%count(groups(group)%name) == 0) exit
-            call check_item(self, group, item, error)
+            call check_item(self, swept, group, item, error)
             if (allocated(error)) return
          end do
       end do
-      call check_consistency(self, error)
+      call check_consistency(self, swept, error)
+      if (allocated(error)) return
+      call new_grid(self, grid, error)
    end subroutine check_case
 
    !> A group and the keys it needs, in words
@@ -57,9 +66,11 @@ contains
    end function described
 
    !> Check each entry of a group by itself
-   subroutine check_item(self, group, item, error)
+   subroutine check_item(self, swept, group, item, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Index of the group
       integer, intent(in) :: group
       !> Number of the item
@@ -71,20 +82,22 @@ contains
       ! What the meaning of other keys depends on comes first
       if (groups(group)%selector /= "") then
          row = find_key(groups(group)%name, groups(group)%selector)
-         call check_entry(self, group, row, item, error)
+         call check_entry(self, swept, group, row, item, error)
          if (allocated(error)) return
       end if
       do row = first_row(group), last_row(group)
          if (find_key(catalogue(row)%group, catalogue(row)%name) /= row) cycle
-         call check_entry(self, group, row, item, error)
+         call check_entry(self, swept, group, row, item, error)
          if (allocated(error)) return
       end do
    end subroutine check_item
 
    !> Check one entry by itself: whether it belongs there, is there, and is within its range
-   subroutine check_entry(self, group, row, item, error)
+   subroutine check_entry(self, swept, group, row, item, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Index of the group
       integer, intent(in) :: group
       !> First row of the key
@@ -95,11 +108,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(entry_t) :: entry
       character(len=:), allocatable :: key, model, message
-      integer :: applicable
+      integer :: applicable, handle
 
       key = trim(catalogue(row)%name)
       model = self%model(group, item)
-      entry = self%entry(self%handle(groups(group)%name, key, item))
+      handle = self%handle(groups(group)%name, key, item)
+      entry = self%entry(handle)
       applicable = row_for_model(row, model)
       if (applicable == 0) then
          if (entry%given) call fail(self, group, key, item, "key '"//key &
@@ -110,7 +124,7 @@ contains
       if (entry%present) then
          message = range_message(catalogue(applicable), entry)
          if (message /= "") call fail(self, group, key, item, key//": "//message, error)
-      else if (catalogue(applicable)%required) then
+      else if (catalogue(applicable)%required .and. all(swept /= handle)) then
          message = "key '"//key//"' is missing in &"//trim(groups(group)%name)
          if (groups(group)%label /= "" .and. groups(group)%label /= key) &
             & message = message//" "//owner_name(self, group, item)

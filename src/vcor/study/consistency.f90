@@ -15,21 +15,24 @@ module vcor_study_consistency
 
 contains
 
-   !> Check the values of a case against each other; the first contradiction becomes the error
-   subroutine check_consistency(self, error)
+   !> Check the values of a case against each other; the first contradiction becomes the error.
+   !> Numbers that a sweep varies are there, and in contradiction to nothing
+   subroutine check_consistency(self, swept, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       integer :: item
 
       do item = 1, self%count("material")
-         call check_material(self, item, error)
+         call check_material(self, swept, item, error)
          if (allocated(error)) return
       end do
-      call check_bodies(self, error)
+      call check_bodies(self, swept, error)
       if (allocated(error)) return
-      call check_times(self, error)
+      call check_times(self, swept, error)
       if (allocated(error)) return
       call check_choices(self, error)
    end subroutine check_consistency
@@ -53,6 +56,24 @@ contains
             & //shortened(stem)//"', expected a name without a folder (that is output.directory)")
       end if
    end subroutine check_choices
+
+   !> Whether a sweep varies a key
+   pure function is_swept(self, swept, group, key, item) result(yes)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+      !> Whether it does
+      logical :: yes
+
+      yes = any(swept == self%handle(group, key, item))
+   end function is_swept
 
    !> Raise an error about a key of a material
    subroutine fail(self, key, item, message, error)
@@ -85,9 +106,11 @@ contains
    end function material_name
 
    !> Check the values of a material against each other
-   subroutine check_material(self, item, error)
+   subroutine check_material(self, swept, item, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -105,14 +128,16 @@ contains
          return
       end do
       call self%get("material", "model", model, item)
-      if (model == "sls") call check_sls(self, item, error)
-      if (model == "prony") call check_prony(self, item, error)
+      if (model == "sls") call check_sls(self, swept, item, error)
+      if (model == "prony") call check_prony(self, swept, item, error)
    end subroutine check_material
 
    !> A standard linear solid is softer after a long time than at first: alpha <= beta
-   subroutine check_sls(self, item, error)
+   subroutine check_sls(self, swept, item, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -120,6 +145,8 @@ contains
       character(len=:), allocatable :: message
       real(wp) :: alpha, beta
 
+      if (is_swept(self, swept, "material", "alpha", item) .or. &
+         & is_swept(self, swept, "material", "beta", item)) return
       call self%get("material", "alpha", alpha, item)
       call self%get("material", "beta", beta, item)
       if (alpha <= beta) return
@@ -134,9 +161,11 @@ contains
    end subroutine check_sls
 
    !> A Prony series has as many rates, or times, as moduli, and at least one term of any sort
-   subroutine check_prony(self, item, error)
+   subroutine check_prony(self, swept, item, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -144,7 +173,7 @@ contains
       real(wp), allocatable :: moduli(:), rates(:)
       character(len=:), allocatable :: key
       real(wp) :: viscosity, equilibrium_modulus
-      logical :: has_terms
+      logical :: has_terms, is_stiff
 
       if (self%given("material", "rates", item) .and. self%given("material", "times", item)) then
          call fail(self, "times", item, "found both rates and times, expected one of them", error)
@@ -157,6 +186,9 @@ contains
       has_terms = self%given("material", "moduli", item)
       call self%get("material", "viscosity", viscosity, item)
       call self%get("material", "equilibrium_modulus", equilibrium_modulus, item)
+      is_stiff = has_terms .or. viscosity > 0.0_wp .or. equilibrium_modulus > 0.0_wp &
+         & .or. is_swept(self, swept, "material", "viscosity", item) &
+         & .or. is_swept(self, swept, "material", "equilibrium_modulus", item)
 
       if (has_terms .and. .not. self%given("material", key, item)) then
          call fail(self, "moduli", item, &
@@ -169,7 +201,7 @@ contains
          call fail(self, key, item, "found "//integer_text(size(moduli))//" moduli and " &
             & //integer_text(size(rates))//" "//key//", expected as many of one as of the other", &
             & error)
-      else if (.not. has_terms .and. viscosity <= 0.0_wp .and. equilibrium_modulus <= 0.0_wp) then
+      else if (.not. is_stiff) then
          call fail(self, "moduli", item, "material "//material_name(self, item) &
             & //" has no stiffness, expected moduli, viscosity > 0 or equilibrium_modulus > 0", &
             & error)
@@ -177,9 +209,11 @@ contains
    end subroutine check_prony
 
    !> Check sphere and plate against their materials and each other
-   subroutine check_bodies(self, error)
+   subroutine check_bodies(self, swept, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(key_t) :: thickness
@@ -197,24 +231,27 @@ contains
             & //": sphere and plate are both rigid, expected one that deforms")
          return
       end if
-      if (.not. self%given("sphere", "mass")) then
-         call need_density(self, sphere, "sphere", "mass in &sphere or density", error)
+      if (.not. (self%given("sphere", "mass") .or. is_swept(self, swept, "sphere", "mass"))) then
+         call need_density(self, swept, sphere, "sphere", "mass in &sphere or density", error)
          if (allocated(error)) return
       end if
       ! A rigid plate does not move, and without waves none does
       call self%get("plate", "waves", waves)
       if (waves /= "none" .and. .not. rigid_plate) then
-         if (.not. self%given("plate", "half_thickness")) then
+         if (.not. (self%given("plate", "half_thickness") &
+            & .or. is_swept(self, swept, "plate", "half_thickness"))) then
             thickness = catalogue(find_key("plate", "half_thickness"))
             call raise(error, error_input, self%location("plate", "half_thickness") &
                & //": key 'half_thickness' is missing in &plate, expected "//wanted(thickness) &
                & //", or waves = 'none' for a half space")
             return
          end if
-         call need_density(self, plate, "plate", "density, or waves = 'none' for a half space", &
-            & error)
+         call need_density(self, swept, plate, "plate", &
+            & "density, or waves = 'none' for a half space", error)
          if (allocated(error)) return
       end if
+      if (is_swept(self, swept, "sphere", "radius") &
+         & .or. is_swept(self, swept, "plate", "surface_radius")) return
       call self%get("sphere", "radius", radius)
       call self%get("plate", "surface_radius", surface_radius)
       if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
@@ -253,9 +290,11 @@ contains
    end subroutine find_body_material
 
    !> Check that a material has a density
-   subroutine need_density(self, item, body, expected, error)
+   subroutine need_density(self, swept, item, body, expected, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Group of the body that needs it
@@ -265,20 +304,25 @@ contains
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (self%given("material", "density", item)) return
+      if (self%given("material", "density", item) &
+         & .or. is_swept(self, swept, "material", "density", item)) return
       call fail(self, "density", item, "key 'density' is missing in &material " &
          & //material_name(self, item)//" of the "//body//", expected "//expected, error)
    end subroutine need_density
 
    !> Check the times of the solver against each other
-   subroutine check_times(self, error)
+   subroutine check_times(self, swept, error)
       !> The case
       class(entries_t), intent(in) :: self
+      !> Handles of what a sweep varies
+      integer, intent(in) :: swept(:)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: time_step, end_time
 
       if (.not. (self%given("solver", "time_step") .and. self%given("solver", "end_time"))) return
+      if (is_swept(self, swept, "solver", "time_step") &
+         & .or. is_swept(self, swept, "solver", "end_time")) return
       call self%get("solver", "time_step", time_step)
       call self%get("solver", "end_time", end_time)
       if (time_step < end_time) return

@@ -78,6 +78,7 @@ module vcor_study_keys
    type(interval_t), parameter :: unit_half_open = &
       & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
+   type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
    !> The groups, in the order they are printed in
@@ -90,6 +91,7 @@ module vcor_study_keys
       & group_t("material", "A material, named by the sphere or the plate", required=.true., &
       &    repeated=.true., label="name", selector="model"), &
       & group_t("solver", "How the equation of motion is solved"), &
+      & group_t("sweep", "A parameter that is varied; several make a grid", repeated=.true.), &
       & group_t("output", "What is written, and where")]
 
    !> The keys, group by group in the order of `groups`
@@ -182,6 +184,15 @@ module vcor_study_keys
       &    "m^-1.5", default="1.0"), &
       & key_t("solver", "continue_after_separation", logical_key, &
       &    "Go on to end_time with the force as it comes", default=".false."), &
+      !
+      & key_t("sweep", "parameter", text_key, "What is varied, as in --set: group.key", &
+      &    required=.true.), &
+      & key_t("sweep", "values", list_key, "Its values; or give start, stop and count"), &
+      & key_t("sweep", "start", real_key, "Its first value"), &
+      & key_t("sweep", "stop", real_key, "Its last value"), &
+      & key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
+      & key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
+      &    choices="linear log", default="linear"), &
       !
       & key_t("output", "csv", logical_key, "Write CSV files", default=".true."), &
       & key_t("output", "hdf5", logical_key, "Write an HDF5 file", default=".true."), &

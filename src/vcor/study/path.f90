@@ -59,6 +59,9 @@ contains
          handle = self%handle(owner, key)
       else if (self%count(owner) == 1) then
          handle = self%handle(owner, key, 1)
+      else if (groups(group)%label == "") then
+         message = "found "//integer_text(self%count(owner))//" &"//trim(groups(group)%name) &
+            & //" groups, expected one"
       else
          message = "found "//integer_text(self%count(owner))//" &"//trim(groups(group)%name) &
             & //" groups, expected the name of one of them: " &

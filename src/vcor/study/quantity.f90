@@ -2,13 +2,23 @@
 module vcor_study_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : columns, contact_lasting, contact_separated
+   use vcor_impact_trajectory, only : columns, contact_lasting, contact_separated, &
+      contact_sticking
    use vcor_kinds, only : wp
    implicit none
    private
 
    public :: quantity_t, quantities, history_quantities
-   public :: quantity_value, quantity_names, status_name
+   public :: quantity_value, quantity_values, quantity_names, status_name
+   public :: point_invalid, point_failed, longest_status
+
+   !> Status of a point of a sweep beside the `contact_*` constants: its parameters describe no
+   !> impact
+   integer, parameter :: point_invalid = 3
+   !> The numerical solution failed
+   integer, parameter :: point_failed = 4
+   !> Letters of the longest name of a status
+   integer, parameter :: longest_status = len('no_separation')
 
    !> One quantity
    type :: quantity_t
@@ -65,15 +75,28 @@ contains
 
       real(wp) :: all_values(size(quantities))
 
-      all_values = [outcome%cor, outcome%cor_sphere, outcome%contact_time, &
+      all_values = quantity_values(outcome)
+      value = all_values(index)
+   end function quantity_value
+
+   !> Values of all quantities, NaN where the impact did not end in separation
+   pure function quantity_values(outcome) result(values)
+      !> Outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Values, each in its unit, in the order of `quantities`
+      real(wp) :: values(size(quantities))
+
+      values = [outcome%cor, outcome%cor_sphere, outcome%contact_time, &
          outcome%max_indentation, outcome%max_force, outcome%residual_indentation, &
          outcome%residual_ratio, outcome%hysteresis_energy, outcome%wave_energy, &
          outcome%initial_energy, outcome%energy_imbalance, outcome%min_frequency, &
          outcome%inelasticity, outcome%loss_tangent, outcome%cor_error]
-      value = all_values(index)
-      if (outcome%status /= contact_separated .and. quantities(index)%name /= 'initial_energy') &
-         value = ieee_value(value, ieee_quiet_nan)
-   end function quantity_value
+      if (outcome%status == contact_separated) return
+      values = ieee_value(1.0_wp, ieee_quiet_nan)
+      ! a contact that does not end has at least begun
+      if (any(outcome%status == [contact_lasting, contact_sticking])) &
+         where (quantities%name == 'initial_energy') values = outcome%initial_energy
+   end function quantity_values
 
    !> Names of all columns of a summary, steps and status included, separated by blanks
    pure function quantity_names() result(names)
@@ -91,9 +114,9 @@ contains
 
    !> Name of a status
    pure function status_name(status) result(name)
-      !> One of the `contact_*` constants
+      !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation or sticks
+      !> separated, no_separation, sticks, invalid or failed
       character(len=:), allocatable :: name
 
       select case (status)
@@ -101,8 +124,12 @@ contains
          name = 'separated'
       case (contact_lasting)
          name = 'no_separation'
-      case default
+      case (contact_sticking)
          name = 'sticks'
+      case (point_invalid)
+         name = 'invalid'
+      case default
+         name = 'failed'
       end select
    end function status_name
 

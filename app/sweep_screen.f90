@@ -1,0 +1,175 @@
+!> What the screen shows of a sweep
+module vcor_app_sweep_screen
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_app_job, only : job_t
+   use vcor_app_screen, only : shown, significant
+   use vcor, only : axis_t, failures_t, integer_text, place_in_table, quantities, table_t, &
+      version, wp
+   implicit none
+   private
+
+   public :: sweep_report
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+
+contains
+
+   !> Report of a sweep: what is swept, between what the outcomes lie, what has none and why
+   function sweep_report(job, title, summary, failures, files) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its title
+      character(len=*), intent(in) :: title
+      !> Outcomes
+      type(table_t), intent(in) :: summary
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Files written, one to a line
+      character(len=*), intent(in) :: files
+      !> Text of several lines
+      character(len=:), allocatable :: text
+
+      logical :: history
+      integer :: i
+
+      text = 'vcor '//version//'  '//job%case%source//nl
+      if (len_trim(title) > 0) text = text//trim(title)//nl
+      text = text//nl
+      associate (axes => job%sweep%grid%axes)
+         do i = 1, size(axes)
+            text = text//axis_line(axes(i))
+         end do
+      end associate
+      text = text//nl//'  '//integer_text(job%sweep%grid%count())//' impacts, '//job%method//nl &
+         //nl//ranges(summary)
+      if (failures%count > 0) text = text//nl//reasons(job, failures)
+      call job%case%get('output', 'history', history)
+      if (history .and. any(job%writes)) text = text//nl &
+         //'  note: time histories are written of single impacts only'//nl
+      if (len(files) > 0) text = text//nl//files
+      text = text//nl
+   end function sweep_report
+
+   !> What is swept
+   function axis_line(axis) result(text)
+      !> The parameter
+      type(axis_t), intent(in) :: axis
+      !> The line
+      character(len=:), allocatable :: text
+
+      associate (n => size(axis%values))
+         text = padded('  '//axis%name, 50)//significant(axis%values(1))//' ..' &
+            //significant(axis%values(n))//' '//padded(axis%unit, 8)//' '//integer_text(n) &
+            //merge(' value ', ' values', n == 1)
+      end associate
+      text = text(:len_trim(text))//nl
+   end function axis_line
+
+   !> Smallest and largest outcomes
+   function ranges(summary) result(text)
+      !> Outcomes
+      type(table_t), intent(in) :: summary
+      !> Lines
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: line
+      real(wp) :: least, most
+      logical :: any_there
+      integer :: i, j, k
+
+      text = padded('', 58)//'        smallest         largest'//nl
+      do i = 1, size(shown)
+         do j = 1, size(quantities)
+            if (quantities(j)%name /= shown(i)) cycle
+            associate (column => summary%columns(place_in_table(summary, trim(shown(i))) &
+                       - summary%dimension_count))
+               any_there = .false.
+               do k = 1, column%length
+                  if (ieee_is_nan(column%reals(k))) cycle
+                  if (.not. any_there) then
+                     least = column%reals(k)
+                     most = least
+                  end if
+                  any_there = .true.
+                  least = min(least, column%reals(k))
+                  most = max(most, column%reals(k))
+               end do
+            end associate
+            if (.not. any_there) cycle
+            line = padded('  '//trim(quantities(j)%meaning), 50)//padded(quantities(j)%symbol, 8) &
+               //significant(least)//significant(most)
+            if (quantities(j)%unit /= '1') line = line//' '//trim(quantities(j)%unit)
+            text = text//line//nl
+         end do
+      end do
+   end function ranges
+
+   !> What has no result, and why
+   function reasons(job, failures) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Lines
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = '  '//integer_text(failures%count)//' of '//integer_text(job%sweep%grid%count()) &
+         //' points without result:'//nl
+      do i = 1, failures%reasons
+         associate (reason => failures%reason(i))
+            text = text//'  '//right(integer_text(reason%count), 8)//'  '//reason%message//nl &
+               //'            first at point '//integer_text(reason%first)//': ' &
+               //coordinates(job, reason%first)//nl
+         end associate
+      end do
+   end function reasons
+
+   !> Parameters of a point
+   function coordinates(job, point) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Number of the point
+      integer, intent(in) :: point
+      !> Names and values
+      character(len=:), allocatable :: text
+
+      integer :: i, places(size(job%sweep%grid%axes))
+
+      places = job%sweep%grid%places(point)
+      text = ''
+      do i = 1, size(places)
+         if (i > 1) text = text//', '
+         associate (axis => job%sweep%grid%axes(i))
+            text = text//axis%name//' = '//trim(adjustl(significant(axis%values(places(i)))))
+         end associate
+      end do
+   end function coordinates
+
+   !> A text with blanks at its end
+   pure function padded(text, width) result(wide)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Least number of characters
+      integer, intent(in) :: width
+      !> The same, never shortened
+      character(len=:), allocatable :: wide
+
+      wide = trim(text)//repeat(' ', max(0, width - len_trim(text)))
+   end function padded
+
+   !> A text with blanks before it
+   pure function right(text, width) result(wide)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Least number of characters
+      integer, intent(in) :: width
+      !> The same, never shortened
+      character(len=:), allocatable :: wide
+
+      wide = repeat(' ', max(0, width - len(text)))//text
+   end function right
+
+end module vcor_app_sweep_screen

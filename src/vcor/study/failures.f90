@@ -1,0 +1,104 @@
+!> Points without a result, grouped by the reason
+module vcor_study_failures
+   implicit none
+   private
+
+   public :: failure_t, failures_t
+
+   !> Most reasons that are told apart
+   integer, parameter :: most_reasons = 20
+
+   !> One reason
+   type :: failure_t
+      !> Number of points
+      integer :: count = 0
+      !> First of them
+      integer :: first = 0
+      !> What was wrong there
+      character(len=:), allocatable :: message
+   end type failure_t
+
+   !> All reasons
+   type :: failures_t
+      !> Number of points without a result
+      integer :: count = 0
+      !> Number of reasons
+      integer :: reasons = 0
+      !> Reasons; those in use are 1 to `reasons`
+      type(failure_t) :: reason(most_reasons)
+   contains
+      !> Note a point without a result
+      procedure :: note
+      !> Order the reasons by their first point
+      procedure :: sort
+   end type failures_t
+
+contains
+
+   !> Note a point without a result. In whatever order the points come, the reasons are the same in
+   !> the end, as long as there are not more than `most_reasons`; the rest counts for the last one
+   pure subroutine note(self, point, message)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+      !> Number of the point
+      integer, intent(in) :: point
+      !> What is wrong; what differs in its numbers only is the same reason
+      character(len=*), intent(in) :: message
+
+      integer :: i
+
+      self%count = self%count + 1
+      do i = 1, self%reasons
+         if (words_of(self%reason(i)%message) == words_of(message)) exit
+      end do
+      i = min(i, most_reasons)
+      self%reasons = max(self%reasons, i)
+      associate (reason => self%reason(i))
+         reason%count = reason%count + 1
+         if (reason%count == 1 .or. point < reason%first) then
+            reason%first = point
+            reason%message = message
+         end if
+      end associate
+   end subroutine note
+
+   !> Order the reasons by their first point
+   pure subroutine sort(self)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+
+      type(failure_t) :: other
+      integer :: i, j
+
+      do i = 2, self%reasons
+         do j = i, 2, -1
+            if (self%reason(j - 1)%first < self%reason(j)%first) exit
+            other = self%reason(j)
+            self%reason(j) = self%reason(j - 1)
+            self%reason(j - 1) = other
+         end do
+      end do
+   end subroutine sort
+
+   !> A message without its numbers
+   pure function words_of(message) result(words)
+      !> The message
+      character(len=*), intent(in) :: message
+      !> Its text without what numbers are written with
+      character(len=:), allocatable :: words
+
+      character(len=*), parameter :: numeric = '0123456789+-.eE'
+      character(len=len(message)) :: buffer
+      integer :: i, n
+
+      n = 0
+      buffer = ''
+      do i = 1, len(message)
+         if (index(numeric, message(i:i)) > 0) cycle
+         n = n + 1
+         buffer(n:n) = message(i:i)
+      end do
+      words = buffer(:n)
+   end function words_of
+
+end module vcor_study_failures

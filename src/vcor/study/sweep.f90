@@ -1,0 +1,322 @@
+!> Sweeps: the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
+!> one point
+!>
+!> A point is the blueprint of the case with some numbers set, so nothing is read, looked up or
+!> checked as a whole for it, and no rules of a solver are made. Outcomes are kept by the number of
+!> their point: they are the same bits for any number of threads. A point that makes no sense, or
+!> cannot be solved, has a status instead of numbers and stops no other.
+module vcor_study_sweep
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_solver, only : check_settings, new_solver, solver_settings_t, solver_t
+   use vcor_study_axes, only : new_grid
+   use vcor_study_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
+   use vcor_study_build, only : locate
+   use vcor_study_case, only : case_t
+   use vcor_study_failures, only : failures_t
+   use vcor_study_grid, only : grid_t
+   use vcor_study_interval, only : contains_number
+   use vcor_study_keys, only : catalogue, key_t, row_for_model, wanted
+   use vcor_study_quantity, only : point_failed, point_invalid
+   use vcor_study_summary, only : summary_t
+   use vcor_study_text, only : real_text
+   implicit none
+   private
+
+   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
+
+   !> Most points that a thread takes at a time
+   integer, parameter :: longest_chunk = 64
+
+   !> All impacts of a case; immutable once built, so that threads can share it
+   type :: sweep_t
+      !> Its points
+      type(grid_t) :: grid
+      !> What the impacts have in common
+      type(blueprint_t), private :: blueprint
+      !> Places of what varies, shape (axes)
+      type(place_t), allocatable, private :: places(:)
+      !> Keys of what varies, for their ranges, shape (axes)
+      type(key_t), allocatable, private :: keys(:)
+      !> The solver; not allocated where a setting of it varies
+      class(solver_t), allocatable, private :: solver
+   contains
+      !> Whether the case has a &sweep group
+      procedure :: is_grid
+   end type sweep_t
+
+   !> What one thread works with: the impact it is at
+   type :: worker_t
+      !> The impact
+      type(impact_t) :: impact
+      !> Its course
+      type(trajectory_t) :: trajectory
+      !> What the impact is built from
+      type(blueprint_t), private :: blueprint
+      !> The solver where it varies
+      class(solver_t), allocatable, private :: solver
+      !> Settings that this solver was made with
+      type(solver_settings_t), private :: settings
+      !> Whether it is ready
+      logical, private :: is_ready = .false.
+   end type worker_t
+
+contains
+
+   !> Whether the case has a &sweep group
+   pure function is_grid(self) result(yes)
+      !> The sweep
+      class(sweep_t), intent(in) :: self
+      !> Whether it has
+      logical :: yes
+
+      yes = size(self%grid%axes) > 0
+   end function is_grid
+
+   !> Build what the impacts of a case have in common
+   subroutine new_sweep(self, case, error)
+      !> The sweep
+      type(sweep_t), intent(out) :: self
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(place_t) :: cause
+      integer :: i, group, row, item
+
+      call new_grid(case, self%grid, error)
+      if (allocated(error)) return
+      allocate (self%places(size(self%grid%axes)), self%keys(size(self%grid%axes)))
+      do i = 1, size(self%places)
+         associate (handle => self%grid%axes(i)%handle)
+            self%places(i) = place_of(case, handle)
+            call case%locate(handle, group, row, item)
+            self%keys(i) = catalogue(row_for_model(row, case%model(group, item)))
+         end associate
+      end do
+      call new_blueprint(self%blueprint, case, self%places, error, cause)
+      if (.not. allocated(error) .and. .not. any(self%places%group == 'solver')) then
+         cause = solver_place(self%blueprint%settings)
+         call new_solver(self%solver, self%blueprint%settings, error)
+      end if
+      if (allocated(error)) call locate(case, cause, error)
+   end subroutine new_sweep
+
+   !> The impact of a case without a sweep, to see whether there is one
+   subroutine single_impact(self, case, impact, error)
+      !> Its sweep, of one point
+      type(sweep_t), intent(in) :: self
+      !> The case
+      type(case_t), intent(in) :: case
+      !> The impact
+      type(impact_t), intent(out) :: impact
+      !> Error of code `error_input` that says where in the case its cause stands, unallocated on
+      !> success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(worker_t) :: worker
+      type(place_t) :: cause
+
+      call build_point(self, 1, worker, error, cause)
+      if (.not. allocated(error)) then
+         impact = worker%impact
+      else
+         call locate(case, cause, error)
+      end if
+   end subroutine single_impact
+
+   !> Solve one point
+   subroutine solve_point(self, point, worker, outcome, error)
+      !> The sweep
+      type(sweep_t), intent(in) :: self
+      !> Number of the point, from 1
+      integer, intent(in) :: point
+      !> Impact and trajectory of the point; begins as a new one and may be used again for others
+      type(worker_t), intent(inout) :: worker
+      !> Its outcome; without numbers on failure
+      type(outcome_t), intent(out) :: outcome
+      !> Error of code `error_input` if the parameters describe no impact that can be solved, or of
+      !> another if the solution fails; unallocated on success, with or without a separation
+      type(error_t), allocatable, intent(out) :: error
+
+      type(place_t) :: cause
+
+      call build_point(self, point, worker, error, cause)
+      if (allocated(error)) then
+         continue
+      else if (allocated(self%solver)) then
+         call self%solver%solve(worker%impact, worker%trajectory, error)
+      else
+         call prepare_solver(worker, error)
+         if (.not. allocated(error)) &
+            call worker%solver%solve(worker%impact, worker%trajectory, error)
+      end if
+      if (.not. allocated(error)) then
+         outcome = evaluate(worker%impact, worker%trajectory)
+      else
+         outcome%status = point_failed
+         if (error%code == error_input) outcome%status = point_invalid
+      end if
+   end subroutine solve_point
+
+   !> Build the impact of a point
+   subroutine build_point(self, point, worker, error, cause)
+      !> The sweep
+      type(sweep_t), intent(in) :: self
+      !> Number of the point
+      integer, intent(in) :: point
+      !> Its impact is built
+      type(worker_t), intent(inout) :: worker
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(out) :: cause
+
+      real(wp) :: value
+      integer :: i, place(size(self%grid%axes))
+
+      if (.not. worker%is_ready) worker%blueprint = self%blueprint
+      worker%is_ready = .true.
+      place = self%grid%places(point)
+      do i = 1, size(place)
+         value = self%grid%axes(i)%values(place(i))
+         if (.not. contains_number(self%keys(i)%range, value)) then
+            cause = self%places(i)
+            call raise(error, error_input, self%grid%axes(i)%name//': found '//real_text(value) &
+               //', expected '//wanted(self%keys(i)))
+            return
+         end if
+         call worker%blueprint%set(self%places(i), value)
+      end do
+      call worker%blueprint%build(worker%impact, error, cause)
+      if (allocated(error)) return
+      cause = solver_place(worker%blueprint%settings)
+      call check_settings(worker%blueprint%settings, worker%impact, error)
+   end subroutine build_point
+
+   !> Build the solver anew if its settings have changed
+   subroutine prepare_solver(worker, error)
+      !> What one thread works with, its blueprint set
+      type(worker_t), intent(inout) :: worker
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      associate (old => worker%settings, new => worker%blueprint%settings)
+         if (allocated(worker%solver)) then
+            if (all(abs([old%time_step, old%end_time, old%accuracy, old%second_coefficient] &
+               - [new%time_step, new%end_time, new%accuracy, new%second_coefficient]) &
+               <= 0.0_wp)) return
+         end if
+         old = new
+         call new_solver(worker%solver, new, error)
+      end associate
+   end subroutine prepare_solver
+
+   !> Solve points of a sweep, by several threads
+   subroutine solve_points(self, first, last, threads, summary, failures)
+      !> The sweep
+      type(sweep_t), intent(in) :: self
+      !> First point
+      integer, intent(in) :: first
+      !> Last point
+      integer, intent(in) :: last
+      !> Number of threads, > 0; without OpenMP there is one
+      integer, intent(in) :: threads
+      !> Outcomes of all points of the sweep
+      type(summary_t), intent(inout) :: summary
+      !> What points have no result, and why
+      type(failures_t), intent(inout) :: failures
+
+      integer :: team
+
+      team = max(1, min(threads, last - first + 1))
+!$omp parallel default(none) shared(self, first, last, team, summary, failures) num_threads(team)
+      call work_off(self, first, last, team, summary, failures)
+!$omp end parallel
+      call failures%sort()
+   end subroutine solve_points
+
+   !> What one thread of a team does: chunk after chunk of the points, as long as there are any
+   subroutine work_off(self, first, last, team, summary, failures)
+      !> The sweep
+      type(sweep_t), intent(in) :: self
+      !> First point of the team
+      integer, intent(in) :: first
+      !> Last point of the team
+      integer, intent(in) :: last
+      !> Number of threads of the team
+      integer, intent(in) :: team
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> What points have no result, and why
+      type(failures_t), intent(inout) :: failures
+
+      type(worker_t) :: worker
+      integer :: chunk, length, start
+
+      ! short enough that all threads end at about the same time
+      length = max(1, min(longest_chunk, (last - first + 1)/(8*team)))
+!$omp do schedule(dynamic)
+      do chunk = 0, (last - first)/length
+         start = first + chunk*length
+         call solve_chunk(self, start, min(last, start + length - 1), worker, summary, failures)
+      end do
+!$omp end do
+   end subroutine work_off
+
+   !> Solve points one after the other
+   subroutine solve_chunk(self, first, last, worker, summary, failures)
+      !> The sweep
+      type(sweep_t), intent(in) :: self
+      !> First point
+      integer, intent(in) :: first
+      !> Last point
+      integer, intent(in) :: last
+      !> What the thread works with
+      type(worker_t), intent(inout) :: worker
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> What points have no result, and why
+      type(failures_t), intent(inout) :: failures
+
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      integer :: point
+
+      do point = first, last
+         call solve_point(self, point, worker, outcome, error)
+         call summary%put(point, outcome)
+         if (outcome%status == contact_separated) cycle
+!$omp critical (vcor_failures)
+         if (allocated(error)) then
+            call failures%note(point, error%message)
+         else
+            call failures%note(point, lacking(outcome%status))
+         end if
+!$omp end critical (vcor_failures)
+      end do
+   end subroutine solve_chunk
+
+   !> Why an impact has no coefficient of restitution
+   pure function lacking(status) result(reason)
+      !> Status of its outcome
+      integer, intent(in) :: status
+      !> In words
+      character(len=:), allocatable :: reason
+
+      select case (status)
+      case (contact_lasting)
+         reason = 'the bodies do not separate within solver.end_time'
+      case (contact_sticking)
+         reason = 'the sphere sticks: all motion dies out in contact'
+      case default
+         reason = 'no result'
+      end select
+   end function lacking
+
+end module vcor_study_sweep
