@@ -3,7 +3,7 @@ module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
    use vcor_app_screen, only : report, short
-   use vcor_app_sweep_screen, only : sweep_report
+   use vcor_app_sweep_screen, only : coordinates, sweep_report
    use vcor, only : contact_lasting, contact_separated, data_file, default_threads, &
       error_numerical, error_t, failures_t, history_table, integer_text, make_directory, new_summary, outcome_t, &
       place_in_table, raise, solve_point, solve_points, summary_t, summary_table, table_t, &
@@ -91,8 +91,8 @@ contains
 
       if (failures%count == 0) return
       call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
-         //' of '//integer_text(job%sweep%grid%count())//' points have no result, the first is ' &
-         //'point '//integer_text(failures%reason(1)%first)//': '//failures%reason(1)%message)
+         //' of '//integer_text(job%sweep%grid%count())//' points without result, the first at ' &
+         //coordinates(job, failures%reason(1)%first)//': '//failures%reason(1)%message)
    end subroutine end_of_sweep
 
    !> Remarks on an outcome that is beyond what the model is made for

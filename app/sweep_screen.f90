@@ -8,7 +8,7 @@ module vcor_app_sweep_screen
    implicit none
    private
 
-   public :: sweep_report
+   public :: sweep_report, coordinates
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')

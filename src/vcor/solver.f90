@@ -13,6 +13,9 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, check_settings, method_for
    public :: default_accuracy
 
+   !> Letters of the longest name of a method
+   integer, parameter :: longest_method = len('direct')
+
    !> How an impact is to be solved
    type :: solver_settings_t
       !> One of auto, ive, direct
@@ -52,11 +55,27 @@ contains
       !> ive or direct
       character(len=:), allocatable :: name
 
+      character(len=longest_method) :: found
+
+      call find_method(method, scheme, found)
+      name = trim(found)
+   end function method_for
+
+   !> The same without a text of deferred length: gfortran 12 keeps the length of one that a function
+   !> returns in static storage, where threads collide
+   pure subroutine find_method(method, scheme, name)
+      !> What the user asks for: auto, ive or direct
+      character(len=*), intent(in) :: method
+      !> Scheme of the direct method that the user asks for
+      character(len=*), intent(in) :: scheme
+      !> ive or direct
+      character(len=longest_method), intent(out) :: name
+
       name = method
       if (method /= 'auto') return
       name = 'direct'
       if (scheme == 'product') name = 'ive'
-   end function method_for
+   end subroutine find_method
 
    !> Accuracy of the coefficient of restitution where none is asked for
    pure function default_accuracy(method) result(accuracy)
@@ -120,10 +139,12 @@ contains
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(marching_t), allocatable :: marching
+      character(len=longest_method) :: method
       real(wp) :: accuracy
 
       accuracy = settings%accuracy
-      select case (method_for(settings%method, settings%scheme))
+      call find_method(settings%method, settings%scheme, method)
+      select case (method)
       case ('ive')
          if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
          allocate (ive)

@@ -10,23 +10,28 @@
 !> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
 !> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
+!> Columns of more than `longest_plain` numbers are compressed (deflate, which every HDF5 reads): a
+!> sweep of 100,000 points becomes a quarter smaller, in a fiftieth of the time that it took to
+!> solve. More than one quarter the digits of different impacts do not give.
+!>
 !> HDF5 builds the file in memory and `vcor_io_file` writes it, so that a full disk is none of
-!> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends. That
-!> takes memory for two copies of the file. Objects hold no times: the same tables give the same
-!> bytes.
+!> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends.
+!> Objects hold no times: the same tables give the same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_char, c_funptr, c_int, c_int64_t, c_loc, &
-      & c_null_char, c_null_funptr, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_funptr, c_int, &
+      & c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
       & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
       & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, h5iis_valid_f, h5open_f, &
       & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
-      & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcreate_f, &
-      & h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_link_creation_order_f, &
-      & h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
-      & h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, &
-      & h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t, size_t
+      & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
+      & h5pcreate_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_fapl_core_f, &
+      & h5pset_fclose_degree_f, h5pset_link_creation_order_f, h5pset_obj_track_times_f, &
+      & h5pset_shuffle_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
+      & h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, &
+      & h5t_std_i32le, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
+      & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : quoted_path, write_file
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
@@ -40,6 +45,15 @@ module vcor_io_hdf5
    integer(hid_t), parameter :: nothing = -1_hid_t
    !> Step by which the file grows in memory [bytes]
    integer(size_t), parameter :: growth = 65536_size_t
+   !> Most numbers of a column that is stored as it is
+   integer, parameter :: longest_plain = 50000
+   !> Numbers that are compressed together; half a megabyte, which HDF5 holds in its cache
+   integer, parameter :: chunk_length = 65536
+   !> How hard to compress: more makes the file 1 % smaller still
+   integer, parameter :: compression = 1
+   !> First bytes of an HDF5 file
+   character(len=*), parameter :: signature = char(137)//"HDF"//char(13)//char(10)//char(26) &
+      & //char(10)
    !> HDF5 wants a name for a file in memory too and reads what has that name: nothing can
    character(len=*), parameter :: no_path = "/dev/null/vcor.h5"
    !> The error stack that H5E functions take by default (H5E_DEFAULT)
@@ -57,6 +71,8 @@ module vcor_io_hdf5
       integer(hid_t) :: group_creation = nothing
       !> How to create datasets
       integer(hid_t) :: dataset_creation = nothing
+      !> Whether the library can compress
+      logical :: compresses = .false.
       !> Type of text
       integer(hid_t) :: text_type = nothing
       !> What failed first; not allocated as long as nothing did
@@ -78,6 +94,20 @@ module vcor_io_hdf5
          !> Negative on failure
          integer(c_int) :: status
       end function c_get_handler
+
+      !> Ask for what the driver of a file works with
+      function c_get_vfd_handle(file, access, handle) result(status) &
+         & bind(c, name="H5Fget_vfd_handle")
+         import :: c_int, c_int64_t, c_ptr
+         !> File
+         integer(c_int64_t), intent(in), value :: file
+         !> How the file was opened
+         integer(c_int64_t), intent(in), value :: access
+         !> What the driver works with
+         type(c_ptr), intent(out) :: handle
+         !> Negative on failure
+         integer(c_int) :: status
+      end function c_get_vfd_handle
 
       !> Set the handler of errors
       function c_set_handler(stack, handler, client) result(status) bind(c, name="H5Eset_auto2")
@@ -110,7 +140,6 @@ contains
       type(writer_t) :: writer
       type(c_funptr) :: handler
       type(c_ptr) :: client
-      character(len=:), allocatable :: image
       integer :: status
       logical :: is_open
 
@@ -131,17 +160,13 @@ contains
       if (.not. allocated(writer%fault)) then
          status = c_set_handler(default_stack, c_null_funptr, c_null_ptr)
          call build(writer, summary, history)
-         call take_image(writer, image)
+         call write_image(writer, filename, error)
          call close_all(writer)
          status = c_set_handler(default_stack, handler, client)
       end if
 
-      if (allocated(writer%fault)) then
-         call raise(error, error_file, &
-            & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
-         return
-      end if
-      call write_file(filename, image, error)
+      if (allocated(writer%fault) .and. .not. allocated(error)) call raise(error, error_file, &
+         & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
    end subroutine write_hdf5
 
    !> Build the file in memory
@@ -202,6 +227,9 @@ contains
       call h5pset_fclose_degree_f(writer%file_access, h5f_close_strong_f, status)
       call note(writer, status, "keep a file in memory")
 
+      call h5zfilter_avail_f(h5z_filter_deflate_f, writer%compresses, status)
+      call note(writer, status, "say whether it can compress")
+
       call h5tcopy_f(h5t_string, writer%text_type, status)
       call note(writer, status, "make a type for text")
       call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status)
@@ -240,7 +268,8 @@ contains
          call put_column(writer, group, table%columns(j), lengths, dataset)
          if (allocated(writer%fault)) exit
          do i = 1, table%dimension_count
-            call h5dsattach_scale_f(dataset, scales(i), fortran_dimension(table, i), status)
+            ! Numbers here count as in C but from 1: the slowest dimension first
+            call h5dsattach_scale_f(dataset, scales(i), i, status)
             call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
          end do
          call h5dclose_f(dataset, status)
@@ -256,19 +285,6 @@ contains
       call note(writer, status, "close the group '"//name//"'")
    end subroutine put_table
 
-   !> Number of a dimension as HDF5's Fortran interface counts: backwards, so that Fortran's arrays
-   !> need not be turned over
-   pure function fortran_dimension(table, number) result(backwards)
-      !> Table
-      type(table_t), intent(in) :: table
-      !> Number of the dimension, from 1
-      integer, intent(in) :: number
-      !> Its number backwards, from 1
-      integer :: backwards
-
-      backwards = table%dimension_count - number + 1
-   end function fortran_dimension
-
    !> Write a column as a dataset and leave it open
    subroutine put_column(writer, group, column, lengths, dataset)
       !> Writer with a file
@@ -281,7 +297,7 @@ contains
       integer, intent(in) :: lengths(:)
       !> The dataset, open
       integer(hid_t), intent(out) :: dataset
-      integer(hid_t) :: file_type, memory_type, space
+      integer(hid_t) :: creation, file_type, memory_type, space
       integer(hsize_t) :: backwards(size(lengths))
       integer :: status
 
@@ -303,9 +319,13 @@ contains
       call h5screate_simple_f(size(lengths), backwards, space, status)
       call note(writer, status, "make the dimensions of '"//column%name//"'")
       if (allocated(writer%fault)) return
+      creation = writer%dataset_creation
+      if (column%length > longest_plain .and. len(column%unit) > 0 .and. writer%compresses) &
+         & call prepare_compression(writer, backwards, creation)
       call h5dcreate_f(group, link_name(column%name), file_type, space, dataset, status, &
-         & dcpl_id=writer%dataset_creation)
+         & dcpl_id=creation)
       call note(writer, status, "create '"//column%name//"'")
+      if (creation /= writer%dataset_creation) call close_list(writer, creation)
       call h5sclose_f(space, status)
       call note(writer, status, "close the dimensions of '"//column%name//"'")
       if (allocated(writer%fault)) return
@@ -325,6 +345,31 @@ contains
       if (len(column%unit) > 0) call put_attribute(writer, dataset, "units", column%unit)
       call put_attribute(writer, dataset, "long_name", column%long_name)
    end subroutine put_column
+
+   !> How to create a dataset that is compressed. (Text is not: HDF5 keeps it apart from the dataset.)
+   subroutine prepare_compression(writer, lengths, creation)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Lengths of the dimensions, the fastest first
+      integer(hsize_t), intent(in) :: lengths(:)
+      !> Property list, to be closed; the common one is its model
+      integer(hid_t), intent(inout) :: creation
+      integer(hsize_t) :: chunk(size(lengths))
+      integer :: i, status
+
+      ! The fastest dimensions as a whole, as far as they fit in
+      do i = 1, size(chunk)
+         chunk(i) = min(lengths(i), max(1_hsize_t, chunk_length/product(chunk(:i-1))))
+      end do
+      call h5pcopy_f(writer%dataset_creation, creation, status)
+      call note(writer, status, "make a property list")
+      call h5pset_chunk_f(creation, size(chunk), chunk, status)
+      call note(writer, status, "cut a dataset into chunks")
+      call h5pset_shuffle_f(creation, status)
+      call note(writer, status, "order bytes for compression")
+      call h5pset_deflate_f(creation, compression, status)
+      call note(writer, status, "compress")
+   end subroutine prepare_compression
 
    !> Write the values of a text column
    subroutine write_texts(column, dataset, memory_type, status)
@@ -381,34 +426,60 @@ contains
       call note(writer, status, "close the attribute '"//name//"'")
    end subroutine put_attribute
 
-   !> Get the bytes of the file
-   subroutine take_image(writer, image)
+   !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
+   subroutine write_image(writer, filename, error)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
-      !> The file; empty if there is none
-      character(len=:), allocatable, target, intent(out) :: image
-      type(c_ptr) :: place
+      !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      character(len=1, kind=c_char), pointer :: bytes(:)
+      type(c_ptr) :: handle
+      type(c_ptr), pointer :: place
       integer(size_t) :: length
       integer :: status
 
-      image = ""
       if (allocated(writer%fault)) return
       call h5fflush_f(writer%file, h5f_scope_global_f, status)
       call note(writer, status, "complete the file")
       if (allocated(writer%fault)) return
-      place = c_null_ptr
-      call h5fget_file_image_f(writer%file, place, 0_size_t, status, length)
+      handle = c_null_ptr
+      call h5fget_file_image_f(writer%file, handle, 0_size_t, status, length)
       call note(writer, status, "give the length of the file")
-      if (allocated(writer%fault)) return
-
-      deallocate(image)
-      allocate(character(len=length) :: image, stat=status)
-      if (status /= 0) call note(writer, -1, "get memory for a copy of the file")
-      if (allocated(writer%fault)) return
-      place = c_loc(image)
-      call h5fget_file_image_f(writer%file, place, length, status)
+      ! For a file in memory the handle is the place of a pointer to its bytes
+      status = c_get_vfd_handle(int(writer%file, c_int64_t), &
+         & int(writer%file_access, c_int64_t), handle)
       call note(writer, status, "give the bytes of the file")
-   end subroutine take_image
+      if (allocated(writer%fault)) return
+      call c_f_pointer(handle, place)
+      if (.not. c_associated(place) .or. length < len(signature)) then
+         call note(writer, -1, "give the bytes of the file")
+         return
+      end if
+      call c_f_pointer(place, bytes, [length])
+      call write_bytes(length, bytes, writer, filename, error)
+   end subroutine write_image
+
+   !> Write bytes as one text
+   subroutine write_bytes(length, bytes, writer, filename, error)
+      !> Number of bytes
+      integer(size_t), intent(in) :: length
+      !> The bytes
+      character(len=length), intent(in) :: bytes(1)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      if (bytes(1)(:len(signature)) == signature) then
+         call write_file(filename, bytes(1), error)
+      else
+         call note(writer, -1, "give the bytes of the file")
+      end if
+   end subroutine write_bytes
 
    !> Close whatever is open
    subroutine close_all(writer)

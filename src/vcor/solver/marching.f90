@@ -93,9 +93,9 @@ contains
       if (.not. dt > 0.0_wp) dt = contact_time/real(usual_steps, wp)
       ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
       if (.not. real(fewest_steps, wp)*dt < contact_time) then
-         call raise(error, error_numerical, 'solver.time_step is '//in_seconds(dt)//', too long ' &
-            //'for a contact expected to last '//in_seconds(contact_time)//': at most ' &
-            //in_seconds(contact_time/real(fewest_steps, wp)))
+         call raise(error, error_numerical, 'solver.time_step is '//trim(in_seconds(dt))//', too long ' &
+            //'for a contact expected to last '//trim(in_seconds(contact_time))//': at most ' &
+            //trim(in_seconds(contact_time/real(fewest_steps, wp))))
          return
       end if
       call run(self, impact, dt, self%ghost, trajectory, error)
@@ -158,8 +158,8 @@ contains
       call march(self%scheme, impact, dt, ghost, trajectory, stable, complete)
       if (.not. stable) then
          call raise(error, error_numerical, "scheme = 'adams_bashforth' is unstable with " &
-            //'solver.time_step = '//in_seconds(dt)//': the largest stable one is about ' &
-            //in_seconds(stable_step(self, impact, dt)))
+            //'solver.time_step = '//trim(in_seconds(dt))//': the largest stable one is about ' &
+            //trim(in_seconds(stable_step(self, impact, dt))))
       else if (.not. complete) then
          call raise(error, error_numerical, 'no end of the contact within the largest number of ' &
             //"steps of scheme = 'adams_bashforth': give a longer solver.time_step")
@@ -322,8 +322,9 @@ contains
    pure function in_seconds(time) result(text)
       !> Time [s]
       real(wp), intent(in) :: time
-      !> Such as 4.0E-07 s
-      character(len=:), allocatable :: text
+      !> Such as 4.00E-07 s. Of fixed length: gfortran 12 keeps the length of a text of deferred
+      !> length that a function returns in static storage, where threads collide
+      character(len=11) :: text
 
       character(len=16) :: buffer
 

@@ -5,6 +5,10 @@
 !> checked as a whole for it, and no rules of a solver are made. Outcomes are kept by the number of
 !> their point: they are the same bits for any number of threads. A point that makes no sense, or
 !> cannot be solved, has a status instead of numbers and stops no other.
+!>
+!> What threads call has no static storage. That includes the functions that return a text of
+!> deferred length, whose length gfortran 12 keeps there: such a function is called before the
+!> threads begin, or by one at a time.
 module vcor_study_sweep
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -19,11 +23,10 @@ module vcor_study_sweep
    use vcor_study_case, only : case_t
    use vcor_study_failures, only : failures_t
    use vcor_study_grid, only : grid_t
-   use vcor_study_interval, only : contains_number
-   use vcor_study_keys, only : catalogue, key_t, row_for_model, wanted
+   use vcor_study_interval, only : contains_number, interval_t
+   use vcor_study_keys, only : catalogue, row_for_model, wanted
    use vcor_study_quantity, only : point_failed, point_invalid
    use vcor_study_summary, only : summary_t
-   use vcor_study_text, only : real_text
    implicit none
    private
 
@@ -40,8 +43,10 @@ module vcor_study_sweep
       type(blueprint_t), private :: blueprint
       !> Places of what varies, shape (axes)
       type(place_t), allocatable, private :: places(:)
-      !> Keys of what varies, for their ranges, shape (axes)
-      type(key_t), allocatable, private :: keys(:)
+      !> Ranges of what varies, shape (axes)
+      type(interval_t), allocatable, private :: ranges(:)
+      !> What to say about a value that is out of range, shape (axes)
+      type(error_t), allocatable, private :: objections(:)
       !> The solver; not allocated where a setting of it varies
       class(solver_t), allocatable, private :: solver
    contains
@@ -87,16 +92,20 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(place_t) :: cause
-      integer :: i, group, row, item
+      integer :: i, n, group, row, item
 
       call new_grid(case, self%grid, error)
       if (allocated(error)) return
-      allocate (self%places(size(self%grid%axes)), self%keys(size(self%grid%axes)))
+      n = size(self%grid%axes)
+      allocate (self%places(n), self%ranges(n), self%objections(n))
       do i = 1, size(self%places)
          associate (handle => self%grid%axes(i)%handle)
             self%places(i) = place_of(case, handle)
             call case%locate(handle, group, row, item)
-            self%keys(i) = catalogue(row_for_model(row, case%model(group, item)))
+            row = row_for_model(row, case%model(group, item))
+            self%ranges(i) = catalogue(row)%range
+            self%objections(i)%message = self%grid%axes(i)%name//' is out of range, expected ' &
+               //wanted(catalogue(row))
          end associate
       end do
       call new_blueprint(self%blueprint, case, self%places, error, cause)
@@ -185,10 +194,9 @@ contains
       place = self%grid%places(point)
       do i = 1, size(place)
          value = self%grid%axes(i)%values(place(i))
-         if (.not. contains_number(self%keys(i)%range, value)) then
+         if (.not. contains_number(self%ranges(i), value)) then
             cause = self%places(i)
-            call raise(error, error_input, self%grid%axes(i)%name//': found '//real_text(value) &
-               //', expected '//wanted(self%keys(i)))
+            call raise(error, error_input, self%objections(i)%message)
             return
          end if
          call worker%blueprint%set(self%places(i), value)
