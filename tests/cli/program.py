@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-EXAMPLES = sorted((ROOT / "examples").glob("**/*.nml"))
+SWEEPS = sorted((ROOT / "examples" / "sweeps").glob("*.nml"))
+EXAMPLES = sorted(set((ROOT / "examples").glob("**/*.nml")) - set(SWEEPS))
 PAPER = ROOT / "examples" / "paper"
 
 # Exit codes

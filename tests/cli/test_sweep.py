@@ -1,12 +1,15 @@
 """Sweeps: what is refused, what comes out, and what happens to points without a result."""
 
 import math
+import os
+import subprocess
+import sys
 
 import h5py
 import numpy
 import pytest
 from cases import MODELS, SLS, case_text, edit, without
-from program import ALL, INPUT, NAMES, NUMERICAL, ROOT, SUCCESS, USAGE
+from program import ALL, INPUT, NAMES, NUMERICAL, ROOT, SUCCESS, SWEEPS, USAGE, program
 
 
 def sweep(parameter, *lines):
@@ -498,6 +501,49 @@ def test_check_of_a_case_that_only_its_sweep_completes(vcor):
     text, _ = without(SLS, "velocity = 10.0")
     vcor.write(text + VELOCITIES)
     assert "! points: 3" in vcor.succeeds("check", "case.nml")
+
+
+# The examples
+
+
+@pytest.mark.parametrize("path", SWEEPS, ids=lambda path: path.stem)
+def test_examples(vcor, path):
+    vcor.succeeds("run", path)
+    assert {row["status"] for row in summary(vcor, f"{path.stem}_summary.csv")} == {"separated"}
+    assert (vcor.folder / f"{path.stem}.h5").exists()
+
+
+def script(vcor, *words):
+    """Run a script that finds the program in the PATH; what it prints."""
+    (vcor.folder / "bin").mkdir()
+    (vcor.folder / "bin" / "vcor").symlink_to(program())
+    path = f"{vcor.folder / 'bin'}:{os.environ['PATH']}"
+    return subprocess.run(
+        words,
+        cwd=vcor.folder,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=60,
+    ).stdout
+
+
+def test_shell_script(vcor):
+    lines = script(vcor, "sh", ROOT / "examples" / "sweeps" / "fig4.sh").splitlines()
+    assert len(lines) == 200
+    table = numpy.array([line.split() for line in lines], dtype=float)
+    assert sorted(set(table[:, 0])) == [600, 1200, 2400, 4800]
+    found = table[(table[:, 0] == 1200) & (table[:, 1] == 10)]
+    assert found[0, 2] == pytest.approx(0.4319869, abs=1e-7)
+
+
+def test_python_script(vcor):
+    out = script(vcor, sys.executable, ROOT / "examples" / "sweeps" / "fig8.py", "work")
+    row = [line.split() for line in out.splitlines() if line.startswith("10.0 ")][0]
+    for model, cor in zip(("prony", "cerf", "power_law"), row[1:], strict=True):
+        path = ROOT / "examples" / "paper" / f"butyl_{model}.nml"
+        assert float(cor) == pytest.approx(float(vcor.numbers(path)["cor"]), abs=2e-6)
 
 
 def test_models_are_all_there():

@@ -1,0 +1,239 @@
+!> Sweeps: the order of the grid, spacing, what is built per point, chunks and threads
+program test_sweep
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_error, only : error_input, error_t
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_io_case_reader, only : override, read_case_text
+   use vcor_kinds, only : wp
+   use vcor_solver, only : solver_t
+   use vcor_study_axes, only : new_grid, swept_handles
+   use vcor_study_blueprint, only : place_of, place_t
+   use vcor_study_build, only : build_impact, build_solver
+   use vcor_study_case, only : case_t
+   use vcor_study_failures, only : failures_t
+   use vcor_study_grid, only : axis_t, grid_t, spaced
+   use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_values, &
+      status_name
+   use vcor_study_summary, only : new_summary, summary_t
+   use vcor_study_sweep, only : new_sweep, solve_point, solve_points, sweep_t, worker_t
+   use vcor_study_text, only : real_text
+   use vcor_study_threads, only : default_threads
+   use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
+   implicit none
+
+   character(len=*), parameter :: lf = achar(10)
+   character(len=*), parameter :: text = "&impact velocity = 5.0 /"//lf &
+      //"&sphere radius = 0.01, material = 'steel' /"//lf &
+      //"&plate half_thickness = 0.02, material = 'sls rubber' /"//lf &
+      //"&material name = 'steel', model = 'rigid', density = 7800.0 /"//lf &
+      //"&material name = 'sls rubber', model = 'sls', density = 1100.0, poisson_ratio = 0.5," &
+      //" glassy_modulus = 15.0e6, alpha = 300.0, beta = 1200.0 /"//lf
+   character(len=*), parameter :: sweeps = "&sweep parameter = 'sls_rubber.beta'" &
+      //" values = 100.0, 600.0, 1200.0 /"//lf//"&sweep parameter = 'impact.velocity'" &
+      //" start = -5.0, stop = 10.0, count = 4 /"//lf
+   !> The same bits are asked for
+   real(wp), parameter :: exact = 0.0_wp
+
+   call suite("sweep")
+   call test_spacing()
+   call test_order()
+   call test_grid_of_a_case()
+   call test_points()
+   call test_chunks_and_threads()
+   call test_reasons()
+   call test_statuses()
+   call finish()
+
+contains
+
+   !> Values between two ends
+   subroutine test_spacing()
+      real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
+      real(wp) :: values(7)
+
+      call check_close(spaced(1.0_wp, 50.0_wp, 50, 'linear'), &
+         spaced(1.0_wp, 50.0_wp, 50, 'linear'), exact, "the same twice")
+      values = spaced(1.0_wp, 7.0_wp, 7, 'linear')
+      call check_close(values, [1.0_wp, 2.0_wp, 3.0_wp, 4.0_wp, 5.0_wp, 6.0_wp, 7.0_wp], exact, &
+         "whole numbers")
+      values = spaced(1.0e-3_wp, 1.0e3_wp, 7, 'log')
+      call check_close(values/[1.0e-3_wp, 1.0e-2_wp, 0.1_wp, 1.0_wp, 10.0_wp, 100.0_wp, &
+         1000.0_wp], [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp], rounding, "decades")
+      values = spaced(0.1_wp, 0.3_wp, 7, 'log')
+      call check_close(values([1, 7]), [0.1_wp, 0.3_wp], exact, "the ends are met")
+      call check_close(values(2:7)/values(1:6), spread(3.0_wp**(1.0_wp/6.0_wp), 1, 6), rounding, &
+         "equal ratios")
+      values = spaced(0.3_wp, -0.1_wp, 7, 'linear')
+      call check_close(values([1, 7]), [0.3_wp, -0.1_wp], exact, "falling values")
+      call check_close(values(2:7) - values(1:6), spread(-0.4_wp/6.0_wp, 1, 6), rounding, &
+         "equal steps")
+      call check_close(spaced(2.0_wp, 3.0_wp, 1, 'linear'), [2.0_wp], exact, "one value")
+      values = spaced(-1.0e300_wp, 1.0e300_wp, 7, 'linear')
+      call check_close(values(4), 0.0_wp, exact, "no overflow")
+   end subroutine test_spacing
+
+   !> The first axis is the slowest
+   subroutine test_order()
+      type(grid_t) :: grid
+      integer :: i, j, k, point
+
+      allocate (grid%axes(0))
+      call check(grid%count() == 1, "a grid without axes has one point")
+      call check(size(grid%places(1)) == 0, "which has no places")
+      deallocate (grid%axes)
+      allocate (grid%axes(3))
+      grid%axes(1)%values = [1.0_wp, 2.0_wp]
+      grid%axes(2)%values = [1.0_wp]
+      grid%axes(3)%values = [1.0_wp, 2.0_wp, 3.0_wp]
+      call check(grid%count() == 6, "product of the lengths")
+      point = 0
+      do i = 1, 2
+         do j = 1, 1
+            do k = 1, 3
+               point = point + 1
+               call check(all(grid%places(point) == [i, j, k]), "place of a point")
+            end do
+         end do
+      end do
+   end subroutine test_order
+
+   !> From &sweep groups to axes
+   subroutine test_grid_of_a_case()
+      type(case_t) :: case
+      type(grid_t) :: grid
+      type(place_t) :: place
+      type(error_t), allocatable :: error
+      integer, allocatable :: handles(:)
+
+      call read_case_text(case, text//sweeps, "x.nml", error)
+      call check(.not. allocated(error), "the case is read")
+      call case%validate(error)
+      call check(.not. allocated(error), "the case is sound")
+      call new_grid(case, grid, error)
+      call check(.not. allocated(error), "its grid is built")
+      call check(size(grid%axes) == 2, "two axes")
+      call check_text(grid%axes(1)%name, "sls_rubber.beta", "name of an axis")
+      call check_text(grid%axes(1)%unit, "1/s", "unit of an axis")
+      call check_text(grid%axes(2)%name, "impact.velocity", "name of another")
+      call check_close(grid%axes(2)%values, [-5.0_wp, 0.0_wp, 5.0_wp, 10.0_wp], exact, "values")
+      allocate (handles, source=swept_handles(case))
+      call check(all(handles == [case%handle("material", "beta", 2), &
+         case%handle("impact", "velocity")]), "handles")
+      place = place_of(case, handles(1))
+      call check(place%group == "material" .and. place%key == "beta" .and. place%item == 2, &
+         "place of a handle")
+      call override(case, "'sls rubber'.alpha=1500", error)
+      call case%validate(error)
+      call check(.not. allocated(error), "what is swept contradicts nothing")
+      call override(case, "sls_rubber.poisson_ratio=-1.5", error)
+      call check(allocated(error), "other values are checked")
+   end subroutine test_grid_of_a_case
+
+   !> A point is the impact that the case describes with its values
+   subroutine test_points()
+      type(case_t) :: case, single
+      type(sweep_t) :: sweep
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome, expected
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      class(solver_t), allocatable :: solver
+      type(error_t), allocatable :: error
+      integer :: point, places(2)
+
+      call read_case_text(case, text//sweeps, "x.nml", error)
+      call new_sweep(sweep, case, error)
+      call check(.not. allocated(error), "the sweep is built")
+      call check(sweep%is_grid() .and. sweep%grid%count() == 12, "it has its points")
+      ! backwards, so that each point follows on a different one
+      do point = 12, 1, -1
+         call solve_point(sweep, point, worker, outcome, error)
+         places = sweep%grid%places(point)
+         if (places(1) == 1 .or. places(2) < 3) then
+            call check(allocated(error), "a point that makes no sense has an error")
+            if (.not. allocated(error)) cycle
+            call check(error%code == error_input .and. outcome%status == point_invalid, &
+               "and is invalid")
+            if (places(2) < 3) call check_contains(error%message, &
+               "impact.velocity is out of range", "the range is told")
+            call check(all(ieee_is_nan(quantity_values(outcome))), "and has no numbers")
+            cycle
+         end if
+         call check(.not. allocated(error), "a point is solved")
+         call read_case_text(single, text, "x.nml", error)
+         associate (axes => sweep%grid%axes)
+            call override(single, "sls_rubber.beta="//real_text(axes(1)%values(places(1))), error)
+            call override(single, "impact.velocity="//real_text(axes(2)%values(places(2))), error)
+         end associate
+         call build_impact(single, impact, error)
+         call build_solver(single, impact, solver, error)
+         call solver%solve(impact, trajectory, error)
+         expected = evaluate(impact, trajectory)
+         call check_close(quantity_values(outcome), quantity_values(expected), exact, &
+            "its outcome is that of the impact by itself")
+      end do
+   end subroutine test_points
+
+   !> In whatever chunks, by whatever number of threads
+   subroutine test_chunks_and_threads()
+      type(case_t) :: case
+      type(sweep_t) :: sweep
+      type(summary_t) :: one, other
+      type(failures_t) :: reasons, others
+      type(error_t), allocatable :: error
+      integer :: i, n
+
+      call read_case_text(case, text//sweeps//"&sweep parameter = 'sphere.radius' start = 1e-3," &
+         //" stop = 1e-2, count = 40, spacing = 'log' /", "x.nml", error)
+      call new_sweep(sweep, case, error)
+      n = sweep%grid%count()
+      call new_summary(one, n, error)
+      call new_summary(other, n, error)
+      call check(.not. allocated(error), "there is room")
+      call solve_points(sweep, 1, n, 1, one, reasons)
+      call solve_points(sweep, n/3, n, 4, other, others)
+      call solve_points(sweep, 1, n/3 - 1, 2, other, others)
+      call check(all(one%status == other%status), "the same statuses")
+      call check(all(one%steps == other%steps), "the same steps")
+      do i = 1, size(quantities)
+         associate (a => one%values(i)%at, b => other%values(i)%at)
+            call check(all(transfer(a, [0]) == transfer(b, [0])), &
+               "the same bits of "//trim(quantities(i)%name))
+         end associate
+      end do
+      call check(reasons%count == count(one%status /= contact_separated), "failures are counted")
+      call check(reasons%count == others%count .and. reasons%reasons == others%reasons, &
+         "the same failures")
+      do i = 1, reasons%reasons
+         call check(reasons%reason(i)%first == others%reason(i)%first, "the same first point")
+         call check(reasons%reason(i)%count == others%reason(i)%count, "the same number")
+         call check_text(reasons%reason(i)%message, others%reason(i)%message, "the same words")
+      end do
+      call check(default_threads() >= 1, "there is a thread")
+   end subroutine test_chunks_and_threads
+
+   !> Reasons are told apart by their words, not their numbers
+   subroutine test_reasons()
+      type(failures_t) :: failures
+
+      call failures%note(7, "step of 1.0e-3 s")
+      call failures%note(9, "radius of -1")
+      call failures%note(3, "step of 2.5 s")
+      call failures%note(8, "step of 7 s")
+      call failures%note(1, "mass of 0")
+      call failures%sort()
+      call check(failures%count == 5 .and. failures%reasons == 3, "three reasons")
+      call check(all(failures%reason(1:3)%first == [1, 3, 9]), "by their first point")
+      call check(all(failures%reason(1:3)%count == [1, 3, 1]), "counted")
+      call check_text(failures%reason(2)%message, "step of 2.5 s", "message of the first point")
+   end subroutine test_reasons
+
+   !> Names of statuses
+   subroutine test_statuses()
+      call check_text(status_name(point_invalid), "invalid", "no impact")
+      call check_text(status_name(point_failed), "failed", "no solution")
+   end subroutine test_statuses
+
+end program test_sweep
