@@ -5,9 +5,10 @@ module vcor_app_run
    use vcor_app_screen, only : report, short
    use vcor_app_sweep_screen, only : coordinates, sweep_report
    use vcor, only : contact_lasting, contact_separated, data_file, default_threads, &
-      error_numerical, error_t, failures_t, history_table, integer_text, make_directory, new_summary, outcome_t, &
-      place_in_table, raise, solve_point, solve_points, summary_t, summary_table, table_t, &
-      trajectory_t, worker_t, wp, write_csv, write_hdf5, write_rows, write_stdout
+      error_numerical, error_t, failures_t, history_table, integer_text, make_directory, &
+      new_summary, outcome_t, place_in_table, raise, solve_point, solve_points, summary_t, &
+      summary_table, table_t, trajectory_t, worker_t, wp, write_csv, write_hdf5, write_rows, &
+      write_stdout
    implicit none
    private
 

@@ -61,8 +61,8 @@ contains
       name = trim(found)
    end function method_for
 
-   !> The same without a text of deferred length: gfortran 12 keeps the length of one that a function
-   !> returns in static storage, where threads collide
+   !> The same without a text of deferred length: gfortran 12 keeps the length of one that a
+   !> function returns in static storage, where threads collide
    pure subroutine find_method(method, scheme, name)
       !> What the user asks for: auto, ive or direct
       character(len=*), intent(in) :: method

@@ -346,7 +346,8 @@ contains
       call put_attribute(writer, dataset, "long_name", column%long_name)
    end subroutine put_column
 
-   !> How to create a dataset that is compressed. (Text is not: HDF5 keeps it apart from the dataset.)
+   !> How to create a dataset that is compressed. (Text is not: HDF5 keeps it apart from the
+   !> dataset.)
    subroutine prepare_compression(writer, lengths, creation)
       !> Writer
       type(writer_t), intent(inout) :: writer
