@@ -8,9 +8,9 @@ module vcor_app_driver
    use vcor_app_screen, only : report, short
    use vcor_app_verify, only : verify_case, verify_program
    use vcor, only : contact_lasting, contact_separated, data_file, default_accuracy, &
-      error_numerical, error_t, evaluate, history_table, integer_text, make_directory, outcome_t, quantities, &
-      quantity_value, raise, real_text, status_name, summary_table, table_t, trajectory_t, &
-      version, wp, write_csv, write_hdf5, write_stdout
+      error_numerical, error_t, evaluate, history_table, integer_text, make_directory, outcome_t, &
+      quantities, quantity_value, raise, real_text, status_name, summary_table, table_t, &
+      trajectory_t, version, wp, write_csv, write_hdf5, write_stdout
    implicit none
    private
 
@@ -192,10 +192,24 @@ contains
          call write_stdout(numbers(request%names, outcome)//new_line('a'), trouble)
       else if (.not. request%quiet) then
          call write_stdout(report(job%case%source, title, job%method, outcome, &
-            trajectory%state(1, trajectory%last), remarks_on(job, outcome)//files), trouble)
+            trajectory%state(1, trajectory%last), &
+            kernel_of(trajectory)//remarks_on(job, outcome)//files), trouble)
       end if
       if (allocated(trouble)) call move_alloc(trouble, error)
    end subroutine run_job
+
+   !> What stood for a kernel that is no finite sum of exponentials
+   function kernel_of(trajectory) result(text)
+      !> Trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> A line, or nothing
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (trajectory%kernel_terms > 0) text = '  kernel as a sum of ' &
+         //integer_text(trajectory%kernel_terms)//' exponentials, to ' &
+         //short(trajectory%kernel_error)//new_line('a')
+   end function kernel_of
 
    !> Remarks on an outcome that is beyond what the model is made for
    function remarks_on(job, outcome) result(text)

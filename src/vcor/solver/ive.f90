@@ -80,8 +80,9 @@ contains
          self%collocator%second_coefficient = second_coefficient
    end subroutine new_ive
 
-   !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is made
-   !> that holds up to some times the expected contact time, and anew if the contact outlasts it
+   !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is
+   !> made that holds up to some times the expected contact time, and anew if the contact outlasts
+   !> it
    subroutine solve(self, impact, trajectory, error)
       !> The solver
       class(ive_t), intent(in) :: self
@@ -105,12 +106,15 @@ contains
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, kernel)
          ! a sum that is the kernel itself holds for ever
          if (.not. kernel%error > 0.0_wp) window = end_time
-         call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, error)
+         call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, &
+            error)
          if (complete .or. allocated(error)) exit
          window = min(end_time, growth*window)
       end do
       if (trajectory%status == contact_separated) &
          trajectory%cor_error = trajectory%cor_error + sensitivity*kernel%error
+      if (kernel%error > 0.0_wp) trajectory%kernel_terms = size(kernel%rates)
+      trajectory%kernel_error = kernel%error
    end subroutine solve
 
    !> Follow the contact with the kernel as a sum of exponentials
@@ -147,11 +151,11 @@ contains
       real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
       type(start_t) :: start, fine_start
       type(step_t) :: step
-      type(panel_t) :: panel, previous, fine
+      type(panel_t) :: panel, previous, fine, recorded
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, force_error
       integer :: trial, n
-      logical :: ends, last, inherited, shallow
+      logical :: ends, last, inherited, shallow, elastic
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -219,12 +223,14 @@ contains
          end if
 
          refused = huge(1.0_wp)
+         recorded = fine
          if (ends) then
+            elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
             trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, fine, &
-               trajectory%steps + 1, panel%indentation(n) < elastic_end*trajectory%max_indentation)
-            call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, fine)
+               trajectory%steps + 1, elastic)
+            call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, recorded)
          end if
-         call append(self%collocator, impact, kernel, fine_start, panel, fine, accuracy, &
+         call append(self%collocator, impact, kernel, fine_start, panel, recorded, accuracy, &
             trajectory)
          complete = panel%time(n) <= window*(1.0_wp + rounding)
          if (.not. complete) return
