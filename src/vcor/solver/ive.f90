@@ -301,9 +301,11 @@ contains
          if (.not. shallow) then
             time = -fine%force(n)/slope
             fine%time(n) = fine%time(n) + time
+            fine%impulse(n) = fine%impulse(n) + 0.5_wp*time*fine%force(n)
             fine%second_impulse(n) = fine%second_impulse(n) + time*fine%impulse(n)
             fine%indentation(n) = fine%indentation(n) + time*(impact%velocity &
                - fine%impulse(n)/impact%mass - plate_velocity(impact, fine, n))
+            fine%alpha(n) = impact%plate%alpha(fine%time(n))
          end if
          fine%force(n) = 0.0_wp
       end associate
