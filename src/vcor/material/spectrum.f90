@@ -25,8 +25,9 @@ module vcor_material_spectrum
 
    !> Where exp(-l t) becomes 1 - l t + .., as l times the window
    real(wp), parameter :: slow = 0.5_wp
-   !> ln of the rates over that of the peak beyond which the spectrum is a power of the rate
-   real(wp), parameter :: margin = 4.0_wp
+   !> ln of the rate of the peak over those below which, and of those over it above which, the
+   !> spectrum is a power of the rate; what is fast counts less
+   real(wp), parameter :: below_peak = 4.0_wp, above_peak = 1.0_wp
    !> A rate this small against that of the window is a constant, its inverse a dashpot
    real(wp), parameter :: constant = 1.0e-14_wp
 
@@ -63,8 +64,8 @@ contains
       if (present(peak) .and. present(distance)) then
          y_p = peak - shift
          ! the runs are to begin where the spectrum has become a power of the rate
-         turn_low = min(turn_low, y_p - margin)
-         turn_high = max(turn_high, y_p + margin)
+         turn_low = min(turn_low, y_p - below_peak)
+         turn_high = max(turn_high, y_p + above_peak)
          d = distance
          c = max(0.0_wp, 1.0_wp - 2.0_wp*d/pi)
          turn_low = turn_low + c*asinh((turn_low - y_p)/d)

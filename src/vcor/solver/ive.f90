@@ -35,8 +35,9 @@ module vcor_solver_ive
    !> Share of the wanted accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 0.4_wp
 
-   !> Share of the wanted accuracy that the kernel is approximated to
-   real(wp), parameter :: kernel_share = 0.01_wp
+   !> Share of the wanted accuracy that the kernel is approximated to, where that is the usual one,
+   !> and its power of the accuracy beyond
+   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, share_growth = 0.25_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -95,15 +96,16 @@ contains
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
       type(exponential_sum_t) :: kernel
-      real(wp) :: end_time, window, time_scale
+      real(wp) :: share, end_time, window, time_scale
       logical :: complete
 
+      share = kernel_share*max(1.0_wp, self%accuracy/usual)**share_growth
       time_scale = impact%time_scale()
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience()
       window = min(end_time, margin*hertz_contact_time*time_scale)
       do
-         call impact%kernel_exponentials(window, kernel_share*self%accuracy, kernel)
+         call impact%kernel_exponentials(window, share*self%accuracy, kernel)
          ! a sum that is the kernel itself holds for ever
          if (.not. kernel%error > 0.0_wp) window = end_time
          call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, &
@@ -167,7 +169,7 @@ contains
       start%q = 0.0_wp
       fine_start = start
       step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
-         *(accuracy/1.0e-8_wp)**step_growth*sqrt(hertz_contact_time*time_scale)
+         *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%fine, impact, trajectory)
