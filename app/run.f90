@@ -63,7 +63,8 @@ contains
             text = sweep_report(job, title, table, failures, files)
          else
             text = report(job%case%source, title, job%method, outcome, &
-               worker%trajectory%state(1, worker%trajectory%last), remarks_on(job, outcome)//files)
+               worker%trajectory%state(1, worker%trajectory%last), &
+               kernel_of(worker%trajectory)//remarks_on(job, outcome)//files)
          end if
          call write_stdout(text, trouble)
       end if
@@ -95,6 +96,19 @@ contains
          //' of '//integer_text(job%sweep%grid%count())//' points without result, the first at ' &
          //coordinates(job, failures%reason(1)%first)//': '//failures%reason(1)%message)
    end subroutine end_of_sweep
+
+   !> What stood for a kernel that is no finite sum of exponentials
+   function kernel_of(trajectory) result(text)
+      !> Trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> A line, or nothing
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (trajectory%kernel_terms > 0) text = '  kernel as a sum of ' &
+         //integer_text(trajectory%kernel_terms)//' exponentials, to ' &
+         //short(trajectory%kernel_error)//new_line('a')
+   end function kernel_of
 
    !> Remarks on an outcome that is beyond what the model is made for
    function remarks_on(job, outcome) result(text)

@@ -95,7 +95,7 @@ contains
       integer :: i
 
       label = 'solution'
-      text = '  '//label//' accuracy step [s]  steps            cor   states   off by' &
+      text = '  '//label//' accuracy step [s]  steps             cor   states   off by' &
          //'  dW/KE_0'//nl
       do i = 1, attempt_count
          associate (this => comparison%attempts(i))
@@ -114,7 +114,7 @@ contains
             honest = ''
             if (i /= attempt_case) honest = &
                merge('  honest ', '  TOO LOW', is_honest(this, error_of_best(comparison)))
-            text = text//significant(this%outcome%cor, 11, 15)//column(this%outcome%cor_error, 9) &
+            text = text//significant(this%outcome%cor, 11, 16)//column(this%outcome%cor_error, 9) &
                //column(this%seen, 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do

@@ -69,6 +69,12 @@ with_cmake() {
 # Build with fpm and run the test programs
 with_fpm() {
    local fpm=$venv/bin/fpm report=build/fpm-test.txt code=0 tests bad
+   # where HDF5 is installed for MPI as well, its pkg-config file may be the one named hdf5
+   if serial=$(pkg-config --variable=pcfiledir hdf5-serial 2>/dev/null); then
+      mkdir -p build/pkgconfig
+      ln -sf "$serial/hdf5-serial.pc" build/pkgconfig/hdf5.pc
+      export PKG_CONFIG_PATH="$PWD/build/pkgconfig${PKG_CONFIG_PATH:+:$PKG_CONFIG_PATH}"
+   fi
    begin "fpm build"
    "$fpm" build
    begin "fpm tests"

@@ -314,4 +314,6 @@ def test_case_of_the_readme(vcor):
         assert [float(number) for number in values[name]] == pytest.approx(
             [float(number) for number in numbers[:3]], rel=1e-9
         )
-    assert any(line.partition("=")[0] == verdict.partition("=")[0] for line in lines)
+    # how many digits is a matter of the last ones
+    assert any(re.sub(r"\d+ digits", "N digits", line).partition("=")[0]
+               == re.sub(r"\d+ digits", "N digits", verdict).partition("=")[0] for line in lines)

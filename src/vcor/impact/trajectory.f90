@@ -62,6 +62,11 @@ module vcor_impact_trajectory
       real(wp) :: time_of_max_force = 0.0_wp
       !> Estimate of the error of the coefficient of restitution [-]
       real(wp) :: cor_error = 0.0_wp
+      !> Exponentials that stood for a kernel that is no finite sum of them; 0: it was taken as it
+      !> is
+      integer :: kernel_terms = 0
+      !> Largest relative error of that sum
+      real(wp) :: kernel_error = 0.0_wp
       !> Stages of a collocation panel; 0: the nodes are a plain time series
       integer :: stages = 0
       !> Points of a panel in theta, its start first, shape (0:stages)

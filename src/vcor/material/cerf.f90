@@ -2,7 +2,7 @@
 !> error function CERF(x) = exp(x^2) erfc(x), the intrinsic erfc_scaled
 module vcor_material_cerf
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
-   use vcor_constants, only : sqrt_pi
+   use vcor_constants, only : pi, sqrt_pi
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -179,7 +179,8 @@ contains
       !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
-      call sum_of_spectrum(self, window, accuracy, terms)
+      ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet, and the next one far from it
+      call sum_of_spectrum(self, window, accuracy, terms, peak=2.0_wp*log(self%beta), distance=pi)
    end subroutine exponentials
 
 end module vcor_material_cerf

@@ -25,6 +25,9 @@ module vcor_material_spectrum
 
    !> Where exp(-l t) becomes 1 - l t + .., as l times the window
    real(wp), parameter :: slow = 0.5_wp
+   !> ln of the rate of the peak over those below which, and of those over it above which, the
+   !> spectrum is a power of the rate; what is fast counts less
+   real(wp), parameter :: below_peak = 4.0_wp, above_peak = 1.0_wp
    !> A rate this small against that of the window is a constant, its inverse a dashpot
    real(wp), parameter :: constant = 1.0e-14_wp
 
@@ -40,7 +43,7 @@ contains
       real(wp), intent(in) :: accuracy
       !> The sum; its error is the largest one found at some times of the window
       type(exponential_sum_t), intent(out) :: terms
-      !> ln of the rate [1/s] at which the spectrum has a peak; absent: there is none
+      !> ln of the rate [1/s] at which the spectrum has its peak; absent: it is a power of the rate
       real(wp), intent(in), optional :: peak
       !> Distance d of the poles from the peak in ln(l), > 0
       real(wp), intent(in), optional :: distance
@@ -60,6 +63,9 @@ contains
       y_p = 0.0_wp
       if (present(peak) .and. present(distance)) then
          y_p = peak - shift
+         ! the runs are to begin where the spectrum has become a power of the rate
+         turn_low = min(turn_low, y_p - below_peak)
+         turn_high = max(turn_high, y_p + above_peak)
          d = distance
          c = max(0.0_wp, 1.0_wp - 2.0_wp*d/pi)
          turn_low = turn_low + c*asinh((turn_low - y_p)/d)

@@ -280,7 +280,7 @@ contains
    end function interpolate
 
    !> Zero of the polynomial with the given values between two arguments where its signs differ,
-   !> by the Illinois method; the upper one where they do not
+   !> by the Illinois method, to ten digits; the upper one where they do not
    pure function crossing(self, value, lower, upper) result(theta)
       !> The rule
       class(collocation_t), intent(in) :: self
@@ -303,7 +303,7 @@ contains
       theta = b
       if ((fa > 0.0_wp) .eqv. (fb > 0.0_wp)) return
       do iteration = 1, 100
-         if (abs(b - a) <= 1.0e-14_wp .or. .not. abs(fb - fa) > 0.0_wp) exit
+         if (abs(b - a) <= 1.0e-10_wp .or. .not. abs(fb - fa) > 0.0_wp) exit
          theta = (a*fb - b*fa)/(fb - fa)
          f = self%interpolate(value, theta)
          if (.not. abs(f) > 0.0_wp) exit

@@ -20,7 +20,7 @@ module vcor_solver_ive
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear
    use vcor_solver_collocator, only : advance, collocator_t, guess, most_steps, new_collocator, &
-      refine, solve_step
+      plate_velocity, refine, solve_step
    use vcor_solver_landing, only : first_without_force, land
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
@@ -33,10 +33,11 @@ module vcor_solver_ive
    public :: ive_t, new_ive
 
    !> Share of the wanted accuracy that the error of one panel may use up
-   real(wp), parameter :: panel_share = 0.2_wp
+   real(wp), parameter :: panel_share = 0.4_wp
 
-   !> Share of the wanted accuracy that the kernel is approximated to
-   real(wp), parameter :: kernel_share = 0.01_wp
+   !> Share of the wanted accuracy that the kernel is approximated to, where that is the usual one,
+   !> and its power of the accuracy beyond
+   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, share_growth = 0.25_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -51,8 +52,6 @@ module vcor_solver_ive
       logical :: ghost = .false.
       !> Collocation rules
       type(collocator_t) :: collocator
-      !> First step in x over the square root of the expected contact time [-]
-      real(wp) :: first_step = 0.34_wp
    contains
       procedure :: solve
    end type ive_t
@@ -82,8 +81,9 @@ contains
          self%collocator%second_coefficient = second_coefficient
    end subroutine new_ive
 
-   !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is made
-   !> that holds up to some times the expected contact time, and anew if the contact outlasts it
+   !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is
+   !> made that holds up to some times the expected contact time, and anew if the contact outlasts
+   !> it
    subroutine solve(self, impact, trajectory, error)
       !> The solver
       class(ive_t), intent(in) :: self
@@ -96,23 +96,27 @@ contains
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
       type(exponential_sum_t) :: kernel
-      real(wp) :: end_time, window, time_scale
+      real(wp) :: share, end_time, window, time_scale
       logical :: complete
 
+      share = kernel_share*max(1.0_wp, self%accuracy/usual)**share_growth
       time_scale = impact%time_scale()
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience()
       window = min(end_time, margin*hertz_contact_time*time_scale)
       do
-         call impact%kernel_exponentials(window, kernel_share*self%accuracy, kernel)
+         call impact%kernel_exponentials(window, share*self%accuracy, kernel)
          ! a sum that is the kernel itself holds for ever
          if (.not. kernel%error > 0.0_wp) window = end_time
-         call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, error)
+         call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, &
+            error)
          if (complete .or. allocated(error)) exit
          window = min(end_time, growth*window)
       end do
       if (trajectory%status == contact_separated) &
          trajectory%cor_error = trajectory%cor_error + sensitivity*kernel%error
+      if (kernel%error > 0.0_wp) trajectory%kernel_terms = size(kernel%rates)
+      trajectory%kernel_error = kernel%error
    end subroutine solve
 
    !> Follow the contact with the kernel as a sum of exponentials
@@ -141,15 +145,19 @@ contains
       ! the panel before an end that was refused comes this close to it
       real(wp), parameter :: approach = 0.65_wp
       real(wp), parameter :: rounding = 1.0e-12_wp, tolerable = 4.0_wp
+      ! first step in x over the square root of the expected contact time, where the kernel relaxes
+      ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy
+      real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, fast = 3.0_wp
+      real(wp), parameter :: step_growth = 0.025_wp
       ! residual indentation over the largest one that makes an end a smooth one
-      real(wp), parameter :: shallow_end = 0.01_wp
+      real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
       type(start_t) :: start, fine_start
       type(step_t) :: step
-      type(panel_t) :: panel, previous, fine
+      type(panel_t) :: panel, previous, fine, recorded
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, force_error
       integer :: trial, n
-      logical :: ends, last, inherited, shallow
+      logical :: ends, last, inherited, shallow, elastic
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -160,7 +168,8 @@ contains
       allocate (start%q(size(kernel%rates)))
       start%q = 0.0_wp
       fine_start = start
-      step%reach = self%first_step*sqrt(hertz_contact_time*time_scale)
+      step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
+         *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%fine, impact, trajectory)
@@ -169,9 +178,9 @@ contains
       shallow = .false.
       ! what rounding leaves in the force of stiff internal variables and dashpots, which can hide
       ! the end of a contact that creeps back, is not to stop the march
-      peak_tolerance = 3.0_wp*max(accuracy, 1.0e-8_wp)
-      force_tolerance = 3.0e3_wp*peak_tolerance
-      time_tolerance = max(panel_share*accuracy, 1.0e-9_wp)
+      peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
+      force_tolerance = 1.0e3_wp*peak_tolerance
+      time_tolerance = max(0.5_wp*panel_share*accuracy, 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time
@@ -199,7 +208,7 @@ contains
          if (ends) then
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
-            if (shallow) force_error = 10.0_wp*force_error
+            if (shallow) force_error = 100.0_wp*force_error
             excess = max(excess, force_error/abs(slope_at_end(self%collocator%rule, panel)) &
                /(panel%time(n)*time_tolerance))
          else if (maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
@@ -216,13 +225,14 @@ contains
          end if
 
          refused = huge(1.0_wp)
+         recorded = fine
          if (ends) then
+            elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
             trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, fine, &
-               trajectory%steps + 1, shallow)
-            ! the finer solution is next to its zero
-            fine%force(n + 1) = 0.0_wp
+               trajectory%steps + 1, elastic)
+            call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, recorded)
          end if
-         call append(self%collocator, impact, kernel, fine_start, panel, fine, accuracy, &
+         call append(self%collocator, impact, kernel, fine_start, panel, recorded, accuracy, &
             trajectory)
          complete = panel%time(n) <= window*(1.0_wp + rounding)
          if (.not. complete) return
@@ -272,8 +282,36 @@ contains
       !> Number
       integer :: levels
 
-      levels = max(0, ceiling(log(1.0e-7_wp/(panel_share*accuracy))/log(16.0_wp)))
+      levels = max(0, ceiling(log(4.0e-7_wp/(panel_share*accuracy))/log(16.0_wp)))
    end function levels
+
+   !> Let the finer solution end where its own force is zero, which is next to where that of the
+   !> other one is
+   pure subroutine end_at_zero(impact, slope, shallow, fine)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Rate of the force [N/s], < 0
+      real(wp), intent(in) :: slope
+      !> Whether the indentation ends next to zero, where the force is not linear in time
+      logical, intent(in) :: shallow
+      !> The last panel of the finer solution
+      type(panel_t), intent(inout) :: fine
+
+      real(wp) :: time
+
+      associate (n => fine%stages)
+         if (.not. shallow) then
+            time = -fine%force(n)/slope
+            fine%time(n) = fine%time(n) + time
+            fine%impulse(n) = fine%impulse(n) + 0.5_wp*time*fine%force(n)
+            fine%second_impulse(n) = fine%second_impulse(n) + time*fine%impulse(n)
+            fine%indentation(n) = fine%indentation(n) + time*(impact%velocity &
+               - fine%impulse(n)/impact%mass - plate_velocity(impact, fine, n))
+            fine%alpha(n) = impact%plate%alpha(fine%time(n))
+         end if
+         fine%force(n) = 0.0_wp
+      end associate
+   end subroutine end_at_zero
 
    !> Rate of the force at the end of a panel
    pure function slope_at_end(rule, panel) result(slope)

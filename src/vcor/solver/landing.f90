@@ -72,7 +72,7 @@ contains
       ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
       ! kappa u(s) = M with s and M linear in time, the slope of M from the polynomials of the panel
       ! and then from the last two iterations
-      tolerance = 0.1_wp*min(accuracy, 1.0e-7_wp)
+      tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
       kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
       memory_rate = (kappa*slope_at(hertz(crossing%indentation(0:n))) &
          - slope_at(crossing%force(0:n)))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)

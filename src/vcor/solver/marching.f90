@@ -94,8 +94,8 @@ contains
       ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
       if (.not. real(fewest_steps, wp)*dt < contact_time) then
          call raise(error, error_numerical, 'solver.time_step is '//trim(in_seconds(dt)) &
-            //', too long for a contact expected to last '//trim(in_seconds(contact_time))//': at most ' &
-            //trim(in_seconds(contact_time/real(fewest_steps, wp))))
+            //', too long for a contact expected to last '//trim(in_seconds(contact_time)) &
+            //': at most '//trim(in_seconds(contact_time/real(fewest_steps, wp))))
          return
       end if
       call run(self, impact, dt, self%ghost, trajectory, error)

@@ -1,10 +1,10 @@
-!> Internal variables of a kernel that is a sum of exponentials: what they add to the equations of a
-!> panel, and how they get to its end
+!> Internal variables of a kernel that is a sum of exponentials: what they add to the equations of
+!> a panel, and how they get to its end
 !>
-!> For q_k' = l_k (u - q_k) the stage values follow from those of u: u - q = (1 + l_k H)^-1 (u - q_n)
-!> with the integration matrix H of the panel, known through its eigenvalues. A kernel may have a
-!> hundred modes, so the loops over them are kept in independent lanes, which the compiler turns into
-!> vector instructions.
+!> For q_k' = l_k (u - q_k) the stage values follow from those of u:
+!> u - q = (1 + l_k H)^-1 (u - q_n) with the integration matrix H of the panel, known through its
+!> eigenvalues. A kernel may have a hundred modes, so the loops over them are kept in independent
+!> lanes, which the compiler turns into vector instructions.
 module vcor_solver_modes
    use vcor_impact_problem, only : hertz
    use vcor_kinds, only : wp

@@ -148,8 +148,8 @@ contains
          end do
       end subroutine look_for_peak
 
-      !> Maximum inside the panel: where the polynomials of both solutions agree from them, otherwise
-      !> by solving the panel up to there, as it is more accurate at its end
+      !> Maximum inside the panel: where the polynomials of both solutions agree from them,
+      !> otherwise by solving the panel up to there, as it is more accurate at its end
       subroutine find_peak(coarse, value, of_indentation, peak, time)
          !> Values at the points of the panel
          real(wp), intent(in) :: coarse(0:width)

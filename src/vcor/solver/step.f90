@@ -102,7 +102,8 @@ contains
          self%length = self%length*growth
       else
          self%index = self%index + 1
-         if (mod(self%index, 2) == 0 .and. (growth >= 2.0_wp .or. self%length < 0.6_wp*self%reach)) then
+         if (mod(self%index, 2) == 0 .and. &
+             (growth >= 2.0_wp .or. self%length < 0.6_wp*self%reach)) then
             self%index = self%index/2
             self%length = 2.0_wp*self%length
          end if

@@ -121,7 +121,8 @@ module vcor_study_keys
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
+      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", &
+      &    required=.true.), &
       & key_t("material", "density", real_key, "Density", "kg/m3", positive), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
       &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
