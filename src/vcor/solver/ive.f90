@@ -35,9 +35,9 @@ module vcor_solver_ive
    !> Share of the wanted accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 0.4_wp
 
-   !> Share of the wanted accuracy that the kernel is approximated to, where that is the usual one,
-   !> and its power of the accuracy beyond
-   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, share_growth = 0.25_wp
+   !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
+   !> and better, and at most
+   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.02_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -99,7 +99,7 @@ contains
       real(wp) :: share, end_time, window, time_scale
       logical :: complete
 
-      share = kernel_share*max(1.0_wp, self%accuracy/usual)**share_growth
+      share = min(kernel_share*max(1.0_wp, self%accuracy/usual), largest_share)
       time_scale = impact%time_scale()
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience()
