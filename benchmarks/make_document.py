@@ -217,10 +217,10 @@ def power(exponent):
 
 def figure(accuracy, comparison, modes):
     """Error over time, and time over modes."""
-    left = Axes(72, 16, 420, 380, (1e1, 1e6), (1e-13, 1e-5))
+    left = Axes(72, 16, 420, 380, (1e1, 1e6), (1e-13, 1e-3))
     left.grid(
         [(10.0**n, power(n)) for n in range(1, 7)],
-        [(10.0**n, power(n)) for n in range(-13, -4)],
+        [(10.0**n, power(n)) for n in range(-13, -2)],
         "time per impact, µs",
         "error of the COR, absolute",
     )
