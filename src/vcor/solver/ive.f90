@@ -180,7 +180,8 @@ contains
       ! the end of a contact that creeps back, is not to stop the march
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
-      time_tolerance = max(0.5_wp*panel_share*accuracy, 1.0e-9_wp)
+      ! between the two solutions; the finer one is better by an order
+      time_tolerance = max(3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.3_wp), 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time

@@ -68,6 +68,9 @@ contains
       trajectory%steps = trajectory%steps + 1
       trajectory%weight(first:trajectory%final) = self%fine%weight(1:n) &
          *(fine%map(1) + 2.0_wp*fine%map(2)*self%fine%node(1:n))
+      ! what an end was moved by to its zero goes to the node there
+      trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
+         + (fine%time(n) - fine%time(0) - sum(fine%map))
       do j = 1, n
          associate (state => trajectory%state(:, first + j - 1))
             state(col_time) = fine%time(j)
