@@ -103,15 +103,15 @@ contains
       time_scale = impact%time_scale()
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience()
-      window = min(end_time, margin*hertz_contact_time*time_scale)
+      window = margin*hertz_contact_time*time_scale
       do
          call impact%kernel_exponentials(window, share*self%accuracy, kernel)
-         ! a sum that is the kernel itself holds for ever
-         if (.not. kernel%error > 0.0_wp) window = end_time
+         ! a sum that is the kernel itself holds for ever, ghost lines beyond the end included
+         if (.not. kernel%error > 0.0_wp) window = huge(1.0_wp)
          call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, &
             error)
          if (complete .or. allocated(error)) exit
-         window = min(end_time, growth*window)
+         window = growth*window
       end do
       if (trajectory%status == contact_separated) &
          trajectory%cor_error = trajectory%cor_error + sensitivity*kernel%error
@@ -144,7 +144,11 @@ contains
       integer, parameter :: most_trials = 20000
       ! the panel before an end that was refused comes this close to it
       real(wp), parameter :: approach = 0.65_wp
-      real(wp), parameter :: rounding = 1.0e-12_wp, tolerable = 4.0_wp
+      ! what rounding leaves in the force of stiff internal variables and dashpots, over the largest
+      ! force: it is not to stop the march
+      real(wp), parameter :: rounding = 1.0e-12_wp
+      ! error of a panel, over what it may have, that can be put up with if it is inherited
+      real(wp), parameter :: tolerable = 4.0_wp
       ! first step in x over the square root of the expected contact time, where the kernel relaxes
       ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy
       real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, fast = 3.0_wp
@@ -176,8 +180,8 @@ contains
       largest_force = 0.0_wp
       refused = huge(1.0_wp)
       shallow = .false.
-      ! what rounding leaves in the force of stiff internal variables and dashpots, which can hide
-      ! the end of a contact that creeps back, is not to stop the march
+      ! the force counts where it has its maximum, and at the end; elsewhere it is what is left of
+      ! transients that the impulse does not feel
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
       ! between the two solutions; the finer one is better by an order
@@ -200,6 +204,10 @@ contains
          previous = panel
 
          call refine(self%collocator, impact, kernel, fine_start, step, panel, fine)
+         if (.not. fine%converged) then
+            call step%shorten(0.5_wp*step%duration())
+            cycle
+         end if
          largest_force = max(largest_force, maxval(panel%force(1:n)))
          excess = (growth_of(fine%impulse, panel%impulse)/(impact%mass*impact%velocity) &
             + growth_of(fine%indentation, panel%indentation)/(impact%velocity*time_scale)) &
@@ -235,12 +243,12 @@ contains
          end if
          call append(self%collocator, impact, kernel, fine_start, panel, recorded, accuracy, &
             trajectory)
-         complete = panel%time(n) <= window*(1.0_wp + rounding)
+         complete = .not. panel%time(n) > window
          if (.not. complete) return
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
-            end_time = 2.0_wp*panel%time(n)
+            end_time = 2.0_wp*recorded%time(n + 1)
             if (self%end_time > 0.0_wp) end_time = self%end_time
          end if
          if (trajectory%status == contact_separated) then
