@@ -18,7 +18,7 @@ module vcor_app_cli
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
-   character(len=*), parameter :: help_options = '--help --version'
+   character(len=*), parameter :: help_options = '--man --markdown --help --version'
 
    !> What the user asks for
    type :: request_t
@@ -36,6 +36,8 @@ module vcor_app_cli
       integer :: threads = 0
       !> Nothing on the screen
       logical :: quiet = .false.
+      !> Form of a page of help: empty for the screen, else --man or --markdown
+      character(len=:), allocatable :: form
    end type request_t
 
 contains
@@ -54,6 +56,7 @@ contains
       logical :: plain
 
       allocate (request%files(0), request%settings(0), request%names(0))
+      request%form = ''
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, check, verify, help ' &
             //'(vcor help says more)')
@@ -115,12 +118,16 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet')
+         case ('--quiet', '--man', '--markdown')
             if (mark > 0) then
-               call raise(error, error_usage, 'option --quiet takes no value')
+               call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
-            request%quiet = .true.
+            if (name == '--quiet') then
+               request%quiet = .true.
+            else
+               request%form = name
+            end if
             cycle
          case default
          end select
