@@ -70,6 +70,10 @@ look() {
       need "pkg-config" "pkg-config" have pkg-config
       need "h5dump" "hdf5-tools" have h5dump
       need "python3 with venv" "python3 python3-venv" have_venv
+      # the pages of man are shown, and packages are made
+      need "man" "man-db" have man
+      need "dpkg-shlibdeps" "dpkg-dev" have dpkg-shlibdeps
+      need "file" "file" have file
    fi
 }
 
