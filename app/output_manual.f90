@@ -45,6 +45,10 @@ contains
       call put_quantities(page, quantities)
       call put_quantity(page, quantity_t('steps', '', '1', 'number of time steps'))
       call put_quantity(page, quantity_t('status', '', '', 'how the contact ended'))
+      call page%paragraph('`inelasticity` is 0 without waves and for a modulus that is infinite ' &
+         //'at time zero. Below `min_frequency` the material plays no part. `energy_imbalance` ' &
+         //'is the initial energy less the energy left to the sphere, `hysteresis_energy` and ' &
+         //'`wave_energy`.')
       call page%aside('The two coefficients of restitution are explained with ' &
          //'[plate and contact](impact.md#two-coefficients), `cor_error` with ' &
          //'[solver and accuracy](accuracy.md).')

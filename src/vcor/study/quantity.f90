@@ -29,7 +29,7 @@ module vcor_study_quantity
       !> What it says, one line
       character(len=64) :: meaning
       !> What to do about it, one line
-      character(len=88) :: advice
+      character(len=96) :: advice
    end type status_t
 
    !> All that a contact, or a point of a sweep, may come to
@@ -37,8 +37,8 @@ module vcor_study_quantity
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
       'end_time came before the force returned to zero', 'a larger solver.end_time'), &
-      status_t(contact_sticking, 'sticks', 'all motion died out in contact', &
-      'nothing: the plate is too light to throw the sphere back, or the material flows'), &
+      status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
+      //'is too light for it (inelasticity above about 5), or the material flows'), &
       status_t(point_invalid, 'invalid', &
       'in a sweep: the values of the point make no impact', &
       'the message says which one is out of range, or contradicts others'), &
