@@ -5,9 +5,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).parents[2]
-LIMIT = 120
+from places import LIMIT
 
 
 @pytest.fixture(scope="session")

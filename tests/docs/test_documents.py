@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from conftest import LIMIT, ROOT
+from places import LIMIT, ROOT
 
 CONSUMER = ROOT / "tests" / "consumer"
 PAGES = sorted(

@@ -4,7 +4,7 @@ import os
 import subprocess
 
 import pytest
-from conftest import ROOT
+from places import ROOT
 
 # As scripts/manual.sh has them
 PAGES = {
