@@ -25,8 +25,9 @@ restitution, contact time, indentation, force and energies, with an estimate
 of the numerical error. Cases are text files, results CSV and HDF5.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvcor-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+# The compiler that can read the module files, and the one that CMake finds HDF5 with (gcc)
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "gfortran-${vcor_compiler_major}" ${vcor_debian_packages})
+  "gfortran-${vcor_compiler_major}" gfortran ${vcor_debian_packages})
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "The library that the program vcor is made of: archive, module files, CMake
 package and pkg-config file, to be used from Fortran.")
