@@ -71,6 +71,8 @@ foreach(page IN LISTS vcor_pages)
   install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}" COMPONENT program)
 endforeach()
 add_custom_target(vcor_man ALL DEPENDS ${compressed})
+# So that a build of the program alone (scripts/run.sh) can be installed, too
+add_dependencies(vcor_program vcor_man)
 
 # What users read
 install(FILES README.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
