@@ -109,6 +109,13 @@ contains
             return
          end if
          select case (name)
+         case ('--man', '--markdown')
+            if (mark > 0) then
+               call raise(error, error_usage, 'option '//name//' takes no value')
+               return
+            end if
+            request%form = name
+            cycle
          case ('--help')
             deallocate (request%files)
             allocate (request%files(0))
@@ -118,16 +125,12 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--man', '--markdown')
+         case ('--quiet')
             if (mark > 0) then
-               call raise(error, error_usage, 'option '//name//' takes no value')
+               call raise(error, error_usage, 'option --quiet takes no value')
                return
             end if
-            if (name == '--quiet') then
-               request%quiet = .true.
-            else
-               request%form = name
-            end if
+            request%quiet = .true.
             cycle
          case default
          end select

@@ -1,7 +1,7 @@
 !> Help pages; the page of the input is made from the catalogue of keys
 module vcor_app_help
-   use vcor, only : catalogue, code_names, error_t, error_usage, groups, integer_text, printable, &
-      quantities, raise, range_text, suggestion, version
+   use vcor, only : catalogue, error_t, error_usage, groups, printable, quantities, raise, &
+      range_text, suggestion, version
    implicit none
    private
 
@@ -47,20 +47,15 @@ contains
       !> The page
       character(len=:), allocatable :: text
 
-      integer :: code
-
       text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
          //'       vcor help [TOPIC]                  topics: run, check, verify, input, output' &
-         //nl//'       vcor help [input|output] --man     page of the manual, or --markdown' &
-         //nl//'       vcor --version'//nl//nl//'exit codes: '
-      do code = lbound(code_names, 1), ubound(code_names, 1)
-         if (code > lbound(code_names, 1)) text = text//', '
-         text = text//integer_text(code)//' '//trim(code_names(code))
-      end do
-      text = text//nl
+         //nl//'       vcor --version'//nl//nl &
+         //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
+         //'5 numerical failure'//nl
+      text = text//nl//'pages of the manual: vcor help [input|output] --man, or --markdown'//nl
    end function overview
 
    !> Page of run
