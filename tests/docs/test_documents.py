@@ -1,4 +1,4 @@
-"""The documents themselves: links that lead somewhere, commands and examples that do what they say."""
+"""The documents: links that lead somewhere, commands and examples that do what they say."""
 
 import os
 import re
@@ -10,9 +10,7 @@ import pytest
 from places import LIMIT, ROOT
 
 CONSUMER = ROOT / "tests" / "consumer"
-PAGES = sorted(
-    [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")]
-)
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
 # What a block has that is not for a test: it installs something, builds, or needs a prefix of yours
 OTHER = re.compile(r"apt-get|cmake|cpack|\bfpm\b|ctest|scripts/|pkg-config|build/release|case\.nml")
 
@@ -29,7 +27,8 @@ def blocks(name, language):
 
 def plain(page):
     """A page without its blocks."""
-    return re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    text = page.read_text(encoding="utf-8")
+    return re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
 
 
 def anchors(page):

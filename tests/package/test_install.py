@@ -39,7 +39,7 @@ def run(*words, code=0, **options):
 def build():
     """Folder of the build, from the environment."""
     folder = os.environ.get("VCOR_BUILD")
-    assert folder, "the environment variable VCOR_BUILD is not set, expected the folder of the build"
+    assert folder, "the environment variable VCOR_BUILD is not set, expected a folder of a build"
     return Path(folder)
 
 
