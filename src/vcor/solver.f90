@@ -1,7 +1,7 @@
 !> Solvers by the name of their method
 module vcor_solver
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : impact_t, law_receding
    use vcor_kinds, only : wp
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_marching, only : marching_t, new_marching
