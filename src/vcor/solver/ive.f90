@@ -14,16 +14,19 @@
 !> u = s^1.5 loses its derivatives, the panels shrink geometrically.
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_problem, only : hertz_contact_time, impact_t, law_receding
    use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear
+   use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : advance, collocator_t, guess, most_steps, new_collocator, &
       plate_velocity, refine, solve_step
    use vcor_solver_landing, only : first_without_force, land
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
+   use vcor_solver_rebound, only : follow_rebound, new_rebound_rule, rebound_rule_t
+   use vcor_solver_rebound_panel, only : rebound_start_t
    use vcor_solver_recording, only : append, begin
    use vcor_solver_step, only : step_t, step_to
    use vcor_solver_type, only : solver_t
@@ -41,6 +44,10 @@ module vcor_solver_ive
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
+   !> First step over the usual one where the contact recedes: the rebound needs the approach between
+   !> its panels' ends, too
+   real(wp), parameter :: receding_reach = 0.8_wp
+
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
       private
@@ -52,6 +59,8 @@ module vcor_solver_ive
       logical :: ghost = .false.
       !> Collocation rules
       type(collocator_t) :: collocator
+      !> What the rebound of a receding contact needs of the rules, that of the solution first
+      type(rebound_rule_t) :: rebound(2)
    contains
       procedure :: solve
    end type ive_t
@@ -77,6 +86,8 @@ contains
       self%end_time = end_time
       if (present(ghost)) self%ghost = ghost
       call new_collocator(self%collocator, accuracy, error)
+      if (.not. allocated(error)) call new_rebound_rule(self%rebound(1), self%collocator%fine, error)
+      if (.not. allocated(error)) call new_rebound_rule(self%rebound(2), self%collocator%rule, error)
       if (present(second_coefficient)) &
          self%collocator%second_coefficient = second_coefficient
    end subroutine new_ive
@@ -161,7 +172,10 @@ contains
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, force_error
       integer :: trial, n
-      logical :: ends, last, inherited, shallow, elastic
+      logical :: ends, last, inherited, shallow, elastic, turns
+      type(approach_t) :: approaches(2)
+      type(rebound_start_t) :: rebounds(2)
+      type(exponential_sum_t) :: memory
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -174,6 +188,7 @@ contains
       fine_start = start
       step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
          *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
+      if (impact%law == law_receding) step%reach = receding_reach*step%reach
       step%length = step%reach
       if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%fine, impact, trajectory)
@@ -194,7 +209,10 @@ contains
          call solve_step(self%collocator, self%collocator%rule, step, impact, kernel, start, &
             panel)
          ends = .false.
-         if (panel%converged .and. trajectory%status /= contact_separated) &
+         turns = panel%converged .and. impact%law == law_receding
+         if (turns) turns = any(rates(panel) < 0.0_wp)
+         if (turns) call turn()
+         if (panel%converged .and. trajectory%status /= contact_separated .and. .not. turns) &
             ends = first_without_force(panel) > 0
          if (ends) call land(self%collocator, impact, kernel, start, accuracy, step, panel)
          if (.not. panel%converged) then
@@ -245,6 +263,12 @@ contains
             trajectory)
          complete = .not. panel%time(n) > window
          if (.not. complete) return
+         if (impact%law == law_receding) then
+            call approaches(1)%add(self%collocator%fine, self%rebound(1)%spectral(step%index), step%map_scale(), kernel, &
+               fine_start%q, fine, trajectory%state(3, trajectory%final - fine%stages), rates(fine))
+            call approaches(2)%add(self%collocator%rule, self%rebound(2)%spectral(step%index), step%map_scale(), kernel, &
+               start%q, panel, trajectory%state(3, trajectory%final - fine%stages), rates(panel))
+         end if
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
@@ -262,6 +286,14 @@ contains
 
          call advance(self%collocator%rule, step, kernel, panel, start)
          call advance(self%collocator%fine, step, kernel, fine, fine_start)
+         if (turns) then
+            call set(rebounds(1), fine_start, approaches(1))
+            call set(rebounds(2), start, approaches(2))
+            call follow_rebound(self%rebound, impact, kernel, memory, approaches(1), rebounds(1), accuracy, &
+               self%collocator%tolerance, end_time, trajectory, error)
+            complete = .not. trajectory%state(1, trajectory%final) > window
+            return
+         end if
          call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n, wp))), &
             most_steps)
       end do
@@ -269,6 +301,50 @@ contains
          //'of the contact: the accuracy asked for is out of reach')
 
    contains
+
+      subroutine set(rebound, start, approach)
+         type(rebound_start_t), intent(out) :: rebound
+         type(start_t), intent(in) :: start
+         type(approach_t), intent(in) :: approach
+
+         rebound%time = start%time
+         rebound%indentation = start%indentation
+         rebound%force = start%force
+         rebound%t1 = start%time
+         rebound%impulse = start%impulse
+         rebound%second_impulse = start%second_impulse
+         rebound%deflection = start%deflection
+         rebound%drift = start%drift
+         rebound%r = approach%r
+         rebound%condition = kernel%equilibrium*start%indentation + sum(kernel%moduli*(start%indentation - approach%r))
+         allocate (rebound%p(0))
+         if (.not. allocated(memory%rates)) allocate (memory%rates(0), memory%moduli(0))
+      end subroutine set
+
+      function rates(panel)
+         type(panel_t), intent(in) :: panel
+         real(wp) :: rates(panel%stages)
+
+         integer :: j
+
+         do j = 1, panel%stages
+            rates(j) = impact%velocity - panel%impulse(j)/impact%mass - plate_velocity(impact, panel, j)
+         end do
+      end function rates
+
+      subroutine turn()
+
+         real(wp) :: theta, v(0:panel%stages)
+
+         v(1:) = rates(panel)
+         v(0) = impact%velocity
+         if (trajectory%final > 0) v(0) = trajectory%state(3, trajectory%final)
+         theta = self%collocator%rule%crossing(v, 0.0_wp, 1.0_wp)
+         step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
+         previous = panel
+         call guess(self%collocator%rule, impact, previous, start, step, panel)
+         call solve_step(self%collocator, self%collocator%rule, step, impact, kernel, start, panel)
+      end subroutine turn
 
       !> By how much the difference of the two solutions grows over the panel
       pure function growth_of(one, other) result(difference)

@@ -70,7 +70,7 @@ contains
       theta = 0.0_wp
       offset = time - self%time(0)
       if (offset > 0.0_wp) theta = 2.0_wp*offset/(self%map(1) &
-         + sqrt(self%map(1)**2 + 4.0_wp*self%map(2)*offset))
+         + sqrt(max(0.0_wp, self%map(1)**2 + 4.0_wp*self%map(2)*offset)))
    end function theta
 
    !> Solve the collocation equations on a panel by Newton's method

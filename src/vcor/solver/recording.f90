@@ -14,7 +14,7 @@ module vcor_solver_recording
    implicit none
    private
 
-   public :: begin, append
+   public :: begin, append, record
 
 contains
 
@@ -58,37 +58,51 @@ contains
       !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
-      integer :: n, first, j
-
-      n = fine%stages
-      call trajectory%reserve(trajectory%final + n)
-      call trajectory%add_map(fine%map)
-      first = trajectory%final + 1
-      trajectory%final = trajectory%final + n
-      trajectory%steps = trajectory%steps + 1
-      trajectory%weight(first:trajectory%final) = self%fine%weight(1:n) &
-         *(fine%map(1) + 2.0_wp*fine%map(2)*self%fine%node(1:n))
-      ! what an end was moved by to its zero goes to the node there
-      trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
-         + (fine%time(n) - fine%time(0) - sum(fine%map))
-      do j = 1, n
-         associate (state => trajectory%state(:, first + j - 1))
-            state(col_time) = fine%time(j)
-            state(col_indentation) = fine%indentation(j)
-            state(col_force) = fine%force(j)
-            state(col_impulse) = fine%impulse(j)
-            state(col_sphere) = impact%velocity*fine%time(j) &
-               - fine%second_impulse(j)/impact%mass
-            state(col_sphere_velocity) = impact%velocity - fine%impulse(j)/impact%mass
-            state(col_plate) = state(col_sphere) - fine%indentation(j)
-            state(col_plate_velocity) = plate_velocity(impact, fine, j)
-            state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
-         end associate
-      end do
+      call record(self%fine, impact, fine, trajectory)
       if (trajectory%status == contact_separated) return
       trajectory%last = trajectory%final
       call find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
    end subroutine append
+
+   !> Add the nodes of a panel to the trajectory
+   subroutine record(rule, impact, panel, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer :: n, first, j
+
+      n = panel%stages
+      call trajectory%reserve(trajectory%final + n)
+      call trajectory%add_map(panel%map)
+      first = trajectory%final + 1
+      trajectory%final = trajectory%final + n
+      trajectory%steps = trajectory%steps + 1
+      trajectory%weight(first:trajectory%final) = rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
+      ! what an end was moved by to its zero goes to the node there
+      trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
+         + (panel%time(n) - panel%time(0) - sum(panel%map))
+      do j = 1, n
+         associate (state => trajectory%state(:, first + j - 1))
+            state(col_time) = panel%time(j)
+            state(col_indentation) = panel%indentation(j)
+            state(col_force) = panel%force(j)
+            state(col_impulse) = panel%impulse(j)
+            state(col_sphere) = impact%velocity*panel%time(j) &
+               - panel%second_impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
+            state(col_plate) = state(col_sphere) - panel%indentation(j)
+            state(col_plate_velocity) = plate_velocity(impact, panel, j)
+            state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
+         end associate
+      end do
+   end subroutine record
 
    !> Largest indentation and force so far
    subroutine find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
