@@ -237,15 +237,17 @@ contains
 
    !> Time after which a contact counts as lasting where the user gives none: a thousand time
    !> scales, those of the rubbery modulus if there is one
-   pure function patience(self) result(time)
+   pure function patience(self, time_scale) result(time)
       !> The impact
       class(impact_t), intent(in) :: self
+      !> Its time scale [s]
+      real(wp), intent(in) :: time_scale
       !> Time [s]
       real(wp) :: time
 
       real(wp) :: firmness
 
-      time = self%time_scale()
+      time = time_scale
       firmness = self%hertz_factor*self%modulus%rubbery()
       if (firmness > 0.0_wp) &
          time = max(time, (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp)

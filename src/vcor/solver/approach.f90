@@ -15,8 +15,9 @@ module vcor_solver_approach
    use vcor_impact_problem, only : hertz
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, width
-   use vcor_numeric_matrix_function, only : spectral_t
+   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
+   use vcor_numeric_linear, only : apply
+   use vcor_numeric_pairs, only : constant, ratio
    use vcor_solver_panel, only : panel_t
    implicit none
    private
@@ -67,13 +68,13 @@ module vcor_solver_approach
 contains
 
    !> Add a panel
-   subroutine add(self, rule, spectral, scale, kernel, q, panel, start_rate, rate)
+   subroutine add(self, rule, map, scale, kernel, q, panel, start_rate, rate)
       !> The approach
       class(approach_t), intent(inout) :: self
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Integration matrix of the panel without its scale
-      type(spectral_t), intent(in) :: spectral
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
       !> The kernel
@@ -88,7 +89,7 @@ contains
       real(wp), intent(in) :: rate(:)
 
       type(stretch_t), allocatable :: longer(:)
-      real(wp), dimension(width) :: s_re, s_im, u_re, u_im, a, d, w
+      real(wp), dimension(width) :: s, u, decay
       integer :: k, stages
 
       stages = rule%stages
@@ -112,25 +113,16 @@ contains
          stretch%rate(0) = start_rate
          stretch%rate(1:stages) = rate(1:stages)
          allocate (stretch%w(size(q), 0:width), stretch%p(size(q), 0:width))
-         call spectral%components(panel%indentation(1:), s_re, s_im)
-         call spectral%components(hertz(panel%indentation(1:)), u_re, u_im)
+         s = apply(map%left, panel%indentation(1:))
+         u = apply(map%left, hertz(panel%indentation(1:)))
          do k = 1, size(q)
-            ! 1/(1 + l H) as a - i d
-            a = 1.0_wp + kernel%rates(k)*scale*spectral%re
-            d = kernel%rates(k)*scale*spectral%im
-            w = 1.0_wp/(a*a + d*d)
-            a = a*w
-            d = d*w
+            decay = constant(1.0_wp) + kernel%rates(k)*scale*map%eigenvalue
             stretch%w(k, 0) = panel%indentation(0) - self%r(k)
             stretch%p(k, 0) = hertz(panel%indentation(0)) - q(k)
-            w = spectral%vector(a*(s_re - self%r(k)*spectral%one_re) &
-               + d*(s_im - self%r(k)*spectral%one_im), a*(s_im - self%r(k)*spectral%one_im) &
-               - d*(s_re - self%r(k)*spectral%one_re))
-            stretch%w(k, 1:) = w
-            self%r(k) = panel%indentation(stages) - w(stages)
-            stretch%p(k, 1:) = spectral%vector(a*(u_re - q(k)*spectral%one_re) &
-               + d*(u_im - q(k)*spectral%one_im), a*(u_im - q(k)*spectral%one_im) &
-               - d*(u_re - q(k)*spectral%one_re))
+            stretch%w(k, 1:) = apply(map%right, &
+               ratio(map%square, s - self%r(k)*map%left_one, decay))
+            stretch%p(k, 1:) = apply(map%right, ratio(map%square, u - q(k)*map%left_one, decay))
+            self%r(k) = panel%indentation(stages) - stretch%w(k, stages)
          end do
       end associate
    end subroutine add

@@ -3,14 +3,17 @@ module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_step
+   use vcor_numeric_collocation, only : width
+   use vcor_numeric_linear, only : factors_t
+   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, relative_velocity, &
+      solve_near_step
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private
 
-   public :: first_without_force, land
+   public :: first_without_force, land, land_on_largest
 
 contains
 
@@ -31,8 +34,48 @@ contains
       stage = 0
    end function first_without_force
 
+   !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by the
+   !> polynomial of the panel is good enough: the two laws of the force part with the fourth power
+   !> of the time since the maximum
+   subroutine land_on_largest(self, impact, kernel, start, start_velocity, step, panel, factors)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Rate of the indentation there [m/s]
+      real(wp), intent(in) :: start_velocity
+      !> The step, on return the one that ends at the maximum
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the maximum; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Factors of its Jacobian
+      type(factors_t), intent(inout) :: factors
+
+      real(wp), parameter :: closest = 1.0e-8_wp
+      type(panel_t) :: longer
+      real(wp) :: velocity(0:panel%stages), theta
+      integer :: j
+
+      longer = panel
+      velocity(0) = start_velocity
+      do j = 1, panel%stages
+         velocity(j) = relative_velocity(impact, panel, j)
+      end do
+      do j = 1, panel%stages - 1
+         if (velocity(j) < 0.0_wp) exit
+      end do
+      theta = self%rule%crossing(velocity, self%rule%point(j - 1), self%rule%point(j), closest)
+      step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
+      call guess(self%rule, impact, longer, start, step, panel)
+      call solve_near_step(self, step, impact, kernel, start, self%tolerance, panel, factors)
+   end subroutine land_on_largest
+
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
-   subroutine land(self, impact, kernel, start, accuracy, step, panel)
+   subroutine land(self, impact, kernel, start, accuracy, step, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -47,6 +90,8 @@ contains
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the zero; not converged on failure
       type(panel_t), intent(inout) :: panel
+      !> Factors of its Jacobian
+      type(factors_t), intent(inout) :: factors
 
       integer, parameter :: most_iterations = 40
       ! a shorter correction tells nothing about slopes
@@ -64,7 +109,8 @@ contains
          panel%converged = .false.
          return
       end if
-      theta = self%rule%crossing(crossing%force(0:n), self%rule%point(k - 1), self%rule%point(k))
+      theta = self%rule%crossing(crossing%force, self%rule%point(k - 1), self%rule%point(k), &
+         noticeable)
       time = theta*(crossing%map(1) + crossing%map(2)*theta)
 
       ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
@@ -74,8 +120,8 @@ contains
       ! and then from the last two iterations
       tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
       kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
-      memory_rate = (kappa*slope_at(hertz(crossing%indentation(0:n))) &
-         - slope_at(crossing%force(0:n)))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
+      memory_rate = (kappa*slope_at(hertz(crossing%indentation)) &
+         - slope_at(crossing%force))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
       correction = 0.0_wp
       panel%converged = .false.
@@ -84,7 +130,8 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_step(self, self%rule, step, impact, kernel, start, panel)
+         call solve_near_step(self, step, impact, kernel, start, &
+            merge(tolerance, self%near_tolerance, iteration == 1), panel, factors)
          if (.not. panel%converged) return
          last = panel
          velocity = impact%velocity - panel%impulse(n)/impact%mass &
@@ -96,7 +143,7 @@ contains
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
-         if (abs(correction) <= tolerance*(start%time + time)) return
+         if (abs(correction) <= tolerance*(start%time + time) .and. iteration > 1) return
          ! rounding in the force of a dashpot or of stiff internal variables ends it, too
          if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
              .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
@@ -108,12 +155,12 @@ contains
 
       !> Slope of a polynomial at theta
       pure function slope_at(value) result(slope)
-         !> Values at the points of the panel, shape (0:n)
-         real(wp), intent(in) :: value(0:)
+         !> Values at the points of the panel
+         real(wp), intent(in) :: value(0:width)
          !> Derivative by theta
          real(wp) :: slope
 
-         slope = self%rule%interpolate(matmul(self%rule%derivative(0:n, 0:n), value), theta)
+         slope = self%rule%interpolate(self%rule%slopes(value), theta)
       end function slope_at
    end subroutine land
 

@@ -11,8 +11,7 @@ module vcor_solver_rebound
    use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, linear, panel_map_t
-   use vcor_numeric_matrix_function, only : new_spectral, spectral_t
+   use vcor_numeric_collocation, only : closing, collocation_t, linear, width
    use vcor_solver_approach, only : approach_t
    use vcor_solver_rebound_panel, only : advance_rebound, rebound_panel_t, rebound_start_t, &
       solve_rebound_panel
@@ -20,10 +19,8 @@ module vcor_solver_rebound
    implicit none
    private
 
-   public :: rebound_rule_t, new_rebound_rule, follow_rebound
+   public :: follow_rebound
 
-   !> Index of the map of the last panel
-   integer, parameter :: closing = linear - 1
 
    !> Error of the solution over its difference to the companion, which has a stage less: measured,
    !> below 0.1
@@ -32,49 +29,13 @@ module vcor_solver_rebound
    !> eigenvectors of the integration matrices
    real(wp), parameter :: rounding = 1.0e-12_wp
 
-   !> What the rebound needs of a collocation rule; immutable once built
-   type :: rebound_rule_t
-      !> The rule
-      type(collocation_t) :: rule
-      !> Its integration matrices, index as in the rule, with `closing` before
-      type(spectral_t), allocatable :: spectral(:)
-      !> Map of the last panel
-      type(panel_map_t) :: last
-   end type rebound_rule_t
-
 contains
-
-   !> Build what the rebound needs of a rule
-   subroutine new_rebound_rule(self, rule, error)
-      !> The result
-      type(rebound_rule_t), intent(out) :: self
-      !> The rule
-      type(collocation_t), intent(in) :: rule
-      !> Unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      integer :: i, j, n
-
-      self%rule = rule
-      n = rule%stages
-      self%last%slope = 2.0_wp
-      self%last%bend = -1.0_wp
-      do j = 1, n
-         self%last%matrix(:, j) = 2.0_wp*(1.0_wp - rule%node(j))*rule%map(linear)%matrix(:, j)
-      end do
-      allocate (self%spectral(closing:ubound(rule%map, 1)))
-      call new_spectral(self%spectral(closing), self%last%matrix(:n, :n), error)
-      do i = linear, ubound(rule%map, 1)
-         if (allocated(error)) return
-         call new_spectral(self%spectral(i), rule%map(i)%matrix(:n, :n), error)
-      end do
-   end subroutine new_rebound_rule
 
    !> Follow the rebound
    subroutine follow_rebound(rules, impact, kernel, memory, approach, start, accuracy, tolerance, &
                              end_time, trajectory, error)
-      !> The rules of the solution and of its companion
-      type(rebound_rule_t), intent(in) :: rules(2)
+      !> Collocation rules of the solution and of its companion
+      type(collocation_t), intent(in) :: rules(2)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
@@ -113,7 +74,7 @@ contains
       integer :: trial, n, kind
       logical :: ends, last, inherited
 
-      n = rules(1)%rule%stages
+      n = rules(1)%stages
       refused = huge(1.0_wp)
       kind = linear
       if (kernel%error > 0.0_wp .or. kernel%viscosity > 0.0_wp) kind = 0
@@ -178,7 +139,7 @@ contains
 
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
-         call record(rules(1)%rule, impact, panel%panel_t, trajectory)
+         call record(rules(1), impact, panel%panel_t, trajectory)
          trajectory%last = trajectory%final
          if (ends) then
             trajectory%status = contact_separated
@@ -191,7 +152,7 @@ contains
             return
          end if
          call set_rate(panel)
-         call advance_rebound(rules(1)%rule, rules(1)%spectral(kind), taken, kernel, memory, &
+         call advance_rebound(rules(1), rules(1)%map(kind), taken, kernel, memory, &
             panel, start)
          kind = linear
          length = taken*min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp)))
@@ -201,7 +162,7 @@ contains
 
    contains
 
-      !> Solve a panel from the start it belongs to
+      !> Solve a panel
       subroutine solve(which, kind, length, panel)
          !> 1 for the solution, 2 for its companion
          integer, intent(in) :: which
@@ -212,12 +173,8 @@ contains
          !> The panel, its t1 guessed
          type(rebound_panel_t), intent(inout) :: panel
 
-         type(panel_map_t) :: map
-
-         map = rules(which)%last
-         if (kind /= closing) map = rules(which)%rule%map(kind)
-         call solve_rebound_panel(rules(which)%rule, map, rules(which)%spectral(kind), length, &
-            impact, kernel, memory, approach, start, tolerance, panel)
+         call solve_rebound_panel(rules(which), rules(which)%map(kind), length, impact, kernel, &
+            memory, approach, start, tolerance, panel)
       end subroutine solve
 
       !> Guess t1 at the stages of the solution
@@ -231,24 +188,19 @@ contains
 
          ! polynomials run away beyond their own panel
          real(wp), parameter :: farthest = 1.2_wp
-         real(wp) :: theta, time, position
+         real(wp), dimension(width) :: theta, time
          integer :: j
 
+         theta = rules(1)%node
+         if (kind == closing) theta = theta*(2.0_wp - theta)
+         if (kind == 0) theta = theta**2
+         time = start%time + length*theta
+         panel%t1(1:) = start%t1 + rate*(time - start%time)
+         if (previous%stages == 0) return
+         theta = previous%theta(time)
          do j = 1, n
-            theta = rules(1)%rule%node(j)
-            if (kind == closing) theta = theta*(2.0_wp - theta)
-            if (kind == 0) theta = theta**2
-            time = start%time + length*theta
-            if (previous%stages == 0) then
-               panel%t1(j) = start%t1 + rate*(time - start%time)
-            else
-               position = previous%theta(time)
-               if (position > farthest) then
-                  panel%t1(j) = start%t1 + rate*(time - start%time)
-               else
-                  panel%t1(j) = rules(1)%rule%interpolate(previous%t1(0:n), position)
-               end if
-            end if
+            if (theta(j) <= farthest) &
+               panel%t1(j) = rules(1)%interpolate(previous%t1(0:n), theta(j))
          end do
       end subroutine guess
 
@@ -261,8 +213,8 @@ contains
 
          integer :: j
 
-         do j = 1, rules(2)%rule%stages
-            companion%t1(j) = rules(1)%rule%interpolate(panel%t1(0:n), rules(2)%rule%node(j))
+         do j = 1, rules(2)%stages
+            companion%t1(j) = rules(1)%interpolate(panel%t1(0:n), rules(2)%node(j))
          end do
       end subroutine copy_guess
 

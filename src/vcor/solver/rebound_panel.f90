@@ -15,13 +15,16 @@ module vcor_solver_rebound_panel
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : apply, factorise, factors_t
-   use vcor_numeric_matrix_function, only : spectral_t
+   use vcor_numeric_pairs, only : constant, ratio, times
    use vcor_solver_approach, only : approach_t
+   use vcor_solver_general_panel, only : function_of_h
+   use vcor_solver_modes, only : advance_modes, start_t
    use vcor_solver_panel, only : panel_t
    implicit none
    private
 
-   public :: rebound_start_t, rebound_panel_t, solve_rebound_panel, advance_rebound
+   public :: rebound_start_t, rebound_panel_t
+   public :: turn_round, solve_rebound_panel, advance_rebound
 
    !> State at the start of a panel of the rebound
    type :: rebound_start_t
@@ -59,15 +62,38 @@ module vcor_solver_rebound_panel
 
 contains
 
+   !> State at the largest indentation, where the approach has ended and the rebound begins
+   pure subroutine turn_round(kernel, start, approach, rebound)
+      !> The kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the end of the approach
+      type(start_t), intent(in) :: start
+      !> The approach
+      type(approach_t), intent(in) :: approach
+      !> The same state for the rebound
+      type(rebound_start_t), intent(out) :: rebound
+
+      rebound%time = start%time
+      rebound%indentation = start%indentation
+      rebound%force = start%force
+      rebound%condition = kernel%equilibrium*start%indentation &
+         + sum(kernel%moduli*(start%indentation - approach%r))
+      rebound%t1 = start%time
+      rebound%impulse = start%impulse
+      rebound%second_impulse = start%second_impulse
+      rebound%deflection = start%deflection
+      rebound%drift = start%drift
+      allocate (rebound%r, source=approach%r)
+      allocate (rebound%p, source=start%p)
+   end subroutine turn_round
+
    !> Solve the collocation equations on a panel by Newton's method
-   subroutine solve_rebound_panel(rule, map, spectral, scale, impact, kernel, memory, approach, &
-                                  start, tolerance, panel)
+   subroutine solve_rebound_panel(rule, map, scale, impact, kernel, memory, approach, start, &
+                                  tolerance, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
-      !> Its integration matrix
-      type(spectral_t), intent(in) :: spectral
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
       !> The impact
@@ -88,7 +114,7 @@ contains
       integer, parameter :: most_iterations = 40
       ! share of Newton's tolerance that t1 is solved to
       real(wp), parameter :: inner = 0.1_wp
-      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, re, im, b, lost, known_s, known_v
+      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost, known_s, known_v
       real(wp), dimension(width) :: known, condition, force, slope, change
       real(wp), dimension(width, width) :: h, r, s, q, t
       type(factors_t) :: factors
@@ -112,8 +138,8 @@ contains
       panel%alpha(1:) = alpha
 
       h = scale*map%matrix
-      call sum_modes(kernel, start%r, spectral, scale, re, im, b)
-      s = spectral%function_of(re + kernel%equilibrium, im)
+      call sum_modes(kernel, start%r, map, scale, share, b)
+      s = function_of_h(map, share + constant(kernel%equilibrium))
 
       ! s = known_s - R F, s' = known_v - Q F
       known_s = impact%velocity*panel%time(1:) &
@@ -137,8 +163,8 @@ contains
          q = h/impact%mass
          if (remembers) then
             ! U' has sum w_j P_j, P_j = (1 + l_j H)^-1 (P_j,n + H F)
-            call sum_modes(memory, start%p, spectral, scale, re, im, lost)
-            q = q + matmul(spectral%function_of(re, im), h)
+            call sum_modes(memory, start%p, map, scale, share, lost)
+            q = q + matmul(function_of_h(map, share), h)
             known_s = known_s - start%deflection - apply(h, lost)
             known_v = known_v - lost
          end if
@@ -208,7 +234,8 @@ contains
          panel%drift(1:) = start%drift + apply(h, alpha_rate*force)
          panel%deflection(1:) = start%deflection + apply(h, alpha*force - panel%drift(1:))
       else if (remembers) then
-         panel%drift(1:) = -lost - apply(spectral%function_of(re, im), apply(h, force))
+         panel%drift(1:) = -lost - apply(map%right, times(map%square, share, apply(map%left, &
+            apply(h, force))))
          panel%deflection(1:) = start%deflection - apply(h, panel%drift(1:))
       end if
 
@@ -235,51 +262,43 @@ contains
       end subroutine guess_condition
    end subroutine solve_rebound_panel
 
-   !> Sum of G_k/(1 + l_k H) at the eigenvalues, and the vector sum of G_k q_k (1 + l_k H)^-1 1
-   pure subroutine sum_modes(terms, q, spectral, scale, re, im, vector)
+   !> Sum of G_k/(1 + l_k H) as a function of the eigenvalues, and the vector sum of
+   !> G_k q_k (1 + l_k H)^-1 1
+   pure subroutine sum_modes(terms, q, map, scale, share, vector)
       !> G_k and l_k
       type(exponential_sum_t), intent(in) :: terms
       !> Values q_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: q(:)
-      !> Integration matrix of the panel without its scale
-      type(spectral_t), intent(in) :: spectral
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
-      !> Sum: real parts
-      real(wp), intent(out) :: re(width)
-      !> Sum: imaginary parts
-      real(wp), intent(out) :: im(width)
-      !> Vector
+      !> The function
+      real(wp), intent(out) :: share(width)
+      !> The vector
       real(wp), intent(out) :: vector(width)
 
-      real(wp) :: q_re(width), q_im(width), a, d, share
-      integer :: k, m
+      real(wp), dimension(width) :: one, lambda, with_q
+      integer :: k
 
-      re = 0.0_wp
-      im = 0.0_wp
-      q_re = 0.0_wp
-      q_im = 0.0_wp
+      lambda = scale*map%eigenvalue
+      share = 0.0_wp
+      with_q = 0.0_wp
       do k = 1, size(q)
-         do m = 1, width
-            a = 1.0_wp + terms%rates(k)*(scale*spectral%re(m))
-            d = terms%rates(k)*(scale*spectral%im(m))
-            share = terms%moduli(k)/(a*a + d*d)
-            re(m) = re(m) + a*share
-            im(m) = im(m) - d*share
-            q_re(m) = q_re(m) + a*share*q(k)
-            q_im(m) = q_im(m) - d*share*q(k)
-         end do
+         one = terms%moduli(k)*ratio(map%square, constant(1.0_wp), &
+            constant(1.0_wp) + terms%rates(k)*lambda)
+         share = share + one
+         with_q = with_q + q(k)*one
       end do
-      vector = spectral%vector(q_re*spectral%one_re - q_im*spectral%one_im, &
-         q_re*spectral%one_im + q_im*spectral%one_re)
+      vector = apply(map%right, times(map%square, with_q, map%left_one))
    end subroutine sum_modes
 
    !> Make the end of a panel the start of the next one
-   pure subroutine advance_rebound(rule, spectral, scale, kernel, memory, panel, start)
+   pure subroutine advance_rebound(rule, map, scale, kernel, memory, panel, start)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Integration matrix of the panel without its scale
-      type(spectral_t), intent(in) :: spectral
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
       !> The kernel
@@ -292,17 +311,17 @@ contains
       type(rebound_start_t), intent(inout) :: start
 
       real(wp) :: increment(width)
-      integer :: n, k
+      integer :: n
 
       n = rule%stages
-      do k = 1, size(start%r)
-         start%r(k) = panel%indentation(n) &
-            - end_of_lag(kernel%rates(k), panel%indentation(1:), start%r(k))
-      end do
-      increment = panel%impulse(1:) - panel%impulse(0)
-      do k = 1, size(start%p)
-         start%p(k) = end_of_lag(memory%rates(k), increment, -start%p(k))
-      end do
+      call advance_modes(rule, map, scale, kernel, panel%indentation(1:), start%r)
+      if (size(start%p) > 0) then
+         ! P = (1 + l H)^-1 (P_n + H F), the lag of H F behind its own modes
+         increment = panel%impulse(1:) - panel%impulse(0)
+         start%p = -start%p
+         call advance_modes(rule, map, scale, memory, increment, start%p)
+         start%p = increment(n) - start%p
+      end if
       start%time = panel%time(n)
       start%indentation = panel%indentation(n)
       start%force = panel%force(n)
@@ -312,28 +331,6 @@ contains
       start%second_impulse = panel%second_impulse(n)
       start%deflection = panel%deflection(n)
       start%drift = panel%drift(n)
-
-   contains
-
-      !> (1 + l H)^-1 (x - q) at the last stage
-      pure function end_of_lag(rate, x, q) result(lag)
-         !> Rate l [1/s]
-         real(wp), intent(in) :: rate
-         !> Values at the stages
-         real(wp), intent(in) :: x(width)
-         !> Constant that is taken off
-         real(wp), intent(in) :: q
-         !> Value
-         real(wp) :: lag
-
-         real(wp), dimension(width) :: re, im, a, d
-
-         call spectral%components(x - q, re, im)
-         a = 1.0_wp + rate*scale*spectral%re
-         d = rate*scale*spectral%im
-         lag = sum((spectral%right_re(n, :)*(re*a + im*d) - spectral%right_im(n, :)*(im*a - re*d)) &
-            /(a*a + d*d))
-      end function end_of_lag
    end subroutine advance_rebound
 
 end module vcor_solver_rebound_panel
