@@ -72,6 +72,8 @@ module vcor_numeric_collocation
       real(wp) :: point(0:width) = 0.0_wp
       !> Barycentric weights of `point`
       real(wp) :: barycentric(0:width) = 0.0_wp
+      !> Extrapolation from the points before the last one to the end
+      real(wp) :: end_weight(0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
       !> Maps: index n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
@@ -110,6 +112,9 @@ contains
       self%barycentric(0:stages) = barycentric_weights(self%point(0:stages))
       self%derivative(0:stages, 0:stages) = &
          differentiation_matrix(self%point(0:stages), self%barycentric(0:stages))
+      self%end_weight(0:stages - 1) = barycentric_weights(self%point(0:stages - 1)) &
+         /(1.0_wp - self%point(0:stages - 1))
+      self%end_weight = self%end_weight/sum(self%end_weight)
       call integration_matrix(self%node(1:stages), matrix, error)
       if (allocated(error)) return
       self%weight(1:stages) = matrix(stages, :)

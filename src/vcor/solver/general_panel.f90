@@ -68,6 +68,7 @@ contains
       time = start%time + elapsed
       alpha = 0.0_wp
       alpha(1:n) = impact%plate%alpha(time(1:n))
+      if (remembers) alpha(1:n) = start%plate%viscosity
       alpha_rate = 0.0_wp
       if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(time(1:n))
 

@@ -408,7 +408,8 @@ contains
             panel%second_impulse(n) = panel%second_impulse(n) + time*panel%impulse(n)
             panel%indentation(n) = panel%indentation(n) + time*(impact%velocity &
                - panel%impulse(n)/impact%mass - plate_velocity(impact, panel, n))
-            panel%alpha(n) = impact%plate%alpha(panel%time(n))
+            if (.not. impact%plate%hereditary()) &
+               panel%alpha(n) = impact%plate%alpha(panel%time(n))
          end if
          panel%force(n) = 0.0_wp
       end associate

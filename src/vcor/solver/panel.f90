@@ -129,6 +129,8 @@ contains
       do i = 1, n
          panel%alpha(i) = impact%plate%alpha(panel%time(i))
       end do
+      ! what settles at once in a hereditary plate counts as alpha
+      if (size(start%p) > 0) panel%alpha(1:n) = start%plate%viscosity
       panel%indentation(0) = start%indentation
       panel%force(0) = start%force
       panel%impulse(0) = start%impulse

@@ -67,8 +67,9 @@ contains
       ! a panel as long as this over the rest of the rebound is to be the last one; others leave a
       ! rest that is worth a panel
       real(wp), parameter :: closing_share = 0.9_wp, longest_share = 0.6_wp
-      ! rate of t1 at first, where the kernel is constant; its growth that is rounding, over time
-      real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-9_wp
+      ! rate of t1 at first, where the kernel is constant; its growth that is rounding, over the
+      ! time of the approach, and its rate
+      real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, taken, rest, rate, excess, refused, error_now, error_sum, alpha_rate
       integer :: trial, n, kind
@@ -94,6 +95,7 @@ contains
          end if
          if (ends) then
             call close_contact(panel, taken)
+            if (panel%converged) rate = -start%t1/taken
          else
             call guess(panel, kind, taken)
             call solve(1, kind, taken, panel)
@@ -123,6 +125,8 @@ contains
          error_now = companion_share*(abs(panel%impulse(n) - companion%impulse(n - 1)) &
             *(1.0_wp/impact%mass + alpha_rate) + abs(panel%drift(n) - companion%drift(n - 1)) &
             + abs(panel%indentation(n) - companion%indentation(n - 1))/start%t1)/impact%velocity
+         if (ends) error_now = error_now + abs((panel%condition(n) - companion%condition(n - 1)) &
+            /start%condition*taken)*alpha_rate*panel%impulse(n)/(panel%time(n)*impact%velocity)
          excess = error_now/(panel_share*accuracy)
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
          if (.not. (excess <= 1.0_wp .or. inherited)) then
@@ -131,7 +135,8 @@ contains
             cycle
          end if
          refused = huge(1.0_wp)
-         if (any(panel%t1(1:n) > panel%t1(0:n - 1) + noticeable*approach%end)) then
+         if (any(panel%t1(1:n) - panel%t1(0:n - 1) > noticeable*approach%end &
+             + growing*(panel%time(1:n) - panel%time(0:n - 1)))) then
             call raise(error, error_numerical, "the contact grows again before it has ended, " &
                //"which law = 'receding' does not cover: use law = 'boltzmann'")
             return
@@ -231,7 +236,7 @@ contains
          real(wp), parameter :: noticeable = 1.0e-7_wp, closest = 1.0e-13_wp
          ! no step goes farther than this, over the length
          real(wp), parameter :: farthest = 0.4_wp
-         real(wp) :: slope, correction, condition, old_condition
+         real(wp) :: slope, correction, last_correction, condition, old_condition
          integer :: iteration
 
          ! the condition falls faster and faster
@@ -248,9 +253,13 @@ contains
             if (.not. panel%converged) return
             previous = panel
             old_condition = condition
+            last_correction = correction
             correction = -condition/slope
             correction = sign(min(abs(correction), farthest*length), correction)
             if (abs(correction) <= max(0.01_wp*min(accuracy, 1.0e-8_wp), closest)*length) return
+            ! rounding in the condition of stiff internal variables ends it, too
+            if (iteration > 3 .and. abs(correction) <= noticeable*length &
+                .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
             length = length + correction
          end do
          panel%converged = .false.

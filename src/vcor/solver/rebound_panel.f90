@@ -114,6 +114,8 @@ contains
       integer, parameter :: most_iterations = 40
       ! share of Newton's tolerance that t1 is solved to
       real(wp), parameter :: inner = 0.1_wp
+      ! what rounding may leave of a correction
+      real(wp), parameter :: noise = 1.0e-9_wp
       real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost, known_s, known_v
       real(wp), dimension(width) :: known, condition, force, slope, change
       real(wp), dimension(width, width) :: h, r, s, q, t
@@ -135,10 +137,11 @@ contains
       do i = 1, n
          call impact%plate%alpha_and_rate(panel%time(i), alpha(i), alpha_rate(i))
       end do
+      if (remembers) alpha(1:n) = memory%viscosity
       panel%alpha(1:) = alpha
 
       h = scale*map%matrix
-      call sum_modes(kernel, start%r, map, scale, share, b)
+      call sum_modes(kernel%moduli, kernel%rates, start%r, map, scale, share, b)
       s = function_of_h(map, share + constant(kernel%equilibrium))
 
       ! s = known_s - R F, s' = known_v - Q F
@@ -163,7 +166,7 @@ contains
          q = h/impact%mass
          if (remembers) then
             ! U' has sum w_j P_j, P_j = (1 + l_j H)^-1 (P_j,n + H F)
-            call sum_modes(memory, start%p, map, scale, share, lost)
+            call sum_modes(memory%moduli, memory%rates, start%p, map, scale, share, lost)
             q = q + matmul(function_of_h(map, share), h)
             known_s = known_s - start%deflection - apply(h, lost)
             known_v = known_v - lost
@@ -212,6 +215,9 @@ contains
          force = force + slope*change
          size_now = maxval(abs(change))/maxval(abs(condition))
          panel%converged = size_now*min(1.0_wp, sqrt(size_now)) <= tolerance
+         ! rounding in the condition of stiff internal variables ends it, too
+         if (.not. panel%converged .and. .not. size_now < 0.5_wp*size_before) &
+            panel%converged = size_now <= noise
          if (panel%converged .or. iteration > 8 .and. .not. size_now < size_before) exit
          size_before = size_now
       end do
@@ -238,8 +244,57 @@ contains
             apply(h, force))))
          panel%deflection(1:) = start%deflection - apply(h, panel%drift(1:))
       end if
+      panel%t1(0) = start%t1
+      if (.not. map%slope + 2.0_wp*map%bend > 0.0_wp) call extrapolate_to_end()
 
    contains
+
+      !> Where the map stands still at the end of the panel, collocation there says nothing about
+      !> internal variables that have settled: what they make of condition and drift is taken from the
+      !> other points. The end has no weight in the integrals
+      subroutine extrapolate_to_end()
+
+         real(wp) :: at_start, part(width)
+
+         panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
+         call sum_settled(kernel, start%r, panel%indentation(1:), panel%indentation(0), part, &
+            at_start)
+         panel%condition(n) = panel%condition(n) - part(n) &
+            + rule%end_weight(0)*at_start + sum(rule%end_weight(1:n - 1)*part(1:n - 1))
+         if (remembers) then
+            call sum_settled(memory, -start%p, panel%impulse(1:) - start%impulse, 0.0_wp, part, &
+               at_start)
+            panel%drift(n) = panel%drift(n) + part(n) &
+               - rule%end_weight(0)*at_start - sum(rule%end_weight(1:n - 1)*part(1:n - 1))
+         end if
+      end subroutine extrapolate_to_end
+
+      !> Sum of G_k (1 + l_k H)^-1 (x - q_k) over the modes that settle within the panel
+      subroutine sum_settled(terms, q, x, first, part, at_start)
+         !> G_k and l_k
+         type(exponential_sum_t), intent(in) :: terms
+         !> q_k at the start of the panel, shape (modes)
+         real(wp), intent(in) :: q(:)
+         !> x at the stages
+         real(wp), intent(in) :: x(width)
+         !> x at the start
+         real(wp), intent(in) :: first
+         !> Sum at the stages
+         real(wp), intent(out) :: part(width)
+         !> Sum at the start
+         real(wp), intent(out) :: at_start
+
+         ! product of rate and length from which a mode counts as settled
+         real(wp), parameter :: settled = 30.0_wp
+         real(wp) :: with_q(width)
+         logical :: chosen(size(q))
+
+         chosen = terms%rates*scale > settled
+         at_start = sum(terms%moduli*(first - q), mask=chosen)
+         call sum_modes(pack(terms%moduli, chosen), pack(terms%rates, chosen), &
+            pack(q, chosen), map, scale, share, with_q)
+         part = apply(map%right, times(map%square, share, apply(map%left, x))) - with_q
+      end subroutine sum_settled
 
       !> N by t1
       subroutine guess_condition(t1, time, condition)
@@ -264,9 +319,11 @@ contains
 
    !> Sum of G_k/(1 + l_k H) as a function of the eigenvalues, and the vector sum of
    !> G_k q_k (1 + l_k H)^-1 1
-   pure subroutine sum_modes(terms, q, map, scale, share, vector)
-      !> G_k and l_k
-      type(exponential_sum_t), intent(in) :: terms
+   pure subroutine sum_modes(moduli, rates, q, map, scale, share, vector)
+      !> G_k, shape (modes)
+      real(wp), intent(in) :: moduli(:)
+      !> l_k [1/s], shape (modes)
+      real(wp), intent(in) :: rates(:)
       !> Values q_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: q(:)
       !> Map of the panel
@@ -285,8 +342,8 @@ contains
       share = 0.0_wp
       with_q = 0.0_wp
       do k = 1, size(q)
-         one = terms%moduli(k)*ratio(map%square, constant(1.0_wp), &
-            constant(1.0_wp) + terms%rates(k)*lambda)
+         one = moduli(k)*ratio(map%square, constant(1.0_wp), &
+            constant(1.0_wp) + rates(k)*lambda)
          share = share + one
          with_q = with_q + q(k)*one
       end do
