@@ -37,10 +37,10 @@ module vcor_numeric_collocation
    !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
    !>
    !> Eigenvalues are kept as pairs a + b j and a - b j: complex ones with j^2 = -1, real ones two
-   !> by two with j^2 = +1. So a function of B is one number f = a + b j per pair, stored as a vector
-   !> of `width`: the parts without j, then those with j. Sums and products of such numbers are those
-   !> of `vcor_numeric_pairs`, and `right` and `left` are real matrices: f(B) u is the product of
-   !> `right` with the products of f and the numbers `left` u
+   !> by two with j^2 = +1. So a function of B is one number f = a + b j per pair, stored as a
+   !> vector of `width`: the parts without j, then those with j. `right` and `left` are real
+   !> matrices: f(B) u is the product of `right` with the products (those of `vcor_numeric_pairs`)
+   !> of f and the numbers `left` u
    type :: panel_map_t
       !> Linear coefficient of the map
       real(wp) :: slope = 0.0_wp

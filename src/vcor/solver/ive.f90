@@ -42,7 +42,7 @@ module vcor_solver_ive
 
    !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
    !> and better, and at most
-   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.02_wp
+   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.05_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 

@@ -241,8 +241,8 @@ contains
       !> The panel; on entry `indentation` holds a guess at the stages. Not converged where the
       !> Jacobian does not serve
       type(panel_t), intent(inout) :: panel
-      !> Interpolation to the stages of another rule, of what is zero at the start; absent: the other
-      !> panel has the same rule
+      !> Interpolation to the stages of another rule, of what is zero at the start; absent: both
+      !> panels have the same rule
       real(wp), intent(in), optional :: to(width, width)
       !> Interpolation from them
       real(wp), intent(in), optional :: from(width, width)
@@ -280,6 +280,11 @@ contains
          call integrate_to_end(map, equations, hertz(s), panel)
       else
          call integrate(map, equations, hertz(s), panel)
+         ! what is left of the error goes to the force, so that the motion is that of the impulse
+         panel%indentation(1:) = impact%velocity*panel%time(1:) &
+            - panel%second_impulse(1:)*(1.0_wp/impact%mass) - panel%alpha(1:)*panel%impulse(1:)
+         if (equations%remembers) &
+            panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
       end if
    end subroutine solve_near_panel
 

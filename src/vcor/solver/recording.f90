@@ -140,12 +140,12 @@ contains
          !> Its time [s]
          real(wp), intent(inout) :: time
 
-         real(wp) :: peak, peak_time, slope(0:width)
+         real(wp) :: peak, peak_time
          integer :: j
 
-         slope = self%rule%slopes(value)
-         if (slope(0) > 0.0_wp .and. slope(n) < 0.0_wp) then
-            call find_peak(slope, of_indentation, peak, peak_time)
+         if (sum(self%rule%derivative(0, :)*value) > 0.0_wp .and. &
+             sum(self%rule%derivative(n, :)*value) < 0.0_wp) then
+            call find_peak(self%rule%slopes(value), of_indentation, peak, peak_time)
             if (peak > largest) then
                largest = peak
                time = peak_time
@@ -176,8 +176,13 @@ contains
          type(panel_t) :: cut
          type(step_t) :: step
          real(wp) :: theta
+         integer :: j
 
-         theta = self%rule%crossing(slope, 0.0_wp, 1.0_wp, tolerance)
+         j = 1
+         do while (slope(j) > 0.0_wp .and. j < n)
+            j = j + 1
+         end do
+         theta = self%rule%crossing(slope, self%rule%point(j - 1), self%rule%point(j), tolerance)
          time = theta*(panel%map(1) + panel%map(2)*theta)
          step = step_to(start%time, time)
          call guess(self%rule, impact, panel, start, step, cut)
