@@ -285,6 +285,7 @@ contains
             - panel%second_impulse(1:)*(1.0_wp/impact%mass) - panel%alpha(1:)*panel%impulse(1:)
          if (equations%remembers) &
             panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
+         panel%indentation(rule%stages + 1:) = 0.0_wp
       end if
    end subroutine solve_near_panel
 
