@@ -2,11 +2,11 @@
 module vcor
    use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
       error_usage, raise
-   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, waves_none, &
-      waves_relaxing
-   use vcor_impact_problem, only : impact_t, new_impact
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
+      waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
@@ -36,6 +36,7 @@ module vcor
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
+   use vcor_study_models, only : model_t, solve_models
    use vcor_study_nearest, only : suggestion
    use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
       quantity_t, quantity_value, status_name
@@ -57,9 +58,10 @@ module vcor
    public :: prony_t, power_law_t, cerf_t, mittag_leffler_t, tabulated_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
    public :: new_mittag_leffler, new_tabulated
-   public :: contact_modulus_t, new_contact_modulus
+   public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
-   public :: impact_t, new_impact
+   public :: waves_hereditary
+   public :: impact_t, new_impact, law_boltzmann, law_receding
    public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
@@ -72,6 +74,7 @@ module vcor
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
+   public :: model_t, solve_models
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: place_in_table, write_rows

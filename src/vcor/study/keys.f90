@@ -109,14 +109,14 @@ module vcor_study_keys
       & key_t("plate", "half_thickness", real_key, "Half of the thickness", "m", positive), &
       & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
       & key_t("plate", "waves", text_key, "Model of the flexural waves in the plate", &
-      &    choices="none constant relaxing frozen", default="relaxing"), &
+      &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
       & key_t("plate", "surface_radius", real_key, &
       &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       !
-      & key_t("contact", "law", text_key, "Contact law", choices="boltzmann", &
-      &    default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", choices="eq1", &
-      &    default="eq1"), &
+      & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
+      &    choices="boltzmann receding", default="boltzmann"), &
+      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", &
+      &    choices="eq1 series", default="eq1"), &
       !
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
