@@ -19,14 +19,14 @@ module vcor_io_file
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : access_exists, all_permissions, c_access, c_fclose, c_fflush, &
-      & c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, c_rename, c_text, c_write, errno_exists, &
-      & errno_interrupted, is_regular, last_errno, resolved_path, standard_output, &
-      & system_reason
+      & c_fopen, c_fwrite, c_getpid, c_isatty, c_mkdir, c_remove, c_rename, c_text, c_write, &
+      & errno_exists, errno_interrupted, is_regular, last_errno, resolved_path, standard_error, &
+      & standard_output, system_reason
    implicit none
    private
 
    public :: output_file_t, create_file, put, commit, discard
-   public :: write_file, write_stdout
+   public :: write_file, write_stdout, write_terminal, stderr_is_terminal, move_file, remove_file
    public :: file_exists, directory_exists, make_directory, join_path, quoted_path
    public :: same_file
 
@@ -192,6 +192,47 @@ contains
          end if
       end do
    end subroutine write_stdout
+
+   !> Whether the standard error is a terminal
+   function stderr_is_terminal() result(is_one)
+      !> Whether it is
+      logical :: is_one
+
+      is_one = c_isatty(standard_error) == 1
+   end function stderr_is_terminal
+
+   !> Write to the standard error at once; whether it works is nobody's business
+   subroutine write_terminal(text)
+      !> What to write, byte by byte: nothing is added
+      character(len=*), intent(in) :: text
+      integer(c_size_t) :: ignored
+
+      ignored = c_write(standard_error, text, len(text, kind=c_size_t))
+   end subroutine write_terminal
+
+   !> Give a file another name, in place of what has that name
+   subroutine move_file(from, to, error)
+      !> Its name
+      character(len=*), intent(in) :: from
+      !> Its new name, in the same folder
+      character(len=*), intent(in) :: to
+      !> Set if that failed
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: reason
+
+      if (c_rename(c_text(from), c_text(to)) == 0) return
+      reason = last_errno()
+      call raise_system(error, "cannot write "//quoted_path(to), reason)
+   end subroutine move_file
+
+   !> Remove a file; none is fine
+   subroutine remove_file(path)
+      !> Its name
+      character(len=*), intent(in) :: path
+      integer(c_int) :: ignored
+
+      ignored = c_remove(c_text(path))
+   end subroutine remove_file
 
    !> Whether there is a file, a device or a pipe of that name, a directory excepted; a link counts
    !> as what it points at

@@ -10,7 +10,7 @@ module vcor_io_results
    implicit none
    private
 
-   public :: summary_table, history_table
+   public :: summary_table, history_table, unit_of
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500

@@ -1,0 +1,95 @@
+!> The files of a run, and its bare numbers
+module vcor_app_files
+   use vcor_app_cli, only : request_t
+   use vcor_app_job, only : endings, job_t
+   use vcor, only : error_t, history_table, identity_t, make_directory, place_in_table, remark_t, &
+      remarks_of, table_t, trajectory_t, write_csv, write_hdf5, write_rows
+   implicit none
+   private
+
+   public :: make_place, write_files, write_numbers
+
+contains
+
+   !> Make the folder that the files of a case go to
+   subroutine make_place(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory
+
+      call job%case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call make_directory(directory, error)
+   end subroutine make_place
+
+   !> Write the files of a case
+   subroutine write_files(request, job, identity, summary, trajectory, files, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What it is about
+      type(identity_t), intent(in) :: identity
+      !> Its outcomes
+      type(table_t), intent(in) :: summary
+      !> The trajectory of a single impact
+      type(trajectory_t), intent(in) :: trajectory
+      !> Files written, one to a line
+      character(len=:), allocatable, intent(out) :: files
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(table_t) :: course
+      type(remark_t) :: remarks(4)
+      integer :: i, n
+
+      files = ''
+      if (.not. any(job%writes)) return
+      if (job%history) call history_table(course, summary%title, summary%case_text, trajectory)
+
+      call make_place(request, job, error)
+      if (allocated(error)) return
+      ! the sum over the data, where there are any
+      remarks = remarks_of(identity)
+      n = merge(1, 0, len(identity%data) > 0)
+      if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
+      if (allocated(error)) return
+      if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
+      if (allocated(error)) return
+      if (job%writes(3)) then
+         if (job%history) then
+            call write_hdf5(job%path//trim(endings(3)), summary, course, error, remarks(:n))
+         else
+            call write_hdf5(job%path//trim(endings(3)), summary, error=error, &
+               remarks=remarks(:n))
+         end if
+         if (allocated(error)) return
+      end if
+      do i = 1, size(endings)
+         if (job%writes(i)) files = files//'  written '//job%path//trim(endings(i))//new_line('a')
+      end do
+   end subroutine write_files
+
+   !> Bare numbers for --print, a line per impact
+   subroutine write_numbers(request, summary, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> Outcomes
+      type(table_t), intent(in) :: summary
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: places(size(request%names)), i
+
+      do i = 1, size(places)
+         places(i) = place_in_table(summary, request%names(i)%text)
+      end do
+      call write_rows(summary, places, error)
+   end subroutine write_numbers
+
+end module vcor_app_files
