@@ -9,8 +9,8 @@ module vcor_app_driver
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
-   use vcor, only : default_accuracy, error_numerical, error_t, integer_text, real_text, share_error, &
-      this_rank, version, write_stdout
+   use vcor, only : default_accuracy, error_numerical, error_t, integer_text, real_text, &
+      share_error, this_rank, version, write_stdout
    implicit none
    private
 

@@ -2,7 +2,7 @@
 module vcor_app_merge
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings
-   use vcor_app_previous, only : look_at, previous_t, say_replaced
+   use vcor_app_previous, only : look_at, previous_t, remark, replaced
    use vcor, only : case_t, check_same, error_file, error_numerical, error_t, grid_t, identity_t, &
       integer_text, join_path, make_directory, new_grid, new_part, new_summary, open_hdf5, &
       point_pending, quoted_path, raise, read_case_text, read_identity, read_points, reader_t, &
@@ -72,7 +72,7 @@ contains
             call reader%close(error)
             if (allocated(error)) return
             if (.not. is_ours .or. found%part%points == 0) then
-               call raise(error, error_file, quoted_path(path)//' is not a shard of a sweep of vcor')
+               call raise(error, error_file, quoted_path(path)//' is no shard of a sweep of vcor')
                return
             end if
             if (i == 1) then
@@ -284,7 +284,7 @@ contains
          if (allocated(error)) return
          text = text//'  written '//path//trim(endings(3))//new_line('a')
       end if
-      call say_replaced(previous)
+      call remark(replaced(previous))
       if (.not. request%quiet) call write_stdout(text, error)
    end subroutine write_merged
 

@@ -3,13 +3,13 @@ module vcor_app_previous
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
-   use vcor, only : attach, check_same, checkpoint_t, error_file, error_t, file_exists, &
-      identity_t, open_hdf5, quoted_path, raise, read_csv_identity, read_identity, reader_t, &
-      write_stdout
+   use vcor, only : attach, check_same, checkpoint_t, error_file, error_t, identity_t, &
+      open_hdf5, plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, &
+      reader_t, write_stdout
    implicit none
    private
 
-   public :: previous_t, look_back, look_at, heed, say_replaced, refuse_unfinished, remark
+   public :: previous_t, look_back, look_at, heed, replaced, refuse_unfinished, remark
 
    !> Results that are there
    type :: previous_t
@@ -58,7 +58,7 @@ contains
          ! a history says nothing that the others do not
          if (i == 2 .or. .not. writes(i)) cycle
          previous%path = path//trim(endings(i))
-         if (.not. file_exists(previous%path)) cycle
+         if (.not. plain_file_exists(previous%path)) cycle
          previous%exist = .true.
          if (i == 1) then
             call read_csv_identity(previous%path, previous%identity, is_ours)
@@ -116,13 +116,15 @@ contains
    end subroutine heed
 
    !> Nobody's results are replaced in silence
-   subroutine say_replaced(previous)
+   function replaced(previous) result(text)
       !> What was there
       type(previous_t), intent(in) :: previous
+      !> What there is to say: nothing if there was nothing else
+      character(len=:), allocatable :: text
 
-      if (.not. allocated(previous%objection)) return
-      call remark('replaced: '//previous%objection%message)
-   end subroutine say_replaced
+      text = ''
+      if (allocated(previous%objection)) text = 'replaced: '//previous%objection%message
+   end function replaced
 
    !> A sweep that begins anew must not take the unfinished points of another one, or of a process
    !> that is at work on them
@@ -159,9 +161,10 @@ contains
 
    !> One line on stderr that is no error
    subroutine remark(text)
-      !> What to say
+      !> What to say; nothing is fine
       character(len=*), intent(in) :: text
 
+      if (len(text) == 0) return
       write (error_unit, '(a)') 'vcor: note: '//text
    end subroutine remark
 

@@ -3,7 +3,7 @@ module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : write_files, write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_previous, only : heed, look_back, previous_t, say_replaced
+   use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : report, short
    use vcor_app_sweep, only : run_sweep
    use vcor, only : contact_lasting, contact_separated, data_file, error_numerical, error_t, &
@@ -79,14 +79,26 @@ contains
       else if (.not. request%quiet) then
          call write_stdout(report(job%case%source, identity%title, job%method, outcome, &
             worker%trajectory%state(1, worker%trajectory%last), &
-            kernel_of(worker%trajectory)//remarks_on(job, outcome)//files), trouble)
+            kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
+            //as_line(replaced(previous))), trouble)
       end if
       if (allocated(trouble)) then
          call move_alloc(trouble, error)
-      else
-         call say_replaced(previous)
+      else if (request%quiet .or. size(request%names) > 0) then
+         call remark(replaced(previous))
       end if
    end subroutine run_impact
+
+   !> What there is to say as a line of the report
+   pure function as_line(words) result(text)
+      !> The words; nothing is fine
+      character(len=*), intent(in) :: words
+      !> A line, or nothing
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (len(words) > 0) text = '  '//words//new_line('a')
+   end function as_line
 
    !> What stood for a kernel that is no finite sum of exponentials
    function kernel_of(trajectory) result(text)
@@ -156,7 +168,7 @@ contains
          !> The remark
          character(len=*), intent(in) :: line
 
-         text = text//'  note: '//line//new_line('a')
+         text = text//as_line('note: '//line)
       end subroutine add
    end function remarks_on
 

@@ -6,13 +6,13 @@ module vcor_app_sweep
    use vcor_app_files, only : make_place, write_files, write_numbers
    use vcor_app_job, only : endings, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
-      say_replaced
+      replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
    use vcor, only : create_checkpoint, default_threads, differs, error_input, error_numerical, &
-      error_t, failures_t, file_exists, identity_of, integer_text, new_summary, number_of, &
-      open_checkpoint, point_pending, quoted_path, raise, remove_file, share_error, share_flag, &
+      error_t, failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
+      plain_file_exists, point_pending, quoted_path, raise, remove_file, share_error, share_flag, &
       solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, trajectory_t, &
       write_stdout
    implicit none
@@ -102,7 +102,7 @@ contains
 
       is_finished = .false.
       is_unfinished = .false.
-      if (watch%keeps) is_unfinished = file_exists(watch%path)
+      if (watch%keeps) is_unfinished = plain_file_exists(watch%path)
       call look_back(job, watch%identity, previous)
       if (.not. is_unfinished) then
          call heed(request, previous, is_finished, error)
@@ -172,7 +172,7 @@ contains
       if (allocated(trouble)) then
          call move_alloc(trouble, error)
       else
-         call say_replaced(previous)
+         call remark(replaced(previous))
       end if
    end subroutine finish
 

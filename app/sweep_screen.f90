@@ -32,7 +32,8 @@ contains
 
       logical :: history
 
-      text = heading(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, '//job%method//nl &
+      text = heading(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, ' &
+         //job%method//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
       call job%case%get('output', 'history', history)

@@ -14,8 +14,8 @@ module vcor
       read_points
    use vcor_io_csv, only : write_csv
    use vcor_io_data_file, only : data_file, read_data
-   use vcor_io_file, only : file_exists, join_path, make_directory, quoted_path, remove_file, &
-      same_file, stderr_is_terminal, write_stdout, write_terminal
+   use vcor_io_file, only : join_path, make_directory, plain_file_exists, quoted_path, &
+      remove_file, same_file, stderr_is_terminal, write_stdout, write_terminal
    use vcor_io_hdf5, only : remark_t, write_hdf5
    use vcor_io_hdf5_reader, only : open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
@@ -79,7 +79,8 @@ module vcor
    public :: build_impact, build_material, build_solver
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
    public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
-   public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed, point_pending
+   public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
+   public :: point_pending
    public :: default_threads, most_threads
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
@@ -92,7 +93,7 @@ module vcor
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
    public :: reader_t, open_hdf5, remark_t
-   public :: write_stdout, make_directory, join_path, same_file, file_exists, quoted_path
+   public :: write_stdout, make_directory, join_path, same_file, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion
 

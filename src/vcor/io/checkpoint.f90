@@ -1,8 +1,8 @@
 !> Files of a sweep under way, and shards of a sweep: a valid HDF5 file at every moment
 !>
 !>     /             attributes program, version, title, case, data, points, shard, shards
-!>     /summary      over the dimension `point`: what is swept, the columns of a summary, status as a
-!>                   number, check
+!>     /summary      over the dimension `point`: what is swept, the columns of a summary, status as
+!>                   a number, check
 !>
 !> HDF5 writes the file once, as a whole, all points pending: nan. Every dataset is in one piece and
 !> uncompressed, so its numbers have a fixed place in the file, and what makes the file an HDF5 file
@@ -278,8 +278,8 @@ contains
          return
       end if
       ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
-      ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one goes
-      ! without
+      ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
+      ! goes without
       if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) == 0) return
       if (last_errno() /= errno_locked) return
       call self%close()

@@ -27,7 +27,8 @@ module vcor_io_file
 
    public :: output_file_t, create_file, put, commit, discard
    public :: write_file, write_stdout, write_terminal, stderr_is_terminal, move_file, remove_file
-   public :: file_exists, directory_exists, make_directory, join_path, quoted_path
+   public :: file_exists, plain_file_exists, directory_exists, make_directory, join_path
+   public :: quoted_path
    public :: same_file
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
@@ -245,6 +246,17 @@ contains
       exists = c_access(c_text(trim(path)), access_exists) == 0
       if (exists) exists = .not. directory_exists(path)
    end function file_exists
+
+   !> Whether there is a file of that name that can be looked into without consequences
+   function plain_file_exists(path) result(exists)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> True if there is one; a link counts as what it points at
+      logical :: exists
+
+      exists = file_exists(path)
+      if (exists) exists = is_regular(trim(path))
+   end function plain_file_exists
 
    !> Whether there is a directory of that name; a link counts as what it points at
    function directory_exists(path) result(exists)

@@ -211,8 +211,8 @@ contains
          call raise(error, error_file, quoted_path(path)//' is of another case: '// &
             first_difference(found%case_text, expected%case_text))
       else if (found%data /= expected%data) then
-         call raise(error, error_file, quoted_path(path)//' was made from a data file with other '// &
-            'points')
+         call raise(error, error_file, quoted_path(path)//' was made from a data file with '// &
+            'other points')
       else if (found%part%parts /= expected%part%parts) then
          call raise(error, error_file, quoted_path(path)//' is one of '// &
             integer_text(found%part%parts)//' shards, expected one of '// &
