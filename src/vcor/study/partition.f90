@@ -1,8 +1,9 @@
 !> What part of the points of a sweep a run solves, and what is left of it
 !>
-!> A run has all points, or with `--shard I/N` every N-th of them from the I-th on: whatever is
-!> swept, and wherever its impacts cost most, all shards cost about the same. Within its part a
-!> point has a place, 1, 2, 3 ...
+!> A run has all points, or with `--shard I/N` one of each N that follow one another: the I-th of the
+!> first N, the next of the next N, and so on around. So, whatever is swept and wherever its impacts
+!> cost most, all shards cost about the same; always the I-th would be the same value of the last
+!> parameter where N of them make a row of the grid. Within its part a point has a place, 1, 2, 3 ...
 module vcor_study_partition
    implicit none
    private
@@ -71,7 +72,7 @@ contains
       integer :: n
 
       n = self%points/self%parts
-      if (self%number <= mod(self%points, self%parts)) n = n + 1
+      if (self%point(n + 1) <= self%points) n = n + 1
    end function count_places
 
    !> Point at a place
@@ -83,7 +84,7 @@ contains
       !> Number of the point in the whole sweep, from 1
       integer :: point
 
-      point = self%number + (place - 1)*self%parts
+      point = (place - 1)*self%parts + mod(self%number + place - 2, self%parts) + 1
    end function point
 
    !> What is left where some places are done
