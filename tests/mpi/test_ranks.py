@@ -60,14 +60,22 @@ def said(done):
 def solved(tmp_path_factory):
     """A sweep, and its files as one rank and one thread make them."""
     vcor = Vcor(tmp_path_factory.mktemp("ranks"))
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 2.0)
     done = vcor("run", "case.nml", "--output", "ref", "--threads", "1")
     assert done.code == NUMERICAL
     vcor.reference = done
     return vcor
 
 
-@pytest.mark.parametrize("ranks, threads", [(1, 1), (1, 2), (1, 4), (2, 1), (2, 2), (3, 1)])
+@pytest.fixture
+def long(vcor, solved):
+    """The same case in the folder of the test."""
+    for name in ("case.nml", "ref"):
+        (vcor.folder / name).symlink_to(solved.folder / name)
+    return vcor
+
+
+@pytest.mark.parametrize("ranks, threads", [(1, 4), (2, 1), (2, 2), (3, 1)])
 def test_same_bits(solved, ranks, threads):
     folder = f"out{ranks}{threads}"
     done = run(solved, ranks, "case.nml", "--output", folder, "--threads", threads)
@@ -127,10 +135,8 @@ def test_error_of_another_rank(vcor):
 
 def processes(parent):
     """Ranks below a call of mpirun."""
-    listed = subprocess.run(
-        ["ps", "-o", "pid=", "--ppid", str(parent)], capture_output=True, text=True, check=True
-    )
-    return sorted(int(word) for word in listed.stdout.split())
+    tasks = Path(f"/proc/{parent}/task").glob("*/children")
+    return sorted(int(word) for task in tasks for word in task.read_text().split())
 
 
 def begin_and_wait(vcor, ranks, *words):
@@ -143,35 +149,31 @@ def begin_and_wait(vcor, ranks, *words):
 
 
 @pytest.mark.parametrize("victim", [0, 1])
-def test_killed_rank(vcor, victim):
+def test_killed_rank(long, victim):
     """All ranks end, and what they did is not lost."""
-    write_long_sweep(vcor, 2.0)
-    assert vcor("run", "case.nml", "--output", "ref").code == NUMERICAL
-    process = begin_and_wait(vcor, 2)
+    process = begin_and_wait(long, 2)
     ranks = processes(process.pid)
     assert len(ranks) == 2
     os.kill(ranks[victim], signal.SIGKILL)
     assert end(process).code != SUCCESS
     for rank in ranks:
         assert not Path(f"/proc/{rank}/exe").exists()
-    done, points = done_in(vcor.folder / "out" / PART)
+    done, points = done_in(long.folder / "out" / PART)
     assert 0 < done < points
-    assert run(vcor, 3, "case.nml", "--output", "out", "--resume").code == NUMERICAL
-    same_files(vcor.folder / "out", vcor.folder / "ref")
+    assert run(long, 3, "case.nml", "--output", "out", "--resume").code == NUMERICAL
+    same_files(long.folder / "out", long.folder / "ref")
 
 
 @pytest.mark.parametrize("victim", [0, 1])
-def test_signal_to_a_rank(vcor, victim):
-    write_long_sweep(vcor, 2.0)
-    assert vcor("run", "case.nml", "--output", "ref").code == NUMERICAL
-    process = begin_and_wait(vcor, 2)
+def test_signal_to_a_rank(long, victim):
+    process = begin_and_wait(long, 2)
     os.kill(processes(process.pid)[victim], signal.SIGTERM)
     done = end(process)
     assert done.code == 128 + signal.SIGTERM
     assert len(said(done)) == 1
     assert said(done)[0].startswith("vcor: error: case.nml: stopped by SIGTERM after ")
-    assert run(vcor, 2, "case.nml", "--output", "out", "--resume").code == NUMERICAL
-    same_files(vcor.folder / "out", vcor.folder / "ref")
+    assert run(long, 2, "case.nml", "--output", "out", "--resume").code == NUMERICAL
+    same_files(long.folder / "out", long.folder / "ref")
 
 
 SCRIPT = """
