@@ -54,8 +54,8 @@ contains
          //'       vcor merge SHARD.h5 ...            one sweep from its shards'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, merge, check, verify, input,'//nl &
-         //'                                          output'//nl &
+         //'       vcor help [TOPIC]                  topics: run, merge, check, verify,'//nl &
+         //'                                          input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
@@ -86,8 +86,8 @@ contains
          //'  --quiet                 print nothing'//nl//nl &
          //'A sweep that takes more than a moment keeps what is finished in STEM.part.h5, a'//nl &
          //'valid file at any time. SIGINT (Ctrl-C) and SIGTERM end it after the points at'//nl &
-         //'work, with exit code 130 or 143. With --resume the same command goes on, also after'//nl &
-         //'a crash, and gives the same files; a file of another case or version is refused.'//nl &
+         //'work, with exit code 130 or 143. With --resume the same command goes on, after a'//nl &
+         //'crash too, and gives the same files; a file of another case or version is refused.'//nl &
          //'Results of another case are replaced, and that is said; unfinished ones are not.'//nl &
          //'Built for MPI (cmake --preset mpi), mpirun vcor run shares a sweep among ranks.'//nl
    end function run_page
@@ -101,8 +101,8 @@ contains
          //'Makes STEM_summary.csv and STEM.h5 of the files that vcor run --shard I/N has'//nl &
          //'written, the same as one run makes. All N shards are needed, each once, finished,'//nl &
          //'of the same case and version. Exit code 5: points without result, as for run.'//nl//nl &
-         //'  --output DIR            directory of the files, made if it is not there; default:'//nl &
-         //'                          that of the case'//nl &
+         //'  --output DIR            directory of the files, made if it is not there;'//nl &
+         //'                          default: that of the case'//nl &
          //'  --quiet                 print nothing'//nl
    end function merge_page
 

@@ -1,9 +1,9 @@
 !> What part of the points of a sweep a run solves, and what is left of it
 !>
-!> A run has all points, or with `--shard I/N` one of each N that follow one another: the I-th of the
-!> first N, the next of the next N, and so on around. So, whatever is swept and wherever its impacts
-!> cost most, all shards cost about the same; always the I-th would be the same value of the last
-!> parameter where N of them make a row of the grid. Within its part a point has a place, 1, 2, 3 ...
+!> A run has all points, or with `--shard I/N` one of each N that follow one another: the I-th of
+!> the first N, the next of the next N, and so on around. So, whatever is swept and wherever its
+!> impacts cost most, all shards cost about the same; always the I-th would be the same value of the
+!> last parameter where N points make a row of the grid. Within its part a point has a place.
 module vcor_study_partition
    implicit none
    private
