@@ -2,12 +2,13 @@
 module vcor_app_files
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
-   use vcor, only : error_t, history_table, identity_t, make_directory, place_in_table, remark_t, &
-      remarks_of, table_t, trajectory_t, write_csv, write_hdf5, write_rows
+   use vcor, only : default_threads, error_t, history_table, identity_t, make_directory, &
+      place_in_table, remark_t, remarks_of, table_t, trajectory_t, write_csv, write_hdf5, &
+      write_rows, write_summary
    implicit none
    private
 
-   public :: make_place, write_files, write_numbers
+   public :: make_place, write_files, write_numbers, threads_of
 
 contains
 
@@ -57,23 +58,46 @@ contains
       ! the sum over the data, where there are any
       remarks = remarks_of(identity)
       n = merge(1, 0, len(identity%data) > 0)
-      if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
-      if (allocated(error)) return
-      if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
-      if (allocated(error)) return
-      if (job%writes(3)) then
-         if (job%history) then
-            call write_hdf5(job%path//trim(endings(3)), summary, course, error, remarks(:n))
-         else
-            call write_hdf5(job%path//trim(endings(3)), summary, error=error, &
-               remarks=remarks(:n))
-         end if
+      if (job%history) then
+         if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
          if (allocated(error)) return
+         if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
+         if (allocated(error)) return
+         if (job%writes(3)) call write_hdf5(job%path//trim(endings(3)), summary, course, error, &
+            remarks(:n))
+      else
+         call write_summary(name_of(1), name_of(3), summary, remarks(:n), threads_of(request), &
+            error)
       end if
+      if (allocated(error)) return
       do i = 1, size(endings)
-         if (job%writes(i)) files = files//'  written '//job%path//trim(endings(i))//new_line('a')
+         if (job%writes(i)) files = files//'  written '//name_of(i)//new_line('a')
       end do
+
+   contains
+
+      !> Name of a file
+      function name_of(i) result(name)
+         !> Number of its ending
+         integer, intent(in) :: i
+         !> The name; empty if the file is not written
+         character(len=:), allocatable :: name
+
+         name = ''
+         if (job%writes(i)) name = job%path//trim(endings(i))
+      end function name_of
    end subroutine write_files
+
+   !> Number of threads of each rank
+   function threads_of(request) result(threads)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> Number, at least 1
+      integer :: threads
+
+      threads = request%threads
+      if (threads == 0) threads = default_threads()
+   end function threads_of
 
    !> Bare numbers for --print, a line per impact
    subroutine write_numbers(request, summary, error)

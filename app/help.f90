@@ -87,7 +87,8 @@ contains
          //'A sweep that takes more than a moment keeps what is finished in STEM.part.h5, a'//nl &
          //'valid file at any time. SIGINT (Ctrl-C) and SIGTERM end it after the points at'//nl &
          //'work, with exit code 130 or 143. With --resume the same command goes on, after a'//nl &
-         //'crash too, and gives the same files; a file of another case or version is refused.'//nl &
+         //'crash too, and gives the same files. A file of another case, or of another'//nl &
+         //'version, is refused.'//nl &
          //'Results of another case are replaced, and that is said; unfinished ones are not.'//nl &
          //'Built for MPI (cmake --preset mpi), mpirun vcor run shares a sweep among ranks.'//nl
    end function run_page

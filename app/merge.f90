@@ -3,11 +3,11 @@ module vcor_app_merge
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings
    use vcor_app_previous, only : look_at, previous_t, remark, replaced
-   use vcor, only : case_t, check_same, error_file, error_numerical, error_t, grid_t, identity_t, &
-      integer_text, join_path, make_directory, new_grid, new_part, new_summary, open_hdf5, &
-      point_pending, quoted_path, raise, read_case_text, read_identity, read_points, reader_t, &
-      remark_t, remarks_of, same_file, status_name, summary_t, summary_table, table_t, version, &
-      contact_separated, write_csv, write_hdf5, write_stdout
+   use vcor, only : case_t, check_same, contact_separated, default_threads, error_file, &
+      error_numerical, error_t, grid_t, identity_t, integer_text, join_path, make_directory, &
+      new_grid, new_part, new_summary, open_hdf5, point_pending, quoted_path, raise, &
+      read_case_text, read_identity, read_points, reader_t, remark_t, remarks_of, same_file, &
+      status_name, summary_t, summary_table, table_t, version, write_stdout, write_summary
    implicit none
    private
 
@@ -274,18 +274,28 @@ contains
          //' impacts'//new_line('a')//new_line('a')
       call make_directory(directory, error)
       if (allocated(error)) return
-      if (csv) then
-         call write_csv(path//trim(endings(1)), table, error)
-         if (allocated(error)) return
-         text = text//'  written '//path//trim(endings(1))//new_line('a')
-      end if
-      if (hdf5) then
-         call write_hdf5(path//trim(endings(3)), table, error=error, remarks=remarks(:n))
-         if (allocated(error)) return
-         text = text//'  written '//path//trim(endings(3))//new_line('a')
-      end if
+      call write_summary(name_of(1, csv), name_of(3, hdf5), table, remarks(:n), &
+         default_threads(), error)
+      if (allocated(error)) return
+      if (csv) text = text//'  written '//name_of(1, csv)//new_line('a')
+      if (hdf5) text = text//'  written '//name_of(3, hdf5)//new_line('a')
       call remark(replaced(previous))
       if (.not. request%quiet) call write_stdout(text, error)
+
+   contains
+
+      !> Name of a file
+      function name_of(i, is_written) result(name)
+         !> Number of its ending
+         integer, intent(in) :: i
+         !> Whether it is written
+         logical, intent(in) :: is_written
+         !> The name; empty if it is not
+         character(len=:), allocatable :: name
+
+         name = ''
+         if (is_written) name = path//trim(endings(i))
+      end function name_of
    end subroutine write_merged
 
 end module vcor_app_merge

@@ -3,14 +3,14 @@
 !> The first rank alone reads and writes files and talks to the user.
 module vcor_app_sweep
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : make_place, write_files, write_numbers
+   use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
    use vcor_app_job, only : endings, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
       replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
-   use vcor, only : create_checkpoint, default_threads, differs, error_input, error_numerical, &
+   use vcor, only : create_checkpoint, differs, error_input, error_numerical, &
       error_t, failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
       plain_file_exists, point_pending, quoted_path, raise, remove_file, share_error, share_flag, &
       solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, trajectory_t, &
@@ -69,17 +69,6 @@ contains
       call share_error(error)
       call release_signals()
    end subroutine run_sweep
-
-   !> Number of threads of each rank
-   function threads_of(request) result(threads)
-      !> The request
-      type(request_t), intent(in) :: request
-      !> Number, at least 1
-      integer :: threads
-
-      threads = request%threads
-      if (threads == 0) threads = default_threads()
-   end function threads_of
 
    !> Find out where to begin
    subroutine begin(request, job, watch, previous, summary, is_finished, error)

@@ -23,6 +23,7 @@ module vcor
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_row_text, only : place_in_table, write_rows
+   use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
@@ -92,7 +93,7 @@ module vcor
    public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
-   public :: reader_t, open_hdf5, remark_t
+   public :: reader_t, open_hdf5, remark_t, write_summary
    public :: write_stdout, make_directory, join_path, same_file, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion

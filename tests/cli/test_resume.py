@@ -265,7 +265,7 @@ def test_full_disk(long, bytes_per_point):
     code, *left = first.split()
     done.code, done.err = int(code), done.stderr
     complaint(done, FILE, ["disk/case", "No space left on device"])
-    assert set(left) <= {PART, "case_summary.csv"}
+    assert set(left) <= {PART, *FILES}
     assert int(rest) == NUMERICAL
     same_files(long.folder / "out", long.folder / "ref")
 

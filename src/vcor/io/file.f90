@@ -58,6 +58,21 @@ contains
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
+
+      ! One thread at a time: the length of a text that a function returns is static
+!$omp critical (vcor_file)
+      call begin(file, path, error)
+!$omp end critical (vcor_file)
+   end subroutine create_file
+
+   !> Begin a file
+   subroutine begin(file, path, error)
+      !> The open file
+      type(output_file_t), intent(inout) :: file
+      !> Its real name
+      character(len=*), intent(in) :: path
+      !> Set if the file cannot be created
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: temporary
       integer(c_int) :: reason
       integer :: count
@@ -77,7 +92,7 @@ contains
          if (reason /= errno_exists) exit
       end do
       call raise_system(error, "cannot write "//quoted_path(path), reason)
-   end subroutine create_file
+   end subroutine begin
 
    !> Write to a file
    subroutine put(file, text, error)
@@ -439,8 +454,10 @@ contains
       !> Set to the reason
       type(error_t), allocatable, intent(inout) :: error
 
+!$omp critical (vcor_file)
       call discard(file)
       call raise_system(error, "cannot write "//quoted_path(file%path), reason)
+!$omp end critical (vcor_file)
    end subroutine fail
 
    !> Set an error with the reason of the system
