@@ -29,7 +29,7 @@ contains
    end subroutine make_place
 
    !> Write the files of a case
-   subroutine write_files(request, job, identity, summary, trajectory, files, error)
+   subroutine write_files(request, job, identity, summary, trajectory, files, error, has_csv)
       !> The request
       type(request_t), intent(in) :: request
       !> The case
@@ -44,8 +44,11 @@ contains
       character(len=:), allocatable, intent(out) :: files
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Whether the summary as text is there already; false if it is not given
+      logical, intent(in), optional :: has_csv
 
       type(table_t) :: course
+      character(len=:), allocatable :: csv
       type(remark_t) :: remarks(4)
       integer :: i, n
 
@@ -66,7 +69,11 @@ contains
          if (job%writes(3)) call write_hdf5(job%path//trim(endings(3)), summary, course, error, &
             remarks(:n))
       else
-         call write_summary(name_of(1), name_of(3), summary, remarks(:n), threads_of(request), &
+         csv = name_of(1)
+         if (present(has_csv)) then
+            if (has_csv) csv = ''
+         end if
+         call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), &
             error)
       end if
       if (allocated(error)) return

@@ -10,11 +10,11 @@ module vcor_app_sweep
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
-   use vcor, only : create_checkpoint, differs, error_input, error_numerical, &
-      error_t, failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
-      plain_file_exists, point_pending, quoted_path, raise, remove_file, share_error, share_flag, &
-      solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, trajectory_t, &
-      write_stdout
+   use vcor, only : create_checkpoint, differs, error_input, error_numerical, error_t, &
+      failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
+      plain_file_exists, point_pending, quoted_path, raise, rank_count, remove_file, share_error, &
+      share_flag, solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, &
+      trajectory_t, write_stdout
    implicit none
    private
 
@@ -65,6 +65,7 @@ contains
          if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
             stopped, error)
          call watch%file%close()
+         call watch%rows%abandon()
       end if
       call share_error(error)
       call release_signals()
@@ -113,6 +114,8 @@ contains
       watch%done = count(summary%status /= point_pending)
       watch%done_before = watch%done
       watch%grid = job%sweep%grid
+      if (rank_count() > 1 .and. job%writes(1)) watch%rows%path = job%path//trim(endings(1))
+      watch%rows%threads = threads_of(request)
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
@@ -185,8 +188,11 @@ contains
       character(len=:), allocatable :: files
 
       associate (identity => watch%identity)
+         call watch%rows%complete(identity, job%sweep%grid, summary, error)
+         if (allocated(error)) return
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(request, job, identity, table, none, files, error)
+         call write_files(request, job, identity, table, none, files, error, &
+            has_csv=allocated(watch%rows%path))
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()

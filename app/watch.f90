@@ -2,6 +2,7 @@
 !> signal ends it
 module vcor_app_watch
    use, intrinsic :: iso_fortran_env, only : int64
+   use vcor_app_row_stream, only : row_stream_t
    use vcor_app_signals, only : caught_signal
    use vcor, only : checkpoint_t, create_checkpoint, error_t, grid_t, identity_t, integer_text, &
       monitor_t, summary_t, wp, write_terminal
@@ -33,6 +34,8 @@ module vcor_app_watch
       type(grid_t) :: grid
       !> The file, open once there is one
       type(checkpoint_t) :: file
+      !> Rows that are written while other ranks work
+      type(row_stream_t) :: rows
       !> Points that are done
       integer :: done = 0
       !> Points that were done at the beginning
@@ -74,6 +77,8 @@ contains
       else if (self%keeps .and. now - self%start > time_without_file) then
          call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, error)
       end if
+      if (allocated(error)) return
+      call self%rows%advance(self%identity, self%grid, summary, error)
       if (self%shows .and. now - self%shown > time_between_lines) then
          call show(self, now - self%start)
          self%shown = now

@@ -12,7 +12,7 @@ module vcor
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint, &
       read_points
-   use vcor_io_csv, only : write_csv
+   use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_file, only : join_path, make_directory, plain_file_exists, quoted_path, &
       remove_file, same_file, stderr_is_terminal, write_stdout, write_terminal
@@ -21,7 +21,7 @@ module vcor
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
       read_identity, remarks_of
    use vcor_io_number, only : integer_text, real_text
-   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
@@ -94,6 +94,7 @@ module vcor
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
    public :: reader_t, open_hdf5, remark_t, write_summary
+   public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: write_stdout, make_directory, join_path, same_file, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion

@@ -18,13 +18,13 @@
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
-   use vcor_io_file, only : commit, create_file, output_file_t, put
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
    use vcor_io_csv_rows, only : field, new_row_writer, row_writer_t
    use vcor_io_table, only : check_table, column_t, row_count, table_t
    implicit none
    private
 
-   public :: write_csv
+   public :: write_csv, csv_file_t, begin_csv, add_rows, end_csv, discard_csv
 
    !> Rows that become text at once
    integer, parameter :: rows_per_block = 256
@@ -41,6 +41,14 @@ module vcor_io_csv
       integer :: last = 0
    end type writer_t
 
+   !> A file that grows by rows
+   type :: csv_file_t
+      !> Whether it is begun and not ended
+      logical :: is_open = .false.
+      !> The file
+      type(output_file_t), private :: file
+   end type csv_file_t
+
 contains
 
    !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
@@ -53,25 +61,96 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Number of threads; 1 if it is not given
       integer, intent(in), optional :: threads
-      type(writer_t), allocatable :: writer
+      type(csv_file_t) :: file
       integer :: team
+
+      team = 1
+      if (present(threads)) team = threads
+      call begin_csv(file, filename, table, error)
+      if (allocated(error)) return
+      call add_rows(file, table, 1, row_count(table), team, error)
+      if (allocated(error)) return
+      call end_csv(file, error)
+   end subroutine write_csv
+
+   !> Begin a file: what describes the table. Nothing is seen under its name before its end
+   subroutine begin_csv(file, filename, table, error)
+      !> The file
+      type(csv_file_t), intent(out) :: file
+      !> Its name; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      type(writer_t), allocatable :: writer
 
       call check_table(table, error)
       if (allocated(error)) return
       ! Not on the stack, for the sake of its buffer
       allocate(writer)
-      team = 1
-      if (present(threads)) team = threads
       call create_file(writer%file, filename, error)
       if (allocated(error)) return
       call put_head(writer, table, error)
       if (allocated(error)) return
       call flush_buffer(writer, error)
       if (allocated(error)) return
-      call put_rows(writer, table, team, error)
-      if (allocated(error)) return
-      call commit(writer%file, error)
-   end subroutine write_csv
+      file%file = writer%file
+      file%is_open = .true.
+   end subroutine begin_csv
+
+   !> Add rows: blocks of them become text by several threads, and go to the file in order
+   subroutine add_rows(file, table, first, last, threads, error)
+      !> The file, begun; discarded on failure
+      type(csv_file_t), intent(inout) :: file
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> First row
+      integer, intent(in) :: first
+      !> Last row
+      integer, intent(in) :: last
+      !> Number of threads
+      integer, intent(in) :: threads
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      type(row_writer_t) :: rows
+      integer :: start, team
+
+      team = max(1, min(threads, (last - first)/rows_per_block + 1))
+!$omp parallel default(none) shared(file, table, error, first, last) private(rows) &
+!$omp num_threads(team)
+      call new_row_writer(rows, table)
+!$omp do schedule(dynamic) ordered
+      do start = first, last, rows_per_block
+         call rows%take(start, min(start + rows_per_block - 1, last), table)
+!$omp ordered
+         if (.not. allocated(error)) call put(file%file, rows%text(:rows%last), error)
+!$omp end ordered
+      end do
+!$omp end do
+!$omp end parallel
+      if (allocated(error)) file%is_open = .false.
+   end subroutine add_rows
+
+   !> End a file: it gets its name
+   subroutine end_csv(file, error)
+      !> The file, begun; closed afterwards
+      type(csv_file_t), intent(inout) :: file
+      !> Set if the file is not complete; then it is discarded
+      type(error_t), allocatable, intent(out) :: error
+
+      file%is_open = .false.
+      call commit(file%file, error)
+   end subroutine end_csv
+
+   !> Give a file up; none is fine
+   subroutine discard_csv(file)
+      !> The file
+      type(csv_file_t), intent(inout) :: file
+
+      if (file%is_open) call discard(file%file)
+      file%is_open = .false.
+   end subroutine discard_csv
 
    !> Write what describes the table, and the line of the names
    subroutine put_head(writer, table, error)
@@ -116,35 +195,6 @@ contains
       end do
       call put_text(writer, c_new_line, error)
    end subroutine put_head
-
-   !> Write the rows: blocks of them become text by several threads, and go to the file in order
-   subroutine put_rows(writer, table, threads, error)
-      !> Open file, nothing left in its buffer
-      type(writer_t), intent(inout) :: writer
-      !> Table to write
-      type(table_t), intent(in) :: table
-      !> Number of threads
-      integer, intent(in) :: threads
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      type(row_writer_t) :: rows
-      integer :: block, blocks, team
-
-      blocks = (row_count(table) + rows_per_block - 1)/rows_per_block
-      team = max(1, min(threads, blocks))
-!$omp parallel default(none) shared(writer, table, error, blocks) private(rows) num_threads(team)
-      call new_row_writer(rows, table)
-!$omp do schedule(dynamic) ordered
-      do block = 1, blocks
-         call rows%take((block - 1)*rows_per_block + 1, &
-            & min(block*rows_per_block, row_count(table)), table)
-!$omp ordered
-         if (.not. allocated(error)) call put(writer%file, rows%text(:rows%last), error)
-!$omp end ordered
-      end do
-!$omp end do
-!$omp end parallel
-   end subroutine put_rows
 
    !> Write one line that says what a column is
    subroutine put_description(writer, column, error)

@@ -89,6 +89,9 @@ contains
       integer :: i, row
       logical :: is_first
 
+      if (allocated(self%text)) then
+         if (len(self%text) < (last - first + 1)*self%width) deallocate(self%text)
+      end if
       if (.not. allocated(self%text)) &
          & allocate(character(len=(last - first + 1)*self%width) :: self%text)
       self%last = 0
