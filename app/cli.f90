@@ -9,10 +9,12 @@ module vcor_app_cli
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check verify help'
+   character(len=*), parameter :: commands = 'run merge check verify help'
    !> Options of run
-   character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
-      //'--help --version'
+   character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
+      //'--shard --quiet --help --version'
+   !> Options of merge
+   character(len=*), parameter :: merge_options = '--output --quiet --help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
    !> Options of verify
@@ -34,6 +36,12 @@ module vcor_app_cli
       character(len=:), allocatable :: directory
       !> Threads of --threads; 0 without it
       integer :: threads = 0
+      !> Whether to go on with what is there
+      logical :: resume = .false.
+      !> Number of the shard; 0 without --shard
+      integer :: shard = 0
+      !> Number of shards; 0 without --shard
+      integer :: shards = 0
       !> Nothing on the screen
       logical :: quiet = .false.
    end type request_t
@@ -55,7 +63,7 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, verify, help ' &
+         call raise(error, error_usage, 'no command; known: run, merge, check, verify, help ' &
             //'(vcor help says more)')
          return
       end if
@@ -63,6 +71,8 @@ contains
       select case (words(1)%text)
       case ('run')
          known = run_options
+      case ('merge')
+         known = merge_options
       case ('check')
          known = check_options
       case ('verify')
@@ -115,12 +125,13 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet')
+         case ('--quiet', '--resume')
             if (mark > 0) then
-               call raise(error, error_usage, 'option --quiet takes no value')
+               call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
-            request%quiet = .true.
+            if (name == '--quiet') request%quiet = .true.
+            if (name == '--resume') request%resume = .true.
             cycle
          case default
          end select
@@ -140,6 +151,8 @@ contains
       end do
 
       if (size(request%files) == 0) call refuse_no_case(request, error)
+      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
+         '--print is for whole sweeps, found --shard as well')
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
@@ -154,6 +167,10 @@ contains
 
       if (request%command == 'help') return
       if (request%command == 'verify' .and. size(request%settings) == 0) return
+      if (request%command == 'merge') then
+         call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
+         return
+      end if
       call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
    end subroutine refuse_no_case
 
@@ -178,18 +195,47 @@ contains
       case ('--output')
          request%directory = value
       case ('--threads')
-         call read_threads(value, request%threads, error)
+         call read_whole(option, value, most_threads, request%threads, error)
+      case ('--shard')
+         call read_shard(value, request, error)
       case default
          call add_names(value, request, error)
       end select
    end subroutine apply
 
-   !> Read the value of --threads
-   subroutine read_threads(value, threads, error)
+   !> Read the value of --shard, I/N
+   subroutine read_shard(value, request, error)
+      !> The value as it is written
+      character(len=*), intent(in) :: value
+      !> The request
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: most_shards = 1000000
+      integer :: mark
+
+      mark = index(value, '/')
+      if (mark == 0) then
+         call raise(error, error_usage, "--shard: found '"//printable(trim(value)) &
+            //"', expected I/N: shard I of N, as in --shard 1/4")
+         return
+      end if
+      call read_whole('--shard', value(mark + 1:), most_shards, request%shards, error)
+      if (allocated(error)) return
+      call read_whole('--shard', value(:mark - 1), request%shards, request%shard, error)
+   end subroutine read_shard
+
+   !> Read a whole number from 1 on
+   subroutine read_whole(option, value, most, number, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> The number as it is written
       character(len=*), intent(in) :: value
+      !> Largest number that is allowed
+      integer, intent(in) :: most
       !> The number
-      integer, intent(out) :: threads
+      integer, intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
@@ -197,15 +243,15 @@ contains
       integer, parameter :: most_digits = 9
       integer :: status
 
-      threads = 0
+      number = 0
       digits = trim(adjustl(value))
       status = 0
       if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
-         read (digits, *, iostat=status) threads
-      if (status /= 0 .or. threads < 1 .or. threads > most_threads) call raise(error, error_usage, &
-         "--threads: found '"//printable(digits)//"', expected a whole number from 1 to " &
-         //integer_text(most_threads))
-   end subroutine read_threads
+         read (digits, *, iostat=status) number
+      if (status /= 0 .or. number < 1 .or. number > most) call raise(error, error_usage, &
+         option//": found '"//printable(digits)//"', expected a whole number from 1 to " &
+         //integer_text(most))
+   end subroutine read_whole
 
    !> Split the value of --print
    subroutine add_names(list, request, error)

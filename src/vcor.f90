@@ -10,13 +10,20 @@ module vcor
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
-   use vcor_io_csv, only : write_csv
+   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint, &
+      read_points
+   use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
-   use vcor_io_file, only : join_path, make_directory, same_file, write_stdout
-   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_file, only : join_path, make_directory, plain_file_exists, quoted_path, &
+      remove_file, same_file, stderr_is_terminal, write_stdout, write_terminal
+   use vcor_io_hdf5, only : remark_t, write_hdf5
+   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
+   use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
+      read_identity, remarks_of
    use vcor_io_number, only : integer_text, real_text
-   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_row_text, only : place_in_table, write_rows
+   use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
@@ -37,9 +44,15 @@ module vcor
    use vcor_study_grid, only : axis_t, grid_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
    use vcor_study_models, only : model_t, solve_models
+   use vcor_study_axes, only : new_grid
+   use vcor_study_monitor, only : monitor_t
+   use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
+      share_flag, this_rank
+   use vcor_study_partition, only : new_part, part_t
+   use vcor_study_points, only : solve_part
    use vcor_study_nearest, only : suggestion
-   use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
-      quantity_t, quantity_value, status_name
+   use vcor_study_quantity, only : point_failed, point_invalid, point_pending, quantities, &
+      quantity_names, quantity_t, quantity_value, status_name
    use vcor_study_summary, only : new_summary, summary_t
    use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
       worker_t
@@ -70,6 +83,7 @@ module vcor
    public :: quantity_t, quantities, quantity_names, quantity_value, status_name
    public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
    public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
+   public :: point_pending
    public :: default_threads, most_threads
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
@@ -78,7 +92,14 @@ module vcor
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: place_in_table, write_rows
-   public :: write_stdout, make_directory, join_path, same_file
+   public :: part_t, new_part, monitor_t, solve_part, new_grid
+   public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
+   public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
+   public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
+   public :: reader_t, open_hdf5, remark_t, write_summary
+   public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
+   public :: write_stdout, make_directory, join_path, same_file, plain_file_exists, quoted_path
+   public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion
 
 end module vcor

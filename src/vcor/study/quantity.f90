@@ -10,10 +10,11 @@ module vcor_study_quantity
 
    public :: quantity_t, quantities, history_quantities
    public :: quantity_value, quantity_values, quantity_names, status_name
-   public :: point_invalid, point_failed, longest_status
+   public :: point_pending, point_invalid, point_failed, longest_status
 
-   !> Status of a point of a sweep beside the `contact_*` constants: its parameters describe no
-   !> impact
+   !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
+   integer, parameter :: point_pending = -1
+   !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
    !> The numerical solution failed
    integer, parameter :: point_failed = 4
@@ -116,7 +117,7 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, invalid or failed
+      !> separated, no_separation, sticks, invalid, failed or pending
       character(len=:), allocatable :: name
 
       select case (status)
@@ -128,6 +129,8 @@ contains
          name = 'sticks'
       case (point_invalid)
          name = 'invalid'
+      case (point_pending)
+         name = 'pending'
       case default
          name = 'failed'
       end select
