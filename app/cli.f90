@@ -20,7 +20,7 @@ module vcor_app_cli
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
-   character(len=*), parameter :: help_options = '--help --version'
+   character(len=*), parameter :: help_options = '--man --markdown --help --version'
 
    !> What the user asks for
    type :: request_t
@@ -44,6 +44,8 @@ module vcor_app_cli
       integer :: shards = 0
       !> Nothing on the screen
       logical :: quiet = .false.
+      !> Form of a page of help: empty for the screen, else --man or --markdown
+      character(len=:), allocatable :: form
    end type request_t
 
 contains
@@ -62,6 +64,7 @@ contains
       logical :: plain
 
       allocate (request%files(0), request%settings(0), request%names(0))
+      request%form = ''
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, verify, help ' &
             //'(vcor help says more)')
@@ -116,6 +119,13 @@ contains
             return
          end if
          select case (name)
+         case ('--man', '--markdown')
+            if (mark > 0) then
+               call raise(error, error_usage, 'option '//name//' takes no value')
+               return
+            end if
+            request%form = name
+            cycle
          case ('--help')
             deallocate (request%files)
             allocate (request%files(0))

@@ -6,6 +6,7 @@ module vcor_app_driver
    use vcor_app_help, only : help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_merge, only : merge_shards
+   use vcor_app_manual, only : manual_text
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
@@ -35,7 +36,7 @@ contains
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
       case ('help')
-         call help(request%files, error)
+         call help(request%files, request%form, error)
       case ('merge')
          call merge_shards(request, error)
       case ('check')
@@ -57,18 +58,22 @@ contains
    end subroutine complain
 
    !> Print a help page
-   subroutine help(topics, error)
+   subroutine help(topics, form, error)
       !> Topic, if any
       type(argument_t), intent(in) :: topics(:)
+      !> Empty for the screen, --man or --markdown for a page of the manual
+      character(len=*), intent(in) :: form
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text, topic
 
-      if (size(topics) > 0) then
-         call help_text(topics(1)%text, text, error)
+      topic = ''
+      if (size(topics) > 0) topic = topics(1)%text
+      if (form == '') then
+         call help_text(topic, text, error)
       else
-         call help_text('', text, error)
+         call manual_text(topic, form == '--man', text, error)
       end if
       if (.not. allocated(error)) call write_stdout(text, error)
    end subroutine help

@@ -59,6 +59,7 @@ contains
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
+      text = text//nl//'pages of the manual: vcor help [input|output] --man, or --markdown'//nl
    end function overview
 
    !> Page of run

@@ -75,6 +75,10 @@ look() {
       need "h5dump" "hdf5-tools" have h5dump
       need "OpenMPI with mpi_f08" "libopenmpi-dev openmpi-bin" have_mpi
       need "python3 with venv" "python3 python3-venv" have_venv
+      # the pages of man are shown, and packages are made
+      need "man" "man-db" have man
+      need "dpkg-shlibdeps" "dpkg-dev" have dpkg-shlibdeps
+      need "file" "file" have file
    fi
 }
 

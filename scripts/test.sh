@@ -86,7 +86,14 @@ with_fpm() {
       passed=$((passed + tests - bad))
       failed=$((failed + bad))
    fi
-   return $code
+   [ $code -eq 0 ] || return $code
+   begin "a project that depends on vcor, with fpm"
+   rm -rf build/consumer
+   cp -r tests/consumer build/consumer
+   cp examples/paper/sls.nml build/consumer
+   "$fpm" run from_case --directory build/consumer 2>&1 | tee "$report"
+   grep -q '^COR  *0\.40729242 ' "$report"
+   passed=$((passed + 1))
 }
 
 begin "set-up"

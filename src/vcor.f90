@@ -1,7 +1,7 @@
 !> The public interface of the library: everything a program needs, re-exported
 module vcor
-   use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
-      error_usage, raise
+   use vcor_error, only : code_meanings, code_names, error_file, error_input, error_internal, &
+      error_numerical, error_t, error_usage, raise
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
@@ -42,17 +42,18 @@ module vcor
       attempt_halved, attempt_refined, compared_t, comparison_t
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
-   use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
-   use vcor_study_models, only : model_t, solve_models
    use vcor_study_axes, only : new_grid
+   use vcor_study_keys, only : catalogue, group_t, groups, key_t, kind_name, range_text, text_key
+   use vcor_study_models, only : model_t, solve_models
    use vcor_study_monitor, only : monitor_t
    use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
       share_flag, this_rank
+   use vcor_study_nearest, only : suggestion
    use vcor_study_partition, only : new_part, part_t
    use vcor_study_points, only : solve_part
-   use vcor_study_nearest, only : suggestion
-   use vcor_study_quantity, only : point_failed, point_invalid, point_pending, quantities, &
-      quantity_names, quantity_t, quantity_value, status_name
+   use vcor_study_quantity, only : history_quantities, point_failed, point_invalid, &
+      point_pending, quantities, quantity_names, quantity_t, quantity_value, status_name, &
+      status_t, statuses
    use vcor_study_summary, only : new_summary, summary_t
    use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
       worker_t
@@ -67,6 +68,7 @@ module vcor
    public :: wp, version
    public :: error_t, raise
    public :: error_internal, error_usage, error_input, error_file, error_numerical
+   public :: code_names, code_meanings
    public :: material_t, material_data_t, new_material
    public :: prony_t, power_law_t, cerf_t, mittag_leffler_t, tabulated_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
@@ -80,7 +82,8 @@ module vcor
    public :: outcome_t, evaluate
    public :: case_t, read_case, read_case_text, override, read_data, data_file
    public :: build_impact, build_material, build_solver
-   public :: quantity_t, quantities, quantity_names, quantity_value, status_name
+   public :: quantity_t, quantities, history_quantities, quantity_names, quantity_value
+   public :: status_t, statuses, status_name
    public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
    public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
    public :: point_pending
@@ -89,7 +92,7 @@ module vcor
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: model_t, solve_models
-   public :: key_t, group_t, catalogue, groups, range_text
+   public :: key_t, group_t, catalogue, groups, range_text, kind_name, text_key
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: place_in_table, write_rows
    public :: part_t, new_part, monitor_t, solve_part, new_grid

@@ -34,17 +34,19 @@ module vcor_solver
 
    !> Letters of the longest name of a method
    integer, parameter :: longest_method = len('direct')
+   !> Letters of the longest name in the settings
+   integer, parameter :: longest_name = len('adams_bashforth')
 
    !> How an impact is to be solved
    type :: solver_settings_t
       !> One of auto, ive, direct
-      character(len=:), allocatable :: method
+      character(len=longest_name) :: method = 'auto'
       !> Scheme of the direct method: product or adams_bashforth
-      character(len=:), allocatable :: scheme
+      character(len=longest_name) :: scheme = 'product'
       !> adams_bashforth: form of Eq. (8), a or b
-      character(len=:), allocatable :: form
+      character(len=longest_name) :: form = 'a'
       !> adams_bashforth: sums, rectangle or trapezoid
-      character(len=:), allocatable :: quadrature
+      character(len=longest_name) :: quadrature = 'trapezoid'
       !> Time step of the direct method [s]; 0: follows from the accuracy
       real(wp) :: time_step = 0.0_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
@@ -206,15 +208,16 @@ contains
             call move_alloc(product, solver)
          case ('adams_bashforth')
             allocate (marching)
-            call new_marching(marching, settings%time_step, settings%end_time, settings%form, &
-               settings%quadrature, error, settings%second_coefficient, settings%ghost)
+            call new_marching(marching, settings%time_step, settings%end_time, &
+               trim(settings%form), trim(settings%quadrature), error, settings%second_coefficient, &
+               settings%ghost)
             if (.not. allocated(error)) call move_alloc(marching, solver)
          case default
-            call raise(error, error_input, "unknown scheme '"//settings%scheme &
+            call raise(error, error_input, "unknown scheme '"//trim(settings%scheme) &
                //"'; known: product, adams_bashforth")
          end select
       case default
-         call raise(error, error_input, "unknown method '"//settings%method &
+         call raise(error, error_input, "unknown method '"//trim(settings%method) &
             //"'; known: auto, ive, direct")
       end select
    end subroutine new_solver_for_all

@@ -1,4 +1,4 @@
-!> Sweeps: the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
+!> Sweeps, the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
 !> one point
 !>
 !> A point is the blueprint of the case with some numbers set, so nothing is read, looked up or
