@@ -11,7 +11,7 @@
 module vcor_io_moduli_tables
    use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_study_moduli, only : curves_t, moduli_t
+   use vcor_study_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_version, only : version
    implicit none
    private
@@ -64,7 +64,8 @@ contains
       call add_dimension(dynamic, 'frequency', moduli%frequencies, 'rad/s', 'angular frequency')
       call add_column(dynamic, 'storage_modulus', storage, 'Pa', "storage modulus E'")
       call add_column(dynamic, 'loss_modulus', loss, 'Pa', "loss modulus E''")
-      call add_column(dynamic, 'loss_tangent', loss/storage, '1', "loss tangent E''/E'")
+      call add_column(dynamic, 'loss_tangent', loss_tangent(storage, loss), '1', &
+         "loss tangent E''/E'")
       call add_column(dynamic, 'in_window', &
          spread_out(moduli%frequencies >= moduli%min_frequency), '1', window_meaning)
 
@@ -78,7 +79,6 @@ contains
          integer, intent(in) :: items(:)
 
          integer :: longest, k
-         character(len=:), allocatable :: names(:)
 
          call new_table(table, version, title, case_text)
          if (moduli%contact_time > 0.0_wp) then
@@ -91,12 +91,26 @@ contains
          do k = 1, size(items)
             longest = max(longest, len(moduli%materials(items(k))%name))
          end do
-         allocate (character(len=longest) :: names(size(items)))
+         call add_names(table, items, longest)
+      end subroutine begin
+
+      !> Add the dimension of the materials
+      subroutine add_names(table, items, longest)
+         !> The table
+         type(table_t), intent(inout) :: table
+         !> Numbers of the materials
+         integer, intent(in) :: items(:)
+         !> Length of the longest name
+         integer, intent(in) :: longest
+
+         character(len=longest) :: names(size(items))
+         integer :: k
+
          do k = 1, size(items)
             names(k) = moduli%materials(items(k))%name
          end do
          call add_dimension(table, 'material', names, '', 'name of the material')
-      end subroutine begin
+      end subroutine add_names
 
       !> Whether points are in the window, for each of the materials
       pure function spread_out(inside) result(column)
@@ -125,10 +139,8 @@ contains
 
       do i = 1, size(materials)
          models(i) = materials(i)%model
-         tangent(i) = 0.0_wp
-         if (.not. materials(i)%rigid) &
-            tangent(i) = materials(i)%loss_at_min/materials(i)%storage_at_min
       end do
+      tangent = loss_tangent(materials%storage_at_min, materials%loss_at_min)
       call add_column(table, 'model', models, '', 'model of the relaxation modulus')
       call add_column(table, 'density', materials%density, 'kg/m3', 'density, 0 where not given')
       call add_column(table, 'poisson_ratio', materials%poisson_ratio, '1', "Poisson's ratio")

@@ -1,6 +1,7 @@
 !> Moduli of the materials of a case over time and frequency: what Figs. 1 and 5 show
 module vcor_study_moduli
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
+      ieee_quiet_nan, ieee_value
    use vcor_constants, only : pi
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
@@ -13,6 +14,7 @@ module vcor_study_moduli
    private
 
    public :: moduli_t, curves_t, time_range_t, compute_moduli, sampled_times, usual_range
+   public :: loss_tangent
 
    !> Points per decade unless a number of points is given
    integer, parameter :: per_decade = 50
@@ -53,7 +55,7 @@ module vcor_study_moduli
       real(wp) :: glassy = 0.0_wp
       !> Rubbery modulus [Pa]
       real(wp) :: rubbery = 0.0_wp
-      !> Relaxation modulus at the contact time [Pa]
+      !> Relaxation modulus at the contact time [Pa]; this and the next two NaN where there is none
       real(wp) :: at_contact_time = 0.0_wp
       !> Storage modulus at the lowest frequency of interest [Pa]
       real(wp) :: storage_at_min = 0.0_wp
@@ -132,7 +134,7 @@ contains
       self%contact_time = contact_time
       if (contact_time > 0.0_wp) self%min_frequency = 2.0_wp*pi/contact_time
       self%times = sampled_times(all)
-      self%frequencies = 1.0_wp/self%times(size(self%times):1:-1)
+      self%frequencies = sampled_times(time_range_t(1.0_wp/all%last, 1.0_wp/all%first, all%points))
       do i = 1, n
          self%materials(i) = curves_of(holders(i)%material, self)
          call case%get('material', 'model', self%materials(i)%model, i)
@@ -148,7 +150,7 @@ contains
       !> Its curves
       type(curves_t) :: curves
 
-      complex(wp), allocatable :: modulus(:)
+      complex(wp) :: modulus(size(moduli%frequencies))
       complex(wp) :: at_min
 
       curves%name = material%name
@@ -161,6 +163,9 @@ contains
       curves%at_contact_time = curves%glassy
       curves%storage_at_min = curves%glassy
       if (curves%rigid) return
+      curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
+      curves%storage_at_min = curves%at_contact_time
+      curves%loss_at_min = curves%at_contact_time
       curves%relaxation = material%relaxation(moduli%times)
       modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
       curves%storage = real(modulus, wp)
@@ -171,6 +176,26 @@ contains
       curves%storage_at_min = real(at_min, wp)
       curves%loss_at_min = aimag(at_min)
    end function curves_of
+
+   !> Loss tangent E''/E'
+   elemental function loss_tangent(storage, loss) result(tangent)
+      !> Storage modulus [Pa], >= 0
+      real(wp), intent(in) :: storage
+      !> Loss modulus [Pa], >= 0
+      real(wp), intent(in) :: loss
+      !> Their ratio; infinite for a fluid without elasticity
+      real(wp) :: tangent
+
+      if (ieee_is_nan(loss)) then
+         tangent = loss
+      else if (.not. loss > 0.0_wp) then
+         tangent = 0.0_wp
+      else if (storage > loss*1.0e-300_wp) then
+         tangent = loss/storage
+      else
+         tangent = ieee_value(1.0_wp, ieee_positive_inf)
+      end if
+   end function loss_tangent
 
    !> Whole decades from the glassy plateau of a material to the rubbery one, as far as they are
    !> within reach of a time, and that time
