@@ -1,12 +1,11 @@
 !> Identification of a material from data, or from another model
 module vcor_app_fit
-   use vcor_app_argument, only : argument_t
    use vcor_app_cli, only : request_t
    use vcor_app_fit_options, only : check_fit
    use vcor_app_fit_screen, only : fit_report, fit_remarks
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
-   use vcor, only : directory_exists, error_input, error_t, error_usage, fit_material, fit_t, &
-      join_path, material_text, printable, raise, read_samples, reading_t, same_file, samples_t, &
+   use vcor, only : data_file, directory_exists, error_input, error_t, error_usage, fit_material, &
+      fit_t, join_path, material_text, printable, raise, read_samples, reading_t, same_file, samples_t, &
       write_file, write_stdout, wp
    implicit none
    private
@@ -72,7 +71,7 @@ contains
       group = fit_remarks(fit, source, samples)//material_text(fit%data, density, poisson_ratio, &
          samples%first_time(), samples%last_time())
       if (allocated(request%directory)) then
-         call choose_path(request, source, path, error)
+         call choose_path(request, source, sampled, path, error)
          if (.not. allocated(error)) call write_file(path, group, error)
          if (allocated(error)) return
          tail = tail//'  written '//path//new_line('a')
@@ -87,31 +86,34 @@ contains
    end subroutine fit_data
 
    !> Where the group goes: a file, or a file in a directory
-   subroutine choose_path(request, source, path, error)
+   subroutine choose_path(request, source, sampled, path, error)
       !> The request
       type(request_t), intent(in) :: request
       !> The data file, or the case
       character(len=*), intent(in) :: source
+      !> What was sampled, if it was
+      type(sampled_t), intent(in) :: sampled
       !> The path
       character(len=:), allocatable, intent(out) :: path
-      !> Error of code `error_input` if the file is the data file, unallocated on success
+      !> Error of code `error_input` if the file is one that was read, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: from
+      integer :: i
+      logical :: taken
 
       path = request%directory
       if (directory_exists(path) .or. path(len(path):) == '/') &
          path = join_path(path, stem_of(source)//'_fit.nml')
-      from = source
       if (.not. allocated(request%fit%source)) then
-         if (same_file(path, from)) call raise(error, error_input, printable(source) &
-            //': the material would replace the data file: give another --output')
-         return
+         taken = same_file(path, source)
+      else
+         taken = same_file(path, sampled%case%source)
+         do i = 1, sampled%case%count('material')
+            if (.not. taken) taken = same_file(path, data_file(sampled%case, i))
+         end do
       end if
-      ! the case may be followed by the name of the material
-      if (same_file(path, from) .or. same_file(path, from(:max(1, index(from, ':', back=.true.) &
-         - 1)))) call raise(error, error_input, printable(source) &
-         //': the material would replace the case file: give another --output')
+      if (taken) call raise(error, error_input, printable(source)//': the material would replace ' &
+         //path//': give another --output')
    end subroutine choose_path
 
    !> Name of a file without folder and ending
