@@ -34,9 +34,9 @@ module vcor_material_fit_series
    !> Most terms
    integer, parameter :: most_terms = 60
    !> Reduction of the sum of squares that counts as none, while the number is searched and at last
-   real(wp), parameter :: coarse = 1.0e-6_wp, fine = 1.0e-12_wp
+   real(wp), parameter :: coarse = 1.0e-4_wp, fine = 1.0e-9_wp
    !> Most evaluations, while the number is searched and at last
-   integer, parameter :: first_patience = 100, last_patience = 3000
+   integer, parameter :: first_patience = 60, last_patience = 2000
    !> Part of the largest modulus that starts a term which least squares do without
    real(wp), parameter :: little = 1.0e-3_wp
 
