@@ -375,8 +375,7 @@ contains
       end if
       where (x < problem%lower + touch .or. x > problem%upper - touch) &
          fit%parameters(free)%state = state_bound
-      if (any(fit%parameters(free)%name == 'moduli' &
-         .and. fit%parameters(free)%state == state_bound)) then
+      if (any(series%moduli <= nothing*minval(samples%modulus))) then
          call raise(error, error_numerical, 'the data do not support so many terms: take fewer, ' &
             //'or leave --terms out')
          return
