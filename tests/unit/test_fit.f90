@@ -109,9 +109,9 @@ contains
       type(samples_t) :: samples
 
       if (model == 'sls') then
-         samples = sampled(truth(model), 1.0e-5_wp, 1.0e-2_wp, 61, dynamic)
+         samples = sampled(truth(model), 1.0e-5_wp, 1.0e-2_wp, 41, dynamic)
       else
-         samples = sampled(truth(model), 1.0e-7_wp, 1.0e-1_wp, 61, dynamic)
+         samples = sampled(truth(model), 1.0e-9_wp, 1.0e-1_wp, 41, dynamic)
       end if
    end function sampled_model
 

@@ -188,7 +188,9 @@ contains
       mark = index(name, "(t)") + index(name, "(w)") + index(name, "(f)") + index(name, "(omega)")
       if (mark > 1) then
          i = mark + index(name(mark:), ")")
-         column%unit = without_brackets(cell(i:))
+         column%unit = adjustl(cell(i:))
+         if (column%unit(1:1) == "/") column%unit = column%unit(2:)
+         column%unit = without_brackets(column%unit)
          name = name(:mark - 1)
       else
          mark = scan(name, "[(/")
