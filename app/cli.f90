@@ -1,15 +1,17 @@
 !> The command line as a request
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
-   use vcor, only : error_t, error_usage, integer_text, most_threads, printable, quantity_names, &
-      raise, suggestion
+   use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
+   use vcor_app_option_value, only : read_positive, read_whole
+   use vcor, only : error_t, error_usage, most_threads, printable, quantity_names, raise, &
+      suggestion, time_range_t
    implicit none
    private
 
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run merge check verify help'
+   character(len=*), parameter :: commands = 'run merge check material fit verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
       //'--shard --quiet --help --version'
@@ -17,10 +19,16 @@ module vcor_app_cli
    character(len=*), parameter :: merge_options = '--output --quiet --help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
+   !> Options of material, and of fit beside its own
+   character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
+      //'--quiet --help --version'
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
    character(len=*), parameter :: help_options = '--man --markdown --help --version'
+
+   !> Most points of --points
+   integer, parameter :: most_points = 100000
 
    !> What the user asks for
    type :: request_t
@@ -42,6 +50,10 @@ module vcor_app_cli
       integer :: shard = 0
       !> Number of shards; 0 without --shard
       integer :: shards = 0
+      !> Times of --from, --to and --points
+      type(time_range_t) :: range
+      !> What is to be fitted
+      type(fit_request_t) :: fit
       !> Nothing on the screen
       logical :: quiet = .false.
       !> Form of a page of help: empty for the screen, else --man or --markdown
@@ -66,7 +78,8 @@ contains
       allocate (request%files(0), request%settings(0), request%names(0))
       request%form = ''
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, merge, check, verify, help ' &
+         call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
+            //'verify, help ' &
             //'(vcor help says more)')
          return
       end if
@@ -78,6 +91,10 @@ contains
          known = merge_options
       case ('check')
          known = check_options
+      case ('material')
+         known = material_options
+      case ('fit')
+         known = fit_options//' '//material_options
       case ('verify')
          known = verify_options
       case ('help', '--help', '-h')
@@ -135,13 +152,15 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--resume')
+         case ('--quiet', '--resume', '--shear', '--dynamic')
             if (mark > 0) then
                call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
             if (name == '--quiet') request%quiet = .true.
             if (name == '--resume') request%resume = .true.
+            if (name == '--shear') request%fit%shear = .true.
+            if (name == '--dynamic') request%fit%dynamic = .true.
             cycle
          case default
          end select
@@ -181,6 +200,7 @@ contains
          call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
          return
       end if
+      if (request%command == 'fit') return
       call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
    end subroutine refuse_no_case
 
@@ -205,11 +225,19 @@ contains
       case ('--output')
          request%directory = value
       case ('--threads')
-         call read_whole(option, value, most_threads, request%threads, error)
+         call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--shard')
          call read_shard(value, request, error)
-      case default
+      case ('--points')
+         call read_whole(option, value, 2, most_points, request%range%points, error)
+      case ('--from')
+         call read_positive(option, value, request%range%first, error)
+      case ('--to')
+         call read_positive(option, value, request%range%last, error)
+      case ('--print')
          call add_names(value, request, error)
+      case default
+         call apply_fit_option(option, value, request%fit, error)
       end select
    end subroutine apply
 
@@ -231,37 +259,10 @@ contains
             //"', expected I/N: shard I of N, as in --shard 1/4")
          return
       end if
-      call read_whole('--shard', value(mark + 1:), most_shards, request%shards, error)
+      call read_whole('--shard', value(mark + 1:), 1, most_shards, request%shards, error)
       if (allocated(error)) return
-      call read_whole('--shard', value(:mark - 1), request%shards, request%shard, error)
+      call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
-
-   !> Read a whole number from 1 on
-   subroutine read_whole(option, value, most, number, error)
-      !> The option
-      character(len=*), intent(in) :: option
-      !> The number as it is written
-      character(len=*), intent(in) :: value
-      !> Largest number that is allowed
-      integer, intent(in) :: most
-      !> The number
-      integer, intent(out) :: number
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: digits
-      integer, parameter :: most_digits = 9
-      integer :: status
-
-      number = 0
-      digits = trim(adjustl(value))
-      status = 0
-      if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
-         read (digits, *, iostat=status) number
-      if (status /= 0 .or. number < 1 .or. number > most) call raise(error, error_usage, &
-         option//": found '"//printable(digits)//"', expected a whole number from 1 to " &
-         //integer_text(most))
-   end subroutine read_whole
 
    !> Split the value of --print
    subroutine add_names(list, request, error)

@@ -1,6 +1,7 @@
 !> Running a case: its impact; its sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
+   use vcor_app_band, only : warn_of_bands
    use vcor_app_files, only : write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
@@ -70,6 +71,7 @@ contains
       call summary%put(1, outcome)
       call end_of(job, outcome, worker%trajectory, error)
 
+      call warn_of_bands(job, summary)
       call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
       call write_files(request, job, identity, table, worker%trajectory, files, trouble)
       if (allocated(trouble)) then

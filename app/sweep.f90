@@ -2,6 +2,7 @@
 !>
 !> The first rank alone reads and writes files and talks to the user.
 module vcor_app_sweep
+   use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
    use vcor_app_job, only : endings, job_t, shard_text
@@ -187,6 +188,7 @@ contains
       type(trajectory_t) :: none
       character(len=:), allocatable :: files
 
+      call warn_of_bands(job, summary)
       associate (identity => watch%identity)
          call watch%rows%complete(identity, job%sweep%grid, summary, error)
          if (allocated(error)) return

@@ -3,7 +3,9 @@
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
 !>     /history           the same, if there is a history
+!>     /...               the same for each further table
 !>
+!> The numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
 !> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
 !> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
 !> see named axes. A grid has datasets of more than one dimension, the first of the table first, as
@@ -39,10 +41,11 @@ module vcor_io_hdf5
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
       & text_value
+   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: write_hdf5, remark_t
+   public :: write_hdf5, remark_t, named_table_t
 
    !> Text that describes a file
    type :: remark_t
@@ -51,6 +54,14 @@ module vcor_io_hdf5
       !> Its value
       character(len=:), allocatable :: text
    end type remark_t
+
+   !> A table and the name of its group
+   type :: named_table_t
+      !> Name of the group
+      character(len=:), allocatable :: name
+      !> The table
+      type(table_t) :: table
+   end type named_table_t
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -108,10 +119,10 @@ module vcor_io_hdf5
 
 contains
 
-   !> Write the summary and, if there is one, the history to a file
+   !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error, remarks, plain)
+   subroutine write_hdf5(filename, summary, history, error, remarks, plain, more)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -124,18 +135,27 @@ contains
       type(remark_t), intent(in), optional :: remarks(:)
       !> Whether all numbers are to be stored as they are, in one piece: false if it is not given
       logical, intent(in), optional :: plain
+      !> Further tables, each with its name
+      type(named_table_t), intent(in), optional :: more(:)
       type(writer_t) :: writer
       type(handler_t) :: handler
+      integer :: i
 
       call check_table(summary, error)
       if (allocated(error)) return
       if (present(history)) call check_table(history, error)
       if (allocated(error)) return
+      if (present(more)) then
+         do i = 1, size(more)
+            call check_table(more(i)%table, error)
+            if (allocated(error)) return
+         end do
+      end if
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
          if (present(plain)) writer%is_plain = plain
-         call build(writer, summary, history, remarks)
+         call build(writer, summary, history, remarks, more)
          call write_image(writer, filename, error)
          call close_all(writer)
          call end_hdf5(handler)
@@ -146,7 +166,7 @@ contains
    end subroutine write_hdf5
 
    !> Build the file in memory
-   subroutine build(writer, summary, history, remarks)
+   subroutine build(writer, summary, history, remarks, more)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
       !> A row per impact
@@ -155,6 +175,8 @@ contains
       type(table_t), intent(in), optional :: history
       !> More that describes the file
       type(remark_t), intent(in), optional :: remarks(:)
+      !> Further tables
+      type(named_table_t), intent(in), optional :: more(:)
       integer :: i, status
 
       call prepare(writer)
@@ -173,6 +195,11 @@ contains
       end if
       call put_table(writer, "summary", summary)
       if (present(history)) call put_table(writer, "history", history)
+      if (present(more)) then
+         do i = 1, size(more)
+            call put_table(writer, more(i)%name, more(i)%table)
+         end do
+      end if
    end subroutine build
 
    !> Make the property lists and types that all objects share
@@ -235,6 +262,12 @@ contains
       call h5gcreate_f(writer%file, name, group, status, gcpl_id=writer%group_creation)
       call note(writer, status, "create the group '"//name//"'")
       if (allocated(writer%fault)) return
+      do i = 1, table%fact_count
+         associate (fact => table%facts(i))
+            call put_number(writer, group, fact%name, fact%value)
+            call put_attribute(writer, group, fact%name//"_units", fact%unit)
+         end associate
+      end do
 
       scales = nothing
       do i = 1, table%dimension_count
@@ -435,6 +468,37 @@ contains
       call h5aclose_f(attribute, status)
       call note(writer, status, "close the attribute '"//name//"'")
    end subroutine put_attribute
+
+   !> Write a number as an attribute
+   subroutine put_number(writer, object, name, number)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> The number
+      real(wp), intent(in) :: number
+      real(wp), target :: value
+      integer(hid_t) :: attribute, space
+      integer :: status
+
+      if (allocated(writer%fault)) return
+      call h5screate_f(h5s_scalar_f, space, status)
+      call note(writer, status, "make the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+      call h5acreate_f(object, name, h5t_ieee_f64le, space, attribute, status)
+      call note(writer, status, "create the attribute '"//name//"'")
+      call h5sclose_f(space, status)
+      call note(writer, status, "close the dimensions of the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+
+      value = number
+      call h5awrite_f(attribute, h5t_native_double, c_loc(value), status)
+      call note(writer, status, "write the attribute '"//name//"'")
+      call h5aclose_f(attribute, status)
+      call note(writer, status, "close the attribute '"//name//"'")
+   end subroutine put_number
 
    !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
    subroutine write_image(writer, filename, error)
