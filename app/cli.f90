@@ -67,8 +67,8 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, material, fit, verify, help ' &
-            //'(vcor help says more)')
+         call raise(error, error_usage, 'no command; known: run, check, material, fit, verify, ' &
+            //'help '//'(vcor help says more)')
          return
       end if
 
