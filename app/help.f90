@@ -103,8 +103,8 @@ contains
 
       text = 'usage: vcor material CASE.nml ... [options]'//nl//nl &
          //'Computes the moduli of each material of a case, relaxation over time, storage,'//nl &
-         //'loss and loss tangent over angular frequency, and solves the impact for the window'//nl &
-         //'that matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
+         //'loss and loss tangent over angular frequency, and solves the impact for the'//nl &
+         //'window that matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
          //'  STEM_material.csv             a row per material: glassy and rubbery modulus,'//nl &
          //'                                values at t0 and 2 pi/t0'//nl &
          //'  STEM_material_relaxation.csv  material, time, relaxation_modulus, in_window'//nl &
