@@ -79,8 +79,7 @@ contains
       request%form = ''
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
-            //'verify, help ' &
-            //'(vcor help says more)')
+            //'verify, help (vcor help says more)')
          return
       end if
 
