@@ -1,4 +1,4 @@
-!> Tables as an HDF5 file, the only module that calls HDF5
+!> Tables as an HDF5 file; `vcor_io_hdf5_reader` reads it
 !>
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
@@ -18,12 +18,12 @@
 !> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends.
 !> Objects hold no times: the same tables give the same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_funptr, c_int, &
-      & c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int64_t, &
+      & c_loc, c_null_char, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
       & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
-      & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, h5iis_valid_f, h5open_f, &
+      & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, &
       & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
       & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
       & h5pcreate_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_fapl_core_f, &
@@ -34,6 +34,7 @@ module vcor_io_hdf5
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : quoted_path, write_file
+   use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
       & text_value
    implicit none
@@ -56,8 +57,6 @@ module vcor_io_hdf5
       & //char(10)
    !> HDF5 wants a name for a file in memory too and reads what has that name: nothing can
    character(len=*), parameter :: no_path = "/dev/null/vcor.h5"
-   !> The error stack that H5E functions take by default (H5E_DEFAULT)
-   integer(c_int64_t), parameter :: default_stack = 0_c_int64_t
 
    !> A file that is being built in memory
    type :: writer_t
@@ -79,22 +78,7 @@ module vcor_io_hdf5
       character(len=:), allocatable :: fault
    end type writer_t
 
-   ! HDF5's Fortran interface can turn the printing of errors on and off but cannot tell whether it
-   ! is on, and a program that uses this library may have a handler of its own
    interface
-      !> Ask for the handler of errors
-      function c_get_handler(stack, handler, client) result(status) bind(c, name="H5Eget_auto2")
-         import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
-         integer(c_int64_t), intent(in), value :: stack
-         !> Handler, null if there is none
-         type(c_funptr), intent(out) :: handler
-         !> What the handler is called with
-         type(c_ptr), intent(out) :: client
-         !> Negative on failure
-         integer(c_int) :: status
-      end function c_get_handler
-
       !> Ask for what the driver of a file works with
       function c_get_vfd_handle(file, access, handle) result(status) &
          & bind(c, name="H5Fget_vfd_handle")
@@ -108,19 +92,6 @@ module vcor_io_hdf5
          !> Negative on failure
          integer(c_int) :: status
       end function c_get_vfd_handle
-
-      !> Set the handler of errors
-      function c_set_handler(stack, handler, client) result(status) bind(c, name="H5Eset_auto2")
-         import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
-         integer(c_int64_t), intent(in), value :: stack
-         !> Handler, null for none
-         type(c_funptr), intent(in), value :: handler
-         !> What the handler is called with
-         type(c_ptr), intent(in), value :: client
-         !> Negative on failure
-         integer(c_int) :: status
-      end function c_set_handler
    end interface
 
 contains
@@ -138,31 +109,21 @@ contains
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
       type(writer_t) :: writer
-      type(c_funptr) :: handler
-      type(c_ptr) :: client
+      type(silence_t) :: silence
       integer :: status
-      logical :: is_open
 
       call check_table(summary, error)
       if (allocated(error)) return
       if (present(history)) call check_table(history, error)
       if (allocated(error)) return
 
-      ! The types of HDF5 are there if the library was opened, by whomever; it is never closed here,
-      ! since that would close everything else the program has open in HDF5
-      call h5iis_valid_f(h5t_native_double, is_open, status)
-      if (status < 0 .or. .not. is_open) then
-         call h5open_f(status)
-         call note(writer, status, "open its library")
-      end if
-      status = c_get_handler(default_stack, handler, client)
-      call note(writer, status, "give its handler of errors")
+      call begin_silence(silence, status)
+      call note(writer, status, "open its library")
       if (.not. allocated(writer%fault)) then
-         status = c_set_handler(default_stack, c_null_funptr, c_null_ptr)
          call build(writer, summary, history)
          call write_image(writer, filename, error)
          call close_all(writer)
-         status = c_set_handler(default_stack, handler, client)
+         call end_silence(silence)
       end if
 
       if (allocated(writer%fault) .and. .not. allocated(error)) call raise(error, error_file, &

@@ -1,0 +1,445 @@
+!> Reading HDF5 files: what is in them, numbers of any shape, text, attributes
+!>
+!>     call open_input(input, "case.h5", error)
+!>     call list_members(input, "summary", members, error)
+!>     call read_dataset(input, "summary/cor", dataset, error)
+!>     text = text_attribute(input, "/", "title")
+!>     call close_input(input)
+!>
+!> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
+!> width and byte order, text of fixed or variable length. Members come in the order in which they
+!> were written where the file knows it, else by name. Every error is an `error_file` with the name
+!> of the file, but for a file that is there and is no HDF5 file: that is an `error_input`.
+module vcor_io_hdf5_reader
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_loc, c_null_char, &
+      & c_null_ptr, c_ptr
+   use hdf5, only : h5aclose_f, h5aexists_f, h5aget_space_f, h5aget_type_f, h5aopen_f, h5aread_f, &
+      & h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5dvlen_reclaim_f, &
+      & h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, &
+      & h5gopen_f, h5i_group_f, h5iget_type_f, h5_index_crt_order_f, &
+      & h5_index_name_f, h5_iter_inc_f, h5lget_name_by_idx_f, &
+      & h5oclose_f, h5oopen_f, h5p_default_f, h5sclose_f, h5sget_simple_extent_dims_f, &
+      & h5sget_simple_extent_ndims_f, h5t_float_f, h5t_integer_f, h5t_native_double, &
+      & h5t_native_integer, h5t_string, h5t_string_f, h5tclose_f, h5tcopy_f, h5tget_class_f, &
+      & h5tget_cset_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, h5tset_size_f, hid_t, &
+      & hsize_t, size_t
+   use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_io_file, only : directory_exists, file_exists
+   use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column
+   use vcor_study_text, only : printable, shortened
+   implicit none
+   private
+
+   public :: hdf5_input_t, member_t, dataset_t
+   public :: open_input, close_input, list_members, has_member, read_dataset, text_attribute
+
+   !> Longest name of a member that is read [bytes]
+   integer, parameter :: longest_name = 512
+
+   !> A file that is being read
+   type :: hdf5_input_t
+      private
+      !> The file
+      integer(hid_t) :: file = -1_hid_t
+      !> Its name as messages show it
+      character(len=:), allocatable, public :: path
+      !> Handler of errors before
+      type(silence_t) :: silence
+   end type hdf5_input_t
+
+   !> A member of a group
+   type :: member_t
+      !> Its name
+      character(len=:), allocatable :: name
+      !> Whether it is a group itself
+      logical :: is_group = .false.
+   end type member_t
+
+   !> A dataset
+   type :: dataset_t
+      !> Name, unit, meaning and values, the last dimension the fastest as in nested loops
+      type(column_t) :: column
+      !> Lengths of its dimensions, the slowest first; a single value has none
+      integer, allocatable :: lengths(:)
+      !> Whether it is the scale of a dimension, which has its name
+      logical :: is_scale = .false.
+   end type dataset_t
+
+contains
+
+   !> Open a file
+   subroutine open_input(input, filename, error)
+      !> The open file
+      type(hdf5_input_t), intent(out) :: input
+      !> Its name
+      character(len=*), intent(in) :: filename
+      !> Error of code `error_input` if it is no HDF5 file, `error_file` if it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      integer :: status
+      logical :: is_hdf5
+
+      input%path = printable(filename)
+      if (len_trim(filename) == 0) then
+         call raise(error, error_file, "the name of the file is empty, expected that of a file of " &
+            & //"results")
+      else if (directory_exists(filename)) then
+         call raise(error, error_file, input%path//": found a directory, expected a file of results")
+      else if (.not. file_exists(filename)) then
+         call raise(error, error_file, input%path//": there is no such file")
+      end if
+      if (allocated(error)) return
+
+      call begin_silence(input%silence, status)
+      if (status < 0) then
+         call raise(error, error_file, input%path//": HDF5 cannot open its library")
+         return
+      end if
+      call h5fis_hdf5_f(trim(filename), is_hdf5, status)
+      if (status < 0) then
+         call raise(error, error_file, input%path//": cannot be read")
+      else if (.not. is_hdf5) then
+         call raise(error, error_input, input%path//": this is no HDF5 file, expected the .h5 file " &
+            & //"of a run")
+      else
+         call h5fopen_f(trim(filename), h5f_acc_rdonly_f, input%file, status)
+         if (status < 0) call raise(error, error_file, input%path//": HDF5 cannot open it: it is " &
+            & //"damaged, or being written")
+      end if
+      if (allocated(error)) call end_silence(input%silence)
+   end subroutine open_input
+
+   !> Close a file
+   subroutine close_input(input)
+      !> Open file; closed afterwards
+      type(hdf5_input_t), intent(inout) :: input
+      integer :: ignored
+
+      if (input%file < 0_hid_t) return
+      call h5fclose_f(input%file, ignored)
+      call end_silence(input%silence)
+      input%file = -1_hid_t
+   end subroutine close_input
+
+   !> Members of a group, in the order they were written where the file knows it, else by name
+   subroutine list_members(input, path, members, error)
+      !> Open file
+      type(hdf5_input_t), intent(in) :: input
+      !> Path of the group, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Its members, shape (n)
+      type(member_t), allocatable, intent(out) :: members(:)
+      !> Set if there is no such group or it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      character(len=longest_name) :: name
+      integer(hid_t) :: group, object
+      integer :: count, i, ignored, kind, last_order, order, status, storage
+
+      allocate(members(0))
+      call h5gopen_f(input%file, path, group, status)
+      if (status < 0) then
+         call raise(error, error_input, input%path//": there is no group '"//shortened(path)//"'")
+         return
+      end if
+      call h5gget_info_f(group, storage, count, last_order, status)
+      if (status >= 0) then
+         deallocate(members)
+         allocate(members(count))
+      end if
+      order = h5_index_crt_order_f
+      do i = 1, size(members)
+         call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, int(i - 1, hsize_t), name, &
+            & status)
+         if (status < 0 .and. i == 1) then
+            order = h5_index_name_f
+            call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, 0_hsize_t, name, status)
+         end if
+         if (status < 0) exit
+         members(i)%name = trim(name)
+         call h5oopen_f(group, trim(name), object, status)
+         if (status < 0) exit
+         call h5iget_type_f(object, kind, status)
+         members(i)%is_group = kind == h5i_group_f
+         call h5oclose_f(object, ignored)
+      end do
+      call h5gclose_f(group, ignored)
+      if (status < 0) call raise(error, error_file, input%path//": the group '"//shortened(path) &
+         & //"' is damaged")
+   end subroutine list_members
+
+   !> Whether a list has a member of that name
+   pure function has_member(members, name) result(has)
+      !> The list
+      type(member_t), intent(in) :: members(:)
+      !> The name
+      character(len=*), intent(in) :: name
+      !> True if it has
+      logical :: has
+      integer :: i
+
+      has = .false.
+      do i = 1, size(members)
+         has = has .or. members(i)%name == name
+      end do
+   end function has_member
+
+   !> Read a dataset with its unit and meaning
+   subroutine read_dataset(input, path, dataset, error)
+      !> Open file
+      type(hdf5_input_t), intent(in) :: input
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> The dataset
+      type(dataset_t), intent(out) :: dataset
+      !> Set if there is none or it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      integer(hid_t) :: set, space, type_id
+      integer :: class, ignored, status
+
+      call h5dopen_f(input%file, path, set, status)
+      if (status < 0) then
+         call raise(error, error_input, input%path//": there is no dataset '"//shortened(path)//"'")
+         return
+      end if
+      call h5dget_space_f(set, space, status)
+      if (status >= 0) call read_lengths(space, dataset%lengths, status)
+      if (status >= 0) then
+         dataset%column%name = path(index(path, "/", back=.true.)+1:)
+         dataset%column%unit = attribute_of(set, "units")
+         dataset%column%long_name = attribute_of(set, "long_name")
+         dataset%is_scale = attribute_of(set, "CLASS") == "DIMENSION_SCALE"
+         dataset%column%length = product(dataset%lengths)
+         call h5dget_type_f(set, type_id, status)
+         call h5tget_class_f(type_id, class, status)
+         if (status >= 0) call read_values(set, space, type_id, class, dataset%column, status)
+         call h5tclose_f(type_id, ignored)
+      end if
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+      if (status < 0) call raise(error, error_file, input%path//": the dataset '"//shortened(path) &
+         & //"' cannot be read as numbers or text")
+   end subroutine read_dataset
+
+   !> Lengths of the dimensions of a space
+   subroutine read_lengths(space, lengths, status)
+      !> The space
+      integer(hid_t), intent(in) :: space
+      !> Lengths, the slowest first
+      integer, allocatable, intent(out) :: lengths(:)
+      !> Negative on failure
+      integer, intent(out) :: status
+      integer(hsize_t), allocatable :: backwards(:), largest(:)
+      integer :: rank
+
+      allocate(lengths(0))
+      call h5sget_simple_extent_ndims_f(space, rank, status)
+      if (status < 0 .or. rank < 1) return
+      allocate(backwards(rank), largest(rank))
+      call h5sget_simple_extent_dims_f(space, backwards, largest, status)
+      if (product(real(backwards)) > real(huge(1))) status = -1
+      if (status >= 0) lengths = int(backwards(rank:1:-1))
+   end subroutine read_lengths
+
+   !> Read the values of a dataset
+   subroutine read_values(set, space, type_id, class, column, status)
+      !> The dataset
+      integer(hid_t), intent(in) :: set
+      !> Its space
+      integer(hid_t), intent(in) :: space
+      !> Its type in the file
+      integer(hid_t), intent(in) :: type_id
+      !> Class of its type
+      integer, intent(in) :: class
+      !> Column whose length is set; its kind and values are afterwards
+      type(column_t), intent(inout), target :: column
+      !> Negative on failure
+      integer, intent(out) :: status
+      type(c_ptr) :: place
+
+      status = 0
+      if (class == h5t_float_f) then
+         column%kind = real_column
+         allocate(column%reals(column%length))
+         if (column%length == 0) return
+         place = c_loc(column%reals)
+         call h5dread_f(set, h5t_native_double, place, status)
+      else if (class == h5t_integer_f) then
+         column%kind = integer_column
+         allocate(column%integers(column%length))
+         if (column%length == 0) return
+         place = c_loc(column%integers)
+         call h5dread_f(set, h5t_native_integer, place, status)
+      else if (class == h5t_string_f) then
+         column%kind = text_column
+         call read_texts(set, .false., space, type_id, column, status)
+      else
+         status = -1
+      end if
+   end subroutine read_values
+
+   !> Read text, of a dataset or an attribute
+   subroutine read_texts(object, is_attribute, space, type_id, column, status)
+      !> The dataset or the attribute
+      integer(hid_t), intent(in) :: object
+      !> Whether it is an attribute
+      logical, intent(in) :: is_attribute
+      !> Its space
+      integer(hid_t), intent(in) :: space
+      !> Its type in the file
+      integer(hid_t), intent(in) :: type_id
+      !> Column whose length is set; its texts are afterwards
+      type(column_t), intent(inout) :: column
+      !> Negative on failure
+      integer, intent(out) :: status
+      character(len=1, kind=c_char), allocatable, target :: letters(:)
+      type(c_ptr), allocatable, target :: places(:)
+      type(c_ptr) :: buffer
+      integer(hid_t) :: memory_type
+      integer(size_t) :: width
+      integer :: character_set, i, ignored, j
+      logical :: varies
+
+      call h5tis_variable_str_f(type_id, varies, status)
+      if (status >= 0) call h5tcopy_f(h5t_string, memory_type, status)
+      if (status < 0) return
+      call h5tget_cset_f(type_id, character_set, status)
+      call h5tset_cset_f(memory_type, character_set, status)
+      if (varies) then
+         allocate(places(max(1, column%length)))
+         places = c_null_ptr
+         if (column%length > 0) call read_raw(c_loc(places))
+         column%width = 0
+         if (status >= 0) then
+            do i = 1, column%length
+               column%width = max(column%width, length_at(places(i)))
+            end do
+            allocate(character(len=column%width*column%length) :: column%texts)
+            do i = 1, column%length
+               column%texts((i-1)*column%width+1:i*column%width) = text_at(places(i))
+            end do
+            buffer = c_loc(places)
+            call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
+         end if
+      else
+         call h5tget_size_f(type_id, width, status)
+         call h5tclose_f(memory_type, ignored)
+         ! The type of the file itself: with its length and its padding
+         memory_type = type_id
+         column%width = int(width)
+         allocate(letters(max(1, column%width*column%length)))
+         letters = " "
+         if (column%length > 0) call read_raw(c_loc(letters))
+         allocate(character(len=column%width*column%length) :: column%texts)
+         do i = 1, column%length
+            column%texts((i-1)*column%width+1:i*column%width) = " "
+            do j = (i - 1)*column%width + 1, i*column%width
+               if (letters(j) == c_null_char) exit
+               column%texts(j:j) = letters(j)
+            end do
+         end do
+      end if
+      if (memory_type /= type_id) call h5tclose_f(memory_type, ignored)
+
+   contains
+
+      !> Read as it is
+      subroutine read_raw(place)
+         !> Where it goes
+         type(c_ptr), intent(in) :: place
+
+         buffer = place
+         if (is_attribute) then
+            call h5aread_f(object, memory_type, buffer, status)
+         else
+            call h5dread_f(object, memory_type, buffer, status)
+         end if
+      end subroutine read_raw
+   end subroutine read_texts
+
+   !> Length of a text of C
+   function length_at(place) result(length)
+      !> Where it begins, or null
+      type(c_ptr), intent(in) :: place
+      !> Bytes before its NUL
+      integer :: length
+      character(kind=c_char), pointer :: letters(:)
+
+      length = 0
+      if (.not. c_associated(place)) return
+      call c_f_pointer(place, letters, [huge(1)])
+      do while (letters(length+1) /= c_null_char)
+         length = length + 1
+      end do
+   end function length_at
+
+   !> A text of C
+   function text_at(place) result(text)
+      !> Where it begins, or null
+      type(c_ptr), intent(in) :: place
+      !> The text
+      character(len=:), allocatable :: text
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i
+
+      allocate(character(len=length_at(place)) :: text)
+      if (len(text) == 0) return
+      call c_f_pointer(place, letters, [len(text)])
+      do i = 1, len(text)
+         text(i:i) = letters(i)
+      end do
+   end function text_at
+
+   !> A text attribute of a group or a dataset
+   function text_attribute(input, path, name) result(text)
+      !> Open file
+      type(hdf5_input_t), intent(in) :: input
+      !> Path of the group or the dataset, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value; empty if there is none or it is no text
+      character(len=:), allocatable :: text
+      integer(hid_t) :: object
+      integer :: ignored, status
+
+      text = ""
+      call h5oopen_f(input%file, path, object, status)
+      if (status < 0) return
+      text = attribute_of(object, name)
+      call h5oclose_f(object, ignored)
+   end function text_attribute
+
+   !> A text attribute of an open object
+   function attribute_of(object, name) result(text)
+      !> The object
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value; empty if there is none or it is no single text
+      character(len=:), allocatable :: text
+      type(column_t) :: column
+      integer(hid_t) :: attribute, space, type_id
+      integer, allocatable :: lengths(:)
+      integer :: class, ignored, status
+      logical :: exists
+
+      text = ""
+      call h5aexists_f(object, name, exists, status)
+      if (status < 0 .or. .not. exists) return
+      call h5aopen_f(object, name, attribute, status)
+      if (status < 0) return
+      call h5aget_type_f(attribute, type_id, status)
+      call h5tget_class_f(type_id, class, status)
+      call h5aget_space_f(attribute, space, status)
+      call read_lengths(space, lengths, status)
+      column%length = product(lengths)
+      if (status >= 0 .and. class == h5t_string_f .and. column%length == 1) then
+         call read_texts(attribute, .true., space, type_id, column, status)
+         if (status >= 0) text = trim(column%texts)
+      end if
+      call h5sclose_f(space, ignored)
+      call h5tclose_f(type_id, ignored)
+      call h5aclose_f(attribute, ignored)
+   end function attribute_of
+
+end module vcor_io_hdf5_reader
