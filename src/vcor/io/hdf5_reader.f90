@@ -13,7 +13,9 @@
 module vcor_io_hdf5_reader
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_loc, c_null_char, &
       & c_null_ptr, c_ptr
-   use hdf5, only : h5aclose_f, h5aexists_f, h5aget_space_f, h5aget_type_f, h5aopen_f, h5aread_f, &
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use hdf5, only : h5aclose_f, h5aexists_by_name_f, h5aexists_f, h5aget_space_f, h5aget_type_f, &
+      & h5aopen_f, h5aread_f, &
       & h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5dvlen_reclaim_f, &
       & h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, &
       & h5gopen_f, h5i_group_f, h5iget_type_f, h5_index_crt_order_f, &
@@ -27,12 +29,14 @@ module vcor_io_hdf5_reader
    use vcor_io_file, only : directory_exists, file_exists
    use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
+   use vcor_kinds, only : wp
    use vcor_study_text, only : printable, shortened
    implicit none
    private
 
    public :: hdf5_input_t, member_t, dataset_t
-   public :: open_input, close_input, list_members, has_member, read_dataset, text_attribute
+   public :: open_input, close_input, list_members, has_member, read_dataset
+   public :: text_attribute, number_attribute
 
    !> Longest name of a member that is read [bytes]
    integer, parameter :: longest_name = 512
@@ -408,6 +412,43 @@ contains
       text = attribute_of(object, name)
       call h5oclose_f(object, ignored)
    end function text_attribute
+
+   !> A number as attribute of a group or a dataset
+   function number_attribute(input, path, name) result(number)
+      !> Open file
+      type(hdf5_input_t), intent(in) :: input
+      !> Path of the group or the dataset, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value; NaN if there is none or it is no single number
+      real(wp) :: number
+      real(wp), target :: value(1)
+      type(c_ptr) :: place
+      integer(hid_t) :: attribute, object, space
+      integer, allocatable :: lengths(:)
+      integer :: ignored, status
+      logical :: exists
+
+      number = ieee_value(1.0_wp, ieee_quiet_nan)
+      call h5aexists_by_name_f(input%file, path, name, exists, status)
+      if (status < 0 .or. .not. exists) return
+      call h5oopen_f(input%file, path, object, status)
+      if (status < 0) return
+      call h5aopen_f(object, name, attribute, status)
+      if (status >= 0) then
+         call h5aget_space_f(attribute, space, status)
+         call read_lengths(space, lengths, status)
+         if (status >= 0 .and. product(lengths) == 1) then
+            place = c_loc(value)
+            call h5aread_f(attribute, h5t_native_double, place, status)
+            if (status >= 0) number = value(1)
+         end if
+         call h5sclose_f(space, ignored)
+         call h5aclose_f(attribute, ignored)
+      end if
+      call h5oclose_f(object, ignored)
+   end function number_attribute
 
    !> A text attribute of an open object
    function attribute_of(object, name) result(text)
