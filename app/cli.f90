@@ -2,23 +2,29 @@
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
    use vcor, only : error_t, error_usage, integer_text, most_threads, printable, quantity_names, &
-      raise, suggestion
+      raise, read_real, suggestion, time_range_t, wp
    implicit none
    private
 
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check verify help'
+   character(len=*), parameter :: commands = 'run check material verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
       //'--help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
+   !> Options of material
+   character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
+      //'--quiet --help --version'
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
    character(len=*), parameter :: help_options = '--help --version'
+
+   !> Most points of --points
+   integer, parameter :: most_points = 100000
 
    !> What the user asks for
    type :: request_t
@@ -34,6 +40,8 @@ module vcor_app_cli
       character(len=:), allocatable :: directory
       !> Threads of --threads; 0 without it
       integer :: threads = 0
+      !> Times of --from, --to and --points
+      type(time_range_t) :: range
       !> Nothing on the screen
       logical :: quiet = .false.
    end type request_t
@@ -55,7 +63,7 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, verify, help ' &
+         call raise(error, error_usage, 'no command; known: run, check, material, verify, help ' &
             //'(vcor help says more)')
          return
       end if
@@ -65,6 +73,8 @@ contains
          known = run_options
       case ('check')
          known = check_options
+      case ('material')
+         known = material_options
       case ('verify')
          known = verify_options
       case ('help', '--help', '-h')
@@ -178,18 +188,30 @@ contains
       case ('--output')
          request%directory = value
       case ('--threads')
-         call read_threads(value, request%threads, error)
+         call read_whole(option, value, 1, most_threads, request%threads, error)
+      case ('--points')
+         call read_whole(option, value, 2, most_points, request%range%points, error)
+      case ('--from')
+         call read_positive(option, value, request%range%first, error)
+      case ('--to')
+         call read_positive(option, value, request%range%last, error)
       case default
          call add_names(value, request, error)
       end select
    end subroutine apply
 
-   !> Read the value of --threads
-   subroutine read_threads(value, threads, error)
+   !> Read a whole number
+   subroutine read_whole(option, value, least, most, number, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> The number as it is written
       character(len=*), intent(in) :: value
+      !> Smallest number
+      integer, intent(in) :: least
+      !> Largest number
+      integer, intent(in) :: most
       !> The number
-      integer, intent(out) :: threads
+      integer, intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
@@ -197,15 +219,35 @@ contains
       integer, parameter :: most_digits = 9
       integer :: status
 
-      threads = 0
+      number = least - 1
       digits = trim(adjustl(value))
       status = 0
       if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
-         read (digits, *, iostat=status) threads
-      if (status /= 0 .or. threads < 1 .or. threads > most_threads) call raise(error, error_usage, &
-         "--threads: found '"//printable(digits)//"', expected a whole number from 1 to " &
-         //integer_text(most_threads))
-   end subroutine read_threads
+         read (digits, *, iostat=status) number
+      if (status /= 0 .or. number < least .or. number > most) call raise(error, error_usage, &
+         option//": found '"//printable(digits)//"', expected a whole number from " &
+         //integer_text(least)//' to '//integer_text(most))
+   end subroutine read_whole
+
+   !> Read a number > 0
+   subroutine read_positive(option, value, number, error)
+      !> The option
+      character(len=*), intent(in) :: option
+      !> The number as it is written
+      character(len=*), intent(in) :: value
+      !> The number
+      real(wp), intent(out) :: number
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=*), parameter :: expected = 'a number from 1e-30 to 1e30'
+      character(len=:), allocatable :: message
+
+      call read_real(trim(adjustl(value)), expected, number, message)
+      if (.not. allocated(message) .and. .not. (number >= 1.0e-30_wp .and. number <= 1.0e30_wp)) &
+         message = 'found '//trim(adjustl(value))//', expected '//expected
+      if (allocated(message)) call raise(error, error_usage, option//': '//message)
+   end subroutine read_positive
 
    !> Split the value of --print
    subroutine add_names(list, request, error)

@@ -5,6 +5,7 @@ module vcor_app_driver
    use vcor_app_cli, only : request_t
    use vcor_app_help, only : help_text
    use vcor_app_job, only : job_t, prepare
+   use vcor_app_material, only : show_materials
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
@@ -31,6 +32,8 @@ contains
          call help(request%files, error)
       case ('check')
          call check(request, error)
+      case ('material')
+         call materials(request, error)
       case ('verify')
          call verify(request, error)
       case default
@@ -81,6 +84,24 @@ contains
          if (allocated(error)) return
       end do
    end subroutine check
+
+   !> Moduli of the materials of cases
+   subroutine materials(request, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The first error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(job_t), allocatable :: jobs(:)
+      integer :: i
+
+      call prepare(request, jobs, error)
+      if (allocated(error)) return
+      do i = 1, size(jobs)
+         call show_materials(request, jobs(i), error)
+         if (allocated(error)) return
+      end do
+   end subroutine materials
 
    !> Verify the program, or cases
    subroutine verify(request, error)

@@ -10,7 +10,7 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run check verify input output help'
+   character(len=*), parameter :: topics = 'run check material verify input output help'
 
 contains
 
@@ -30,6 +30,8 @@ contains
          text = run_page()
       case ('check')
          text = check_page()
+      case ('material')
+         text = material_page()
       case ('verify')
          text = verify_page()
       case ('input')
@@ -50,9 +52,11 @@ contains
       text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
+         //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, verify, input, output' &
-         //nl//'       vcor --version'//nl//nl &
+         //'       vcor help [TOPIC]                  topics: run, check, material, verify,'//nl &
+         //'                                          input, output'//nl &
+         //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
    end function overview
@@ -88,6 +92,33 @@ contains
          //'Validates each case and prints it with every default filled in; what it prints is'//nl &
          //'a case file again.'//nl
    end function check_page
+
+   !> Page of material
+   function material_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor material CASE.nml ... [options]'//nl//nl &
+         //'Computes the moduli of each material of a case, relaxation over time, storage, loss'//nl &
+         //'and loss tangent over angular frequency, and solves the impact for the window that'//nl &
+         //'matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
+         //'  STEM_material.csv             a row per material: glassy and rubbery modulus,'//nl &
+         //'                                values at t0 and 2 pi/t0'//nl &
+         //'  STEM_material_relaxation.csv  material, time, relaxation_modulus, in_window'//nl &
+         //'  STEM_material_dynamic.csv     material, frequency, storage_modulus,'//nl &
+         //'                                loss_modulus, loss_tangent, in_window'//nl &
+         //'  STEM_material.h5              all of them: /summary, /relaxation, /dynamic; t0 and'//nl &
+         //'                                2 pi/t0 are attributes, contact_time and'//nl &
+         //'                                min_frequency'//nl//nl &
+         //'Where a case has &sweep groups, its first point counts.'//nl//nl &
+         //'  --from T --to T         first and last time [s]; default: from the glassy to the'//nl &
+         //'                          rubbery plateau, the contact time included. The'//nl &
+         //'                          frequencies are the reciprocals of the times'//nl &
+         //'  --points N              number of times; default: 50 to the decade'//nl &
+         //'  --set GROUP.KEY=VALUE   replace a value of the case, as for run; repeatable'//nl &
+         //'  --output DIR            directory of the files, made if it is not there'//nl &
+         //'  --quiet                 print nothing'//nl
+   end function material_page
 
    !> Page of verify
    function verify_page() result(text)

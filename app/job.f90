@@ -8,7 +8,10 @@ module vcor_app_job
    implicit none
    private
 
-   public :: job_t, prepare, endings
+   public :: job_t, prepare, endings, material_endings
+
+   !> Letters of the longest ending
+   integer, parameter :: longest_ending = 24
 
    !> One case of a call, ready to run
    type :: job_t
@@ -22,14 +25,20 @@ module vcor_app_job
       character(len=:), allocatable :: method
       !> Directory and stem of its files
       character(len=:), allocatable :: path
+      !> What the names of its files end with
+      character(len=longest_ending), allocatable :: endings(:)
       !> Which of its files it writes, in the order of `endings`
-      logical :: writes(3) = .true.
+      logical, allocatable :: writes(:)
       !> Whether there is a time history in them
       logical :: history = .true.
    end type job_t
 
-   !> What the names of the files end with
-   character(len=*), parameter :: endings(3) = [character(len=12) :: '_summary.csv', '.csv', '.h5']
+   !> What the names of the files of run end with
+   character(len=*), parameter :: endings(3) = [character(len=longest_ending) :: &
+      '_summary.csv', '.csv', '.h5']
+   !> What the names of the files of material end with
+   character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
+      '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
 
 contains
 
@@ -84,7 +93,13 @@ contains
             ! a time history is that of one impact
             history = history .and. .not. job%sweep%is_grid()
             job%history = history
-            job%writes = [csv, csv .and. history, hdf5]
+            if (request%command == 'material') then
+               job%endings = material_endings
+               job%writes = [csv, csv, csv, hdf5]
+            else
+               job%endings = endings
+               job%writes = [csv, csv .and. history, hdf5]
+            end if
             ! bare numbers are for scripts, which would be surprised by files
             if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
                job%writes = .false.
@@ -136,20 +151,20 @@ contains
 
       integer :: i, j
 
-      do i = 1, size(endings)
+      do i = 1, size(jobs(new)%endings)
          if (jobs(new)%writes(i)) call keep_data(new, old)
          if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
          if (allocated(error)) return
          if (.not. jobs(new)%writes(i)) cycle
-         if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
+         if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), request%files(old)%text)) then
             call raise(error, error_input, request%files(new)%text//': its results would replace ' &
                //'the case file '//request%files(old)%text//': give it another output.stem')
             return
          end if
          if (old == new) cycle
-         do j = 1, size(endings)
+         do j = 1, size(jobs(old)%endings)
             if (.not. jobs(old)%writes(j)) cycle
-            if (same_file(jobs(new)%path//trim(endings(i)), jobs(old)%path//trim(endings(j)))) then
+            if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), jobs(old)%path//trim(jobs(old)%endings(j)))) then
                call raise(error, error_input, request%files(new)%text//': its files would ' &
                   //'replace those of '//request%files(old)%text//': give one of them another ' &
                   //'output.stem')
@@ -168,7 +183,7 @@ contains
          integer, intent(in) :: reader
 
          do j = 1, jobs(reader)%case%count('material')
-            if (.not. same_file(jobs(writer)%path//trim(endings(i)), &
+            if (.not. same_file(jobs(writer)%path//trim(jobs(writer)%endings(i)), &
                data_file(jobs(reader)%case, j))) cycle
             call raise(error, error_input, request%files(writer)%text//': its results would ' &
                //'replace the data file '//data_file(jobs(reader)%case, j) &

@@ -13,8 +13,10 @@ module vcor
    use vcor_io_csv, only : write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_file, only : join_path, make_directory, same_file, write_stdout
-   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_hdf5, only : named_table_t, write_hdf5
+   use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
+   use vcor_io_real, only : read_real
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_table, only : table_t
@@ -36,6 +38,8 @@ module vcor
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
+   use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, &
+      time_range_t
    use vcor_study_nearest, only : suggestion
    use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
       quantity_t, quantity_value, status_name
@@ -74,8 +78,9 @@ module vcor
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
-   public :: place_in_table, write_rows
+   public :: place_in_table, write_rows, named_table_t
+   public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables
    public :: write_stdout, make_directory, join_path, same_file
-   public :: real_text, integer_text, printable, suggestion
+   public :: real_text, integer_text, printable, suggestion, read_real
 
 end module vcor

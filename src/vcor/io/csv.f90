@@ -14,13 +14,14 @@
 !> first two characters of the lines after `# case:` away gives the case again. Numbers have 17
 !> digits (`vcor_io_number`); text stands between quotation marks only if it has to.
 !>
+!> Numbers that hold for the table as a whole follow the title: `# contact_time = 1.3e-03 s, ...`.
 !> The coordinates of a dimension are columns too, unless they are just numbers in a row.
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
    use vcor_io_file, only : commit, create_file, output_file_t, put
    use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
-      & put_real
+      & put_real, real_text
    use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
       & row_count, table_t
    implicit none
@@ -86,6 +87,13 @@ contains
       if (allocated(error)) return
       call put_comments(writer, "title: "//table%title, error)
       if (allocated(error)) return
+      do i = 1, table%fact_count
+         associate (fact => table%facts(i))
+            call put_comments(writer, fact%name//" = "//real_text(fact%value)//" "//fact%unit &
+               & //", "//fact%long_name, error)
+         end associate
+         if (allocated(error)) return
+      end do
       call put_comments(writer, "columns:", error)
       if (allocated(error)) return
       do i = 1, table%dimension_count

@@ -3,7 +3,9 @@
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
 !>     /history           the same, if there is a history
+!>     /...               the same for each further table
 !>
+!> The numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
 !> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
 !> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
 !> see named axes. A grid has datasets of more than one dimension, the first of the table first, as
@@ -37,10 +39,19 @@ module vcor_io_hdf5
    use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
       & text_value
+   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: write_hdf5
+   public :: write_hdf5, named_table_t
+
+   !> A table and the name of its group
+   type :: named_table_t
+      !> Name of the group
+      character(len=:), allocatable :: name
+      !> The table
+      type(table_t) :: table
+   end type named_table_t
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -96,10 +107,10 @@ module vcor_io_hdf5
 
 contains
 
-   !> Write the summary and, if there is one, the history to a file
+   !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error)
+   subroutine write_hdf5(filename, summary, history, error, more)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -108,19 +119,27 @@ contains
       type(table_t), intent(in), optional :: history
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Further tables, each with its name
+      type(named_table_t), intent(in), optional :: more(:)
       type(writer_t) :: writer
       type(silence_t) :: silence
-      integer :: status
+      integer :: i, status
 
       call check_table(summary, error)
       if (allocated(error)) return
       if (present(history)) call check_table(history, error)
       if (allocated(error)) return
+      if (present(more)) then
+         do i = 1, size(more)
+            call check_table(more(i)%table, error)
+            if (allocated(error)) return
+         end do
+      end if
 
       call begin_silence(silence, status)
       call note(writer, status, "open its library")
       if (.not. allocated(writer%fault)) then
-         call build(writer, summary, history)
+         call build(writer, summary, history, more)
          call write_image(writer, filename, error)
          call close_all(writer)
          call end_silence(silence)
@@ -131,14 +150,16 @@ contains
    end subroutine write_hdf5
 
    !> Build the file in memory
-   subroutine build(writer, summary, history)
+   subroutine build(writer, summary, history, more)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
       !> A row per impact
       type(table_t), intent(in) :: summary
       !> A row per time
       type(table_t), intent(in), optional :: history
-      integer :: status
+      !> Further tables
+      type(named_table_t), intent(in), optional :: more(:)
+      integer :: i, status
 
       call prepare(writer)
       if (allocated(writer%fault)) return
@@ -151,6 +172,11 @@ contains
       call put_attribute(writer, writer%file, "case", summary%case_text)
       call put_table(writer, "summary", summary)
       if (present(history)) call put_table(writer, "history", history)
+      if (present(more)) then
+         do i = 1, size(more)
+            call put_table(writer, more(i)%name, more(i)%table)
+         end do
+      end if
    end subroutine build
 
    !> Make the property lists and types that all objects share
@@ -213,6 +239,12 @@ contains
       call h5gcreate_f(writer%file, name, group, status, gcpl_id=writer%group_creation)
       call note(writer, status, "create the group '"//name//"'")
       if (allocated(writer%fault)) return
+      do i = 1, table%fact_count
+         associate (fact => table%facts(i))
+            call put_number(writer, group, fact%name, fact%value)
+            call put_attribute(writer, group, fact%name//"_units", fact%unit)
+         end associate
+      end do
 
       scales = nothing
       do i = 1, table%dimension_count
@@ -387,6 +419,37 @@ contains
       call h5aclose_f(attribute, status)
       call note(writer, status, "close the attribute '"//name//"'")
    end subroutine put_attribute
+
+   !> Write a number as an attribute
+   subroutine put_number(writer, object, name, number)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> The number
+      real(wp), intent(in) :: number
+      real(wp), target :: value
+      integer(hid_t) :: attribute, space
+      integer :: status
+
+      if (allocated(writer%fault)) return
+      call h5screate_f(h5s_scalar_f, space, status)
+      call note(writer, status, "make the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+      call h5acreate_f(object, name, h5t_ieee_f64le, space, attribute, status)
+      call note(writer, status, "create the attribute '"//name//"'")
+      call h5sclose_f(space, status)
+      call note(writer, status, "close the dimensions of the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+
+      value = number
+      call h5awrite_f(attribute, h5t_native_double, c_loc(value), status)
+      call note(writer, status, "write the attribute '"//name//"'")
+      call h5aclose_f(attribute, status)
+      call note(writer, status, "close the attribute '"//name//"'")
+   end subroutine put_number
 
    !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
    subroutine write_image(writer, filename, error)
