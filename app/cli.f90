@@ -9,7 +9,7 @@ module vcor_app_cli
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check material verify help'
+   character(len=*), parameter :: commands = 'run check material plot verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
       //'--help --version'
@@ -18,6 +18,9 @@ module vcor_app_cli
    !> Options of material
    character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
       //'--quiet --help --version'
+   !> Options of plot
+   character(len=*), parameter :: plot_options = '--kind --quantity --legend --output --format ' &
+      //'--script --quiet --help --version'
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
@@ -42,6 +45,14 @@ module vcor_app_cli
       integer :: threads = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
+      !> Kind of figure of --kind; unallocated without it
+      character(len=:), allocatable :: kind
+      !> Format of figures of --format; unallocated without it
+      character(len=:), allocatable :: format
+      !> Texts of --legend, shape (n)
+      type(argument_t), allocatable :: legends(:)
+      !> Whether the script of a figure is left
+      logical :: script = .false.
       !> Nothing on the screen
       logical :: quiet = .false.
    end type request_t
@@ -61,10 +72,10 @@ contains
       integer :: i, mark
       logical :: plain
 
-      allocate (request%files(0), request%settings(0), request%names(0))
+      allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, material, verify, help ' &
-            //'(vcor help says more)')
+         call raise(error, error_usage, 'no command; known: run, check, material, plot, verify, ' &
+            //'help (vcor help says more)')
          return
       end if
 
@@ -75,6 +86,8 @@ contains
          known = check_options
       case ('material')
          known = material_options
+      case ('plot')
+         known = plot_options
       case ('verify')
          known = verify_options
       case ('help', '--help', '-h')
@@ -125,12 +138,13 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet')
+         case ('--quiet', '--script')
             if (mark > 0) then
-               call raise(error, error_usage, 'option --quiet takes no value')
+               call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
-            request%quiet = .true.
+            if (name == '--quiet') request%quiet = .true.
+            if (name == '--script') request%script = .true.
             cycle
          case default
          end select
@@ -164,7 +178,11 @@ contains
 
       if (request%command == 'help') return
       if (request%command == 'verify' .and. size(request%settings) == 0) return
-      call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+      if (request%command == 'plot') then
+         call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
+      else
+         call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+      end if
    end subroutine refuse_no_case
 
    !> Take the value of an option
@@ -187,6 +205,12 @@ contains
          call append_word(request%settings, value)
       case ('--output')
          request%directory = value
+      case ('--kind')
+         request%kind = value
+      case ('--format')
+         request%format = value
+      case ('--legend')
+         call append_word(request%legends, value)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--points')
@@ -196,7 +220,7 @@ contains
       case ('--to')
          call read_positive(option, value, request%range%last, error)
       case default
-         call add_names(value, request, error)
+         call add_names(option, value, request, error)
       end select
    end subroutine apply
 
@@ -249,8 +273,10 @@ contains
       if (allocated(message)) call raise(error, error_usage, option//': '//message)
    end subroutine read_positive
 
-   !> Split the value of --print
-   subroutine add_names(list, request, error)
+   !> Split the value of --print or --quantity
+   subroutine add_names(option, list, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Names separated by commas
       character(len=*), intent(in) :: list
       !> The request
@@ -263,14 +289,16 @@ contains
       first = 1
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
-         call add_name(trim(adjustl(list(first:last))), request, error)
+         call add_name(option, trim(adjustl(list(first:last))), request, error)
          if (allocated(error)) return
          first = last + 2
       end do
    end subroutine add_names
 
-   !> Add one name of --print
-   subroutine add_name(name, request, error)
+   !> Add one name of --print or --quantity
+   subroutine add_name(option, name, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Name
       character(len=*), intent(in) :: name
       !> The request
@@ -280,7 +308,7 @@ contains
 
       ! what has a dot is a parameter of a sweep, and whether there is one the case says
       if (index(name, '.') == 0 .and. .not. has_word(quantity_names(), name)) then
-         call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+         call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option//'; ' &
             //suggestion(name, quantity_names()))
       else
          call append_word(request%names, name)

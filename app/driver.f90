@@ -6,6 +6,7 @@ module vcor_app_driver
    use vcor_app_help, only : help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
+   use vcor_app_plot, only : plot
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
@@ -34,6 +35,8 @@ contains
          call check(request, error)
       case ('material')
          call materials(request, error)
+      case ('plot')
+         call plot(request, error)
       case ('verify')
          call verify(request, error)
       case default

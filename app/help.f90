@@ -10,7 +10,7 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run check material verify input output help'
+   character(len=*), parameter :: topics = 'run check material plot verify input output help'
 
 contains
 
@@ -32,6 +32,8 @@ contains
          text = check_page()
       case ('material')
          text = material_page()
+      case ('plot')
+         text = plot_page()
       case ('verify')
          text = verify_page()
       case ('input')
@@ -53,9 +55,10 @@ contains
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
+         //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, material, verify,'//nl &
-         //'                                          input, output'//nl &
+         //'       vcor help [TOPIC]                  topics: run, check, material, plot,'//nl &
+         //'                                          verify, input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
@@ -119,6 +122,37 @@ contains
          //'  --output DIR            directory of the files, made if it is not there'//nl &
          //'  --quiet                 print nothing'//nl
    end function material_page
+
+   !> Page of plot
+   function plot_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor plot RESULT.h5 ... [options]'//nl//nl &
+         //'Draws the results of vcor run and vcor material through gnuplot, several of one kind'//nl &
+         //'in one figure with a legend. Kinds:'//nl &
+         //'  history  indentation, velocity and force over time, each over its largest value;'//nl &
+         //'           dashed: ghost lines after the end of contact; the values there marked'//nl &
+         //'  loop     contact force over indentation, the energy lost in the legend'//nl &
+         //'  moduli   relaxation modulus over time, storage and loss modulus and loss tangent'//nl &
+         //'           over frequency, for each material'//nl &
+         //'  sweep    quantities of the summary over the parameter that is swept'//nl &
+         //'  map      a quantity over two parameters, as contours'//nl//nl &
+         //'  --kind KIND             default: what the file holds; of a single impact history,'//nl &
+         //'                          of a sweep of one parameter sweep, of two map'//nl &
+         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each; default:'//nl &
+         //'                          cor; names: vcor help output'//nl &
+         //'  --legend TEXT           text of the legend, once for each file in their order;'//nl &
+         //'                          default: titles, or in what the cases differ'//nl &
+         //'  --output FILE           name of the figure; default: STEM_KIND.svg in the current'//nl &
+         //'                          directory; of a directory: such a file in it'//nl &
+         //'  --format FORMAT         svg, pdf or png; default: what FILE ends with, else svg'//nl &
+         //'  --script                leave the script of gnuplot and its data, FILE with .gp'//nl &
+         //'                          and .dat, for work by hand'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'Figures are 8.5 cm wide, a column, or 17 cm, a page. Where gnuplot is missing the'//nl &
+         //'script is written and the exit code is 4.'//nl
+   end function plot_page
 
    !> Page of verify
    function verify_page() result(text)

@@ -2,6 +2,8 @@
 module vcor
    use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
       error_usage, raise
+   use vcor_figure, only : build_figure, figure_kinds => kinds, legend_t, read_result, result_t, &
+      usual_kind
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, waves_none, &
@@ -12,7 +14,10 @@ module vcor
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_csv, only : write_csv
    use vcor_io_data_file, only : data_file, read_data
-   use vcor_io_file, only : join_path, make_directory, same_file, write_stdout
+   use vcor_io_drawing, only : draw, split_path
+   use vcor_io_figure, only : figure_t
+   use vcor_io_file, only : directory_exists, join_path, make_directory, same_file, write_stdout
+   use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, write_hdf5
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
@@ -80,6 +85,9 @@ module vcor
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: place_in_table, write_rows, named_table_t
    public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables
+   public :: result_t, legend_t, figure_t, figure_kinds, figure_formats
+   public :: read_result, usual_kind, build_figure, draw
+   public :: split_path, directory_exists
    public :: write_stdout, make_directory, join_path, same_file
    public :: real_text, integer_text, printable, suggestion, read_real
 

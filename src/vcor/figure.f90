@@ -3,9 +3,11 @@ module vcor_figure
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_figure_history, only : history_figure, loop_figure
    use vcor_figure_legend, only : legend_t, make_legends
+   use vcor_figure_map, only : map_figure
+   use vcor_figure_moduli, only : moduli_figure
    use vcor_figure_result, only : get_axes, has_group, read_result, result_t
    use vcor_figure_sweep, only : sweep_figure
-   use vcor_io_figure, only : figure_t, plain, style_count
+   use vcor_io_figure, only : figure_t, style_count
    use vcor_io_hdf5_reader, only : dataset_t
    use vcor_study_text, only : integer_text
    implicit none
@@ -86,7 +88,7 @@ contains
       end if
       call make_legends(results, legends)
       do i = 1, size(texts)
-         legends(i)%text = plain(texts(i)%text)
+         legends(i)%text = texts(i)%text
       end do
       shown = quantities
       if (size(shown) == 0) then
@@ -100,6 +102,10 @@ contains
          call history_figure(results, legends, figure, error)
       case ('loop')
          call loop_figure(results, legends, figure, error)
+      case ('moduli')
+         call moduli_figure(results, legends, figure, error)
+      case ('map')
+         call map_figure(results, shown, figure, error)
       case default
          call sweep_figure(results, legends, shown, figure, error)
       end select

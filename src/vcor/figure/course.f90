@@ -64,6 +64,7 @@ contains
       course%impact_velocity = course%velocity(1)
       course%max_indentation = largest('max_indentation', course%indentation)
       course%max_force = largest('max_force', course%force)
+      call thin(course)
       call cut(course)
 
    contains
@@ -99,6 +100,25 @@ contains
          if (.not. ieee_is_finite(largest)) largest = maxval(values)
       end function largest
    end subroutine read_course
+
+   !> Leave out times where there are more than a figure can show
+   subroutine thin(course)
+      !> The course
+      type(course_t), intent(inout) :: course
+
+      integer, parameter :: most_times = 500
+      integer, allocatable :: kept(:)
+      integer :: i, last, stride
+
+      last = size(course%time)
+      stride = (last + most_times - 1)/most_times
+      if (stride < 2) return
+      kept = [(i, i=1, last - 1, stride), last]
+      course%time = course%time(kept)
+      course%indentation = course%indentation(kept)
+      course%velocity = course%velocity(kept)
+      course%force = course%force(kept)
+   end subroutine thin
 
    !> Put the end of contact in among the times
    subroutine cut(course)

@@ -5,7 +5,7 @@ module vcor_figure_history
    use vcor_error, only : error_t
    use vcor_figure_course, only : course_t, read_course
    use vcor_figure_label, only : number_text, suit_unit, with_unit
-   use vcor_figure_legend, only : legend_t
+   use vcor_figure_legend, only : column_room, fitted, legend_t, page_room
    use vcor_figure_result, only : result_t
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, panel_t, points_only
@@ -18,6 +18,8 @@ module vcor_figure_history
    !> Texts of the three normalised responses
    character(len=*), parameter :: indentation_text = 'indentation s/s_{max}', &
       velocity_text = "velocity −s'/v_0", force_text = 'force F/F_{max}'
+   !> A blank that no renderer leaves out after a subscript
+   character(len=*), parameter :: blank = char(194)//char(160)
    !> Significant digits of what is marked
    integer, parameter :: digits = 4
    !> Range of the normalised responses: -1 to 1 and some room
@@ -65,7 +67,7 @@ contains
          call set_axes(figure%panels(3), force_text)
          do i = 1, size(results)
             call add_response(figure%panels(1), courses(i), 1, i, &
-               legends(i)%text//outcome_text(courses(i)))
+               fitted(legends(i)%text, page_room - 27)//outcome_text(courses(i)))
             call add_response(figure%panels(2), courses(i), 2, i, '')
             call add_response(figure%panels(3), courses(i), 3, i, '')
          end do
@@ -133,10 +135,10 @@ contains
          if (.not. ieee_is_finite(course%contact_time)) return
          associate (t0 => factor*course%contact_time)
             call add_note(panel, note_top, t0, 0.0_wp, &
-               't_0 = '//number_text(t0, digits)//' '//unit)
+               't_0'//blank//'= '//number_text(t0, digits)//' '//unit)
             call add_note(panel, note_right, t0, course%cor, 'COR '//number_text(course%cor, digits))
             call add_note(panel, note_right, t0, course%residual_ratio, &
-               's/s_{max} '//number_text(course%residual_ratio, digits))
+               'residual '//number_text(course%residual_ratio, digits))
          end associate
       end subroutine add_marks
 
@@ -149,7 +151,7 @@ contains
 
          text = ' (no separation)'
          if (ieee_is_finite(course%contact_time)) text = ' (COR '//number_text(course%cor, digits) &
-            //', t_0 = '//number_text(factor*course%contact_time, digits)//' '//unit//')'
+            //', t_0'//blank//'= '//number_text(factor*course%contact_time, digits)//' '//unit//')'
       end function outcome_text
    end subroutine history_figure
 
@@ -186,10 +188,12 @@ contains
          do i = 1, size(courses)
             associate (n => courses(i)%contact_count)
                text = ''
-               if (size(courses) > 1) text = legends(i)%text
-               if (ieee_is_finite(courses(i)%hysteresis_energy)) then
-                  if (text /= '') text = text//': '
-                  text = text//'energy loss '//energy(courses(i)%hysteresis_energy)
+               if (ieee_is_finite(courses(i)%hysteresis_energy)) &
+                  text = 'energy loss '//energy(courses(i)%hysteresis_energy)
+               if (size(courses) > 1 .and. text /= '') then
+                  text = fitted(legends(i)%text, column_room - len(text) - 2)//', '//text
+               else if (size(courses) > 1) then
+                  text = fitted(legends(i)%text, column_room)
                end if
                call add_curve(panel, length_factor*courses(i)%indentation(:n), &
                   force_factor*courses(i)%force(:n), line_solid, i, text)

@@ -12,7 +12,7 @@ module vcor_figure_legend
    implicit none
    private
 
-   public :: legend_t, make_legends
+   public :: legend_t, make_legends, fitted, column_room, page_room
 
    !> Text for one result
    type :: legend_t
@@ -22,8 +22,8 @@ module vcor_figure_legend
 
    !> Most keys that a text names
    integer, parameter :: most_differences = 3
-   !> Longest text [bytes]
-   integer, parameter :: longest = 60
+   !> Letters of a text that fit in a figure of one column, and of a page
+   integer, parameter :: column_room = 40, page_room = 90
 
 contains
 
@@ -51,9 +51,7 @@ contains
             legends(i)%text = results(i)%path
          end do
       end if
-      do i = 1, size(results)
-         legends(i)%text = plain(cut(legends(i)%text))
-      end do
+      call drop_beginning(legends)
    end subroutine make_legends
 
    !> Whether all texts differ and none is empty
@@ -74,23 +72,48 @@ contains
       end do
    end function are_distinct
 
-   !> A text of at most `longest` bytes
-   pure function cut(text) result(short)
+   !> Leave out the words with which all texts begin, where one is too long for a column
+   pure subroutine drop_beginning(legends)
+      !> Texts that differ
+      type(legend_t), intent(inout) :: legends(:)
+
+      integer :: i, j, last
+
+      if (size(legends) < 2) return
+      last = len(legends(1)%text)
+      do i = 1, size(legends)
+         last = min(last, len(legends(i)%text))
+      end do
+      if (.not. any([(len(legends(i)%text) > column_room, i=1, size(legends))])) return
+      do j = last, 1, -1
+         if (legends(1)%text(j:j) /= ' ') cycle
+         if (all([(legends(i)%text(:j) == legends(1)%text(:j), i=1, size(legends))])) exit
+      end do
+      do i = 1, size(legends)
+         legends(i)%text = legends(i)%text(j + 1:)
+      end do
+   end subroutine drop_beginning
+
+   !> A text that has its place, as a figure takes it
+   pure function fitted(text, room) result(short)
       !> UTF-8
       character(len=*), intent(in) :: text
+      !> Letters that there is room for
+      integer, intent(in) :: room
       !> The text, or its beginning and three dots
       character(len=:), allocatable :: short
 
-      integer :: last
+      integer :: i, letters
 
-      short = trim(text)
-      if (len(short) <= longest) return
-      last = longest - 3
-      do while (ichar(text(last + 1:last + 1)) >= 128 .and. ichar(text(last + 1:last + 1)) < 192)
-         last = last - 1
+      short = plain(text)
+      letters = 0
+      do i = 1, len_trim(text)
+         if (ichar(text(i:i)) >= 128 .and. ichar(text(i:i)) < 192) cycle
+         letters = letters + 1
+         if (letters == max(room, 4)) short = plain(text(:i - 1))//'…'
       end do
-      short = trim(text(:last))//'...'
-   end function cut
+      if (letters <= max(room, 4)) short = plain(text)
+   end function fitted
 
    !> Texts of what differs in the cases: the lines of all cases, as they are printed with all
    !> defaults, are the same but for a few values

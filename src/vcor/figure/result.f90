@@ -5,14 +5,15 @@ module vcor_figure_result
    use vcor_io_drawing, only : split_path
    use vcor_io_hdf5_reader, only : close_input, dataset_t, hdf5_input_t, list_members, &
       member_t, number_attribute, open_input, read_dataset, text_attribute
-   use vcor_io_table, only : integer_column, real_column, text_column
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp
    use vcor_study_nearest, only : suggestion
    use vcor_study_text, only : printable, shortened
    implicit none
    private
 
-   public :: result_t, read_result, get_axes, get_column, get_number, has_group, column_names
+   public :: result_t, read_result, has_group, column_names
+   public :: get_axes, get_column, get_number, get_texts, get_window
 
    !> A group of a file with all it holds
    type :: group_t
@@ -139,6 +140,44 @@ contains
 
       has = place_of(result, name) > 0
    end function has_group
+
+   !> A column of text, empty where there is none
+   subroutine get_texts(result, group, name, texts)
+      !> What a file holds
+      type(result_t), intent(in) :: result
+      !> Name of its group
+      character(len=*), intent(in) :: group
+      !> Name of the column
+      character(len=*), intent(in) :: name
+      !> The column
+      type(column_t), intent(out) :: texts
+
+      integer :: i, place
+
+      place = place_of(result, group)
+      if (place == 0) return
+      associate (datasets => result%groups(place)%datasets)
+         do i = 1, size(datasets)
+            if (datasets(i)%column%name == name .and. datasets(i)%column%kind == text_column) &
+               texts = datasets(i)%column
+         end do
+      end associate
+   end subroutine get_texts
+
+   !> Window of the impact that moduli are for
+   pure subroutine get_window(result, group, contact_time, min_frequency)
+      !> What a file holds
+      type(result_t), intent(in) :: result
+      !> Name of a group that is there
+      character(len=*), intent(in) :: group
+      !> Contact time [s], NaN if the file does not tell
+      real(wp), intent(out) :: contact_time
+      !> Lowest frequency [rad/s], NaN if the file does not tell
+      real(wp), intent(out) :: min_frequency
+
+      contact_time = result%groups(place_of(result, group))%contact_time
+      min_frequency = result%groups(place_of(result, group))%min_frequency
+   end subroutine get_window
 
    !> A column of numbers
    subroutine get_column(result, group, name, column, error)

@@ -4,7 +4,7 @@ module vcor_figure_sweep
    use vcor_error, only : error_input, error_t, raise
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
-   use vcor_figure_legend, only : legend_t
+   use vcor_figure_legend, only : column_room, fitted, legend_t, page_room
    use vcor_figure_result, only : get_axes, get_column, result_t
    use vcor_io_figure, only : add_curve, figure_t, line_solid, new_figure, points_only, plain, &
       style_count
@@ -86,7 +86,8 @@ contains
             do i = 1, size(results)
                call get_column(results(i), 'summary', quantities(k)%text, column, error)
                call get_axes(results(i), axes)
-               call cut_lines(axes, column, legends(i)%text, lines)
+               call cut_lines(axes, column, fitted(legends(i)%text, merge(page_room, column_room, &
+                  size(quantities) > 1)), lines)
                do j = 1, size(lines)
                   if (size(results) == 1 .and. size(axes) == 1 .or. k > 1) lines(j)%text = ''
                   call add_curve(panel, x_factor*lines(j)%x, y_factor*lines(j)%y, &

@@ -57,7 +57,7 @@ module vcor_io_figure
       !> One of the `line_*`, `shape_*` and `points_*` constants
       integer :: form = line_solid
       !> Colour, dashes and marker, 1 to `style_count`; of a filled shape its share of the darkest
-      !> colour in percent
+      !> colour in percent, -1 for white
       integer :: style = 1
       !> Whether its values are those of the axis at the right
       logical :: at_right = .false.
