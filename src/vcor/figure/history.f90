@@ -24,6 +24,8 @@ module vcor_figure_history
    integer, parameter :: digits = 4
    !> Range of the normalised responses: -1 to 1 and some room
    real(wp), parameter :: range = 1.08_wp
+   !> Room below the least of them
+   real(wp), parameter :: low = 0.05_wp
 
 contains
 
@@ -55,16 +57,16 @@ contains
 
       if (size(results) == 1) then
          call new_figure(figure, 'normalised responses over time', panels=1, columns=1)
-         call set_axes(figure%panels(1), 'normalised response')
+         call set_axes(figure%panels(1), 'normalised response', -range)
          call add_response(figure%panels(1), courses(1), 1, 1, indentation_text)
          call add_response(figure%panels(1), courses(1), 2, 2, velocity_text)
          call add_response(figure%panels(1), courses(1), 3, 3, force_text)
          call add_marks(figure%panels(1), courses(1))
       else
          call new_figure(figure, 'normalised responses over time', panels=3, columns=3)
-         call set_axes(figure%panels(1), indentation_text)
-         call set_axes(figure%panels(2), velocity_text)
-         call set_axes(figure%panels(3), force_text)
+         call set_axes(figure%panels(1), indentation_text, lowest_of(1))
+         call set_axes(figure%panels(2), velocity_text, -range)
+         call set_axes(figure%panels(3), force_text, lowest_of(3))
          do i = 1, size(results)
             call add_response(figure%panels(1), courses(i), 1, i, &
                fitted(legends(i)%text, page_room - 27)//outcome_text(courses(i)))
@@ -76,17 +78,19 @@ contains
    contains
 
       !> Labels and ranges of a panel
-      subroutine set_axes(panel, label)
+      subroutine set_axes(panel, label, lowest)
          !> The panel
          type(panel_t), intent(inout) :: panel
          !> Label of its vertical axis
          character(len=*), intent(in) :: label
+         !> Where it begins
+         real(wp), intent(in) :: lowest
 
          panel%with_markers = .true.
          panel%x%label = with_unit('time', unit)
          panel%x%upper = longest*factor
          panel%y%label = label
-         panel%y%lower = -range
+         panel%y%lower = lowest
          panel%y%upper = range
       end subroutine set_axes
 
@@ -106,17 +110,10 @@ contains
          real(wp) :: at_end, values(size(course%time))
          integer :: n
 
-         select case (response)
-         case (1)
-            values = course%indentation/course%max_indentation
-            at_end = course%residual_ratio
-         case (2)
-            values = -course%velocity/course%impact_velocity
-            at_end = course%cor
-         case default
-            values = course%force/course%max_force
-            at_end = 0.0_wp
-         end select
+         values = response_of(course, response)
+         at_end = 0.0_wp
+         if (response == 1) at_end = course%residual_ratio
+         if (response == 2) at_end = course%cor
          n = course%contact_count
          call add_curve(panel, factor*course%time(:n), values(:n), line_solid, style, title)
          if (n < size(values)) &
@@ -124,6 +121,40 @@ contains
          if (ieee_is_finite(course%contact_time)) call add_curve(panel, &
             [factor*course%contact_time], [at_end], points_only, style)
       end subroutine add_response
+
+      !> Values of a response
+      pure function response_of(course, response) result(values)
+         !> The course
+         type(course_t), intent(in) :: course
+         !> 1 indentation, 2 velocity, 3 force
+         integer, intent(in) :: response
+         !> Values over their largest
+         real(wp) :: values(size(course%time))
+
+         select case (response)
+         case (1)
+            values = course%indentation/course%max_indentation
+         case (2)
+            values = -course%velocity/course%impact_velocity
+         case default
+            values = course%force/course%max_force
+         end select
+      end function response_of
+
+      !> Where the axis of a response begins, with some room
+      pure function lowest_of(response) result(lowest)
+         !> 1 indentation, 2 velocity, 3 force
+         integer, intent(in) :: response
+         !> Value, not above 0
+         real(wp) :: lowest
+
+         integer :: k
+
+         lowest = 0.0_wp
+         do k = 1, size(courses)
+            lowest = min(lowest, minval(response_of(courses(k), response)) - low)
+         end do
+      end function lowest_of
 
       !> What the values at the end of contact are
       subroutine add_marks(panel, course)

@@ -47,7 +47,10 @@ contains
       if (allocated(error)) return
       folder = join_path(directory, "vcor-"//integer_text(int(c_getpid()))//".tmp")
       call make_directory(folder, error)
-      if (allocated(error)) return
+      if (allocated(error)) then
+         error%message = "cannot write "//quoted_path(path//"."//format)//": "//error%message
+         return
+      end if
 
       call write_file(join_path(folder, name//".gp"), script_text(figure, name, format), error)
       if (.not. allocated(error)) &

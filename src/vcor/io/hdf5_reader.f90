@@ -35,7 +35,7 @@ module vcor_io_hdf5_reader
    private
 
    public :: hdf5_input_t, member_t, dataset_t
-   public :: open_input, close_input, list_members, has_member, read_dataset
+   public :: open_input, close_input, list_members, read_dataset
    public :: text_attribute, number_attribute
 
    !> Longest name of a member that is read [bytes]
@@ -170,22 +170,6 @@ contains
       if (status < 0) call raise(error, error_file, input%path//": the group '"//shortened(path) &
          & //"' is damaged")
    end subroutine list_members
-
-   !> Whether a list has a member of that name
-   pure function has_member(members, name) result(has)
-      !> The list
-      type(member_t), intent(in) :: members(:)
-      !> The name
-      character(len=*), intent(in) :: name
-      !> True if it has
-      logical :: has
-      integer :: i
-
-      has = .false.
-      do i = 1, size(members)
-         has = has .or. members(i)%name == name
-      end do
-   end function has_member
 
    !> Read a dataset with its unit and meaning
    subroutine read_dataset(input, path, dataset, error)
