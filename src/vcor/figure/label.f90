@@ -9,7 +9,8 @@ module vcor_figure_label
 
 contains
 
-   !> A unit with a prefix, such that the largest of some numbers is between 1 and 1000
+   !> A unit with a prefix, such that the largest of some numbers has one to three digits before the
+   !> point, or none
    pure subroutine suit_unit(unit, largest, factor, name)
       !> SI unit
       character(len=*), intent(in) :: unit
@@ -39,12 +40,15 @@ contains
       case default
          return
       end select
+      ! times, lengths and energies rather in tenths than in hundreds: 0.79 J, but 920 N
+      if (scan(unit, 'smJ') == 1 .and. len(unit) == 1) magnitude = 10.0_wp*magnitude
       ! 1000.0001 is 1000 still, and 0.9999 is as good as 1
       power = floor(log10(magnitude*1.001_wp)/3.0_wp)
       power = max(lbound(prefixes, 1), min(ubound(prefixes, 1), power))
       ! there is no Gm in an impact, and no ks
       if (unit == 's' .or. unit == 'm') power = min(0, power)
-      factor = magnitude/largest*10.0_wp**(-3*power)
+      factor = 10.0_wp**(-3*power)
+      if (unit == 'kg') factor = 1000.0_wp*factor
       name = trim(prefixes(power))//name
    end subroutine suit_unit
 

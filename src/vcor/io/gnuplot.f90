@@ -165,8 +165,8 @@ contains
          & //"set tmargin at screen "//short(frame%top)//nl)
       if (title_count(panel) > 0) then
          call buffer%add("set key at screen "//short(frame%legend_left)//", screen " &
-            & //short(frame%legend_top)//" left top horizontal Left reverse samplen 2.2 maxcols " &
-            & //integer_text(frame%legend_columns)//nl)
+            & //short(frame%legend_top)//" left top vertical Left reverse samplen 2.2 maxrows " &
+            & //integer_text(frame%legend_rows)//nl)
       else
          call buffer%add("unset key"//nl)
       end if

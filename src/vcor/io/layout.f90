@@ -32,8 +32,8 @@ module vcor_io_layout
       real(wp) :: left, right, bottom, top
       !> Left edge of its legend and its upper edge
       real(wp) :: legend_left, legend_top
-      !> Texts of the legend beside each other
-      integer :: legend_columns
+      !> Rows of its legend
+      integer :: legend_rows
    end type frame_t
 
 contains
@@ -47,7 +47,7 @@ contains
       !> Size of the figure [cm]
       real(wp), intent(out) :: width, height
       real(wp) :: above(size(figure%panels)), cell, high, shared, wide
-      integer :: first, i, last, rows
+      integer :: columns(size(figure%panels)), first, i, last
       logical :: is_shared
 
       width = merge(page_width, column_width, figure%columns > 1)
@@ -65,11 +65,11 @@ contains
             if (has_note(panel, note_top)) above(i) = above(i) + line_height
             if (panel%heading /= "") above(i) = above(i) + line_height
             wide = merge(width, cell, is_shared) - left - right
-            call arrange(panel, wide, frames(i)%legend_columns, rows)
+            call arrange(panel, wide, columns(i), frames(i)%legend_rows)
             if (is_shared .and. i == 1) then
-               shared = real(rows, wp)*line_height
+               shared = real(frames(i)%legend_rows, wp)*line_height
             else if (.not. is_shared) then
-               above(i) = above(i) + real(rows, wp)*line_height
+               above(i) = above(i) + real(frames(i)%legend_rows, wp)*line_height
             end if
          end associate
       end do
@@ -85,7 +85,7 @@ contains
                wide = merge(width, cell, is_shared)
                frame%legend_left = max(real(i - first, wp)*cell + 0.1_wp, min(frame%left, &
                   & real(i - first, wp)*cell + wide - legend_width(figure%panels(i), &
-                  & frame%legend_columns)))
+                  & columns(i))))
                frame%legend_top = high + 0.15_wp
                if (is_shared) frame%legend_top = 0.15_wp
                frame%top = high + maxval(above(first:last))
