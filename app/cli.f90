@@ -181,7 +181,8 @@ contains
       if (request%command == 'plot') then
          call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
       else
-         call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
+            //' CASE.nml')
       end if
    end subroutine refuse_no_case
 

@@ -129,26 +129,26 @@ contains
       character(len=:), allocatable :: text
 
       text = 'usage: vcor plot RESULT.h5 ... [options]'//nl//nl &
-         //'Draws the results of vcor run and vcor material through gnuplot, several of one kind'//nl &
-         //'in one figure with a legend. Kinds:'//nl &
-         //'  history  indentation, velocity and force over time, each over its largest value;'//nl &
-         //'           dashed: ghost lines after the end of contact; the values there marked'//nl &
+         //'Draws the results of vcor run and vcor material through gnuplot, several of one'//nl &
+         //'kind in one figure with a legend. Kinds:'//nl &
+         //'  history  indentation, velocity and force over time, each over its largest'//nl &
+         //'           value; dashed: ghost lines after contact; values at its end marked'//nl &
          //'  loop     contact force over indentation, the energy lost in the legend'//nl &
-         //'  moduli   relaxation modulus over time, storage and loss modulus and loss tangent'//nl &
-         //'           over frequency, for each material'//nl &
+         //'  moduli   relaxation modulus over time, storage and loss modulus and loss'//nl &
+         //'           tangent over frequency, for each material'//nl &
          //'  sweep    quantities of the summary over the parameter that is swept'//nl &
          //'  map      a quantity over two parameters, as contours'//nl//nl &
-         //'  --kind KIND             default: what the file holds; of a single impact history,'//nl &
+         //'  --kind KIND             default: what the file holds; of an impact history,'//nl &
          //'                          of a sweep of one parameter sweep, of two map'//nl &
-         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each; default:'//nl &
-         //'                          cor; names: vcor help output'//nl &
-         //'  --legend TEXT           text of the legend, once for each file in their order;'//nl &
+         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each;'//nl &
+         //'                          default: cor; names: vcor help output'//nl &
+         //'  --legend TEXT           text of the legend, once for each file, in order;'//nl &
          //'                          default: titles, or in what the cases differ'//nl &
-         //'  --output FILE           name of the figure; default: STEM_KIND.svg in the current'//nl &
-         //'                          directory; of a directory: such a file in it'//nl &
-         //'  --format FORMAT         svg, pdf or png; default: what FILE ends with, else svg'//nl &
-         //'  --script                leave the script of gnuplot and its data, FILE with .gp'//nl &
-         //'                          and .dat, for work by hand'//nl &
+         //'  --output FILE           name of the figure, or directory of STEM_KIND.svg;'//nl &
+         //'                          default: STEM_KIND.svg in the current directory'//nl &
+         //'  --format FORMAT         svg, pdf, png; default: what FILE ends with, else svg'//nl &
+         //'  --script                leave the script of gnuplot and its data, FILE with'//nl &
+         //'                          .gp and .dat, for work by hand'//nl &
          //'  --quiet                 print nothing'//nl//nl &
          //'Figures are 8.5 cm wide, a column, or 17 cm, a page. Where gnuplot is missing the'//nl &
          //'script is written and the exit code is 4.'//nl

@@ -43,7 +43,8 @@ contains
          kind = 'sweep'
       else if (has_group(result, 'summary')) then
          call raise(error, error_input, result%path//': there is a single impact without a time ' &
-            //'history in this file, of which no figure is made; run it with output.history = .true.')
+            //'history in this file, of which no figure is made; run it with output.history = ' &
+            //'.true.')
       else
          call raise(error, error_input, result%path//': there are no results of vcor in this file')
       end if
@@ -82,8 +83,8 @@ contains
          if (allocated(error)) return
       end if
       if (size(results) > style_count) then
-         call raise(error, error_usage, integer_text(size(results))//' results in one figure cannot ' &
-            //'be told apart, expected at most '//integer_text(style_count))
+         call raise(error, error_usage, integer_text(size(results))//' results in one figure ' &
+            //'cannot be told apart, expected at most '//integer_text(style_count))
          return
       end if
       call make_legends(results, legends)

@@ -297,7 +297,7 @@ contains
       call add_note(figure%panels(2), note_top, 10.0_wp, 0.0_wp, 'here')
 
       text = script_text(figure, 'name', 'pdf')
-      call check_contains(text, new_line('a')//'set terminal pdfcairo', 'the format that is asked for')
+      call check_contains(text, new_line('a')//'set terminal pdfcairo', 'the format asked for')
       call check_contains(text, new_line('a')//'# set terminal svg', 'other formats as remarks')
       call check_contains(text, "set output here.'name.pdf'", 'name of the figure')
       call check_contains(text, "data = here.'name.dat'", 'name of the data')

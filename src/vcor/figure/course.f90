@@ -46,8 +46,8 @@ contains
             call raise(error, error_input, result%path//': this is a sweep, which has no time ' &
                //'history; expected a single impact, or --kind sweep')
          else
-            call raise(error, error_input, result%path//': there is no time history in this file, ' &
-               //'expected that of a single impact, run with output.history = .true.')
+            call raise(error, error_input, result%path//': there is no time history in this ' &
+               //'file, expected that of a single impact, run with output.history = .true.')
          end if
          return
       end if

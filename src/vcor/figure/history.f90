@@ -167,7 +167,8 @@ contains
          associate (t0 => factor*course%contact_time)
             call add_note(panel, note_top, t0, 0.0_wp, &
                't_0'//blank//'= '//number_text(t0, digits)//' '//unit)
-            call add_note(panel, note_right, t0, course%cor, 'COR '//number_text(course%cor, digits))
+            call add_note(panel, note_right, t0, course%cor, &
+               'COR '//number_text(course%cor, digits))
             call add_note(panel, note_right, t0, course%residual_ratio, &
                'residual '//number_text(course%residual_ratio, digits))
          end associate

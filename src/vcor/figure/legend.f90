@@ -181,13 +181,14 @@ contains
       !> The line without blanks around it and without its end
       character(len=:), allocatable :: line
 
-      integer :: first, i
+      integer :: first, i, length
 
       first = 1
       do i = 2, number
          first = first + index(text(first:), new_line('a'))
       end do
-      line = trim(adjustl(text(first:first + index(text(first:)//new_line('a'), new_line('a')) - 2)))
+      length = index(text(first:)//new_line('a'), new_line('a')) - 1
+      line = trim(adjustl(text(first:first + length - 1)))
    end function line_of
 
    !> Key of a line `key = value`

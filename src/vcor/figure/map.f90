@@ -62,11 +62,11 @@ contains
          call raise(error, error_usage, 'a map shows one quantity, found ' &
             //integer_text(size(quantities))//' in --quantity')
       else if (size(axes) /= 2) then
-         call raise(error, error_input, results(1)%path//': a map needs a sweep of two parameters, ' &
-            //'found '//integer_text(size(axes)))
+         call raise(error, error_input, results(1)%path//': a map needs a sweep of two ' &
+            //'parameters, found '//integer_text(size(axes)))
       else if (min(axes(1)%column%length, axes(2)%column%length) < 2) then
-         call raise(error, error_input, results(1)%path//': a map needs at least two values of each ' &
-            //'parameter, found one')
+         call raise(error, error_input, results(1)%path//': a map needs at least two values of ' &
+            //'each parameter, found one')
       end if
       if (allocated(error)) return
       call get_column(results(1), 'summary', quantities(1)%text, column, error)

@@ -150,8 +150,8 @@ contains
       integer :: before, i, n, m
 
       if (.not. (has_group(result, 'relaxation') .and. has_group(result, 'dynamic'))) then
-         call raise(error, error_input, result%path//': there are no moduli in this file, expected ' &
-            //'one of vcor material')
+         call raise(error, error_input, result%path//': there are no moduli in this file, ' &
+            //'expected one of vcor material')
          return
       end if
       call get_column(result, 'relaxation', 'time', time, error)
@@ -187,8 +187,8 @@ contains
          all = [all, one]
       end do
       if (size(all) == before) then
-         call raise(error, error_input, result%path//': no material in this file relaxes, there is ' &
-            //'nothing to draw')
+         call raise(error, error_input, result%path//': no material in this file relaxes, there ' &
+            //'is nothing to draw')
          return
       end if
       do i = before + 1, size(all)

@@ -127,14 +127,14 @@ contains
       integer :: curves
 
       if (size(axes) == 0) then
-         call raise(error, error_input, result%path//': this is no sweep: nothing is varied in it, ' &
-            //'expected the results of a case with a &sweep group')
+         call raise(error, error_input, result%path//': this is no sweep: nothing is varied in ' &
+            //'it, expected the results of a case with a &sweep group')
       else if (size(axes) > 2) then
          call raise(error, error_input, result%path//': this sweep has '//integer_text(size(axes)) &
             //' parameters, expected one or two')
       else if (size(axes) == 2 .and. count > 1) then
-         call raise(error, error_input, result%path//': this sweep has two parameters; with several ' &
-            //'files in one figure expected one')
+         call raise(error, error_input, result%path//': this sweep has two parameters; with ' &
+            //'several files in one figure expected one')
       else if (axes(1)%column%name /= first(1)%column%name) then
          call raise(error, error_input, result%path//": this sweep is over '" &
             //shortened(axes(1)%column%name)//"', that of the first file over '" &
@@ -142,8 +142,8 @@ contains
       end if
       if (allocated(error) .or. size(axes) < 2) return
       curves = axes(3 - across(axes))%column%length
-      if (curves > style_count) call raise(error, error_input, result%path//': a curve for each of ' &
-         //'the '//integer_text(curves)//" values of '" &
+      if (curves > style_count) call raise(error, error_input, result%path//': a curve for each ' &
+         //'of the '//integer_text(curves)//" values of '" &
          //shortened(axes(3 - across(axes))%column%name)//"' is more than the " &
          //integer_text(style_count)//' that can be told apart; expected --kind map')
    end subroutine check_axes

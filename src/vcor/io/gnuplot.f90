@@ -1,8 +1,8 @@
 !> Figures as gnuplot scripts: the text of the script and of its data
 !>
-!> The layout comes from `vcor_io_layout`; nothing is left to gnuplot's own margins. The script finds
-!> its data beside itself wherever it is called from. Nothing in a script or in an SVG file depends
-!> on the time or the machine.
+!> The layout comes from `vcor_io_layout`; nothing is left to gnuplot's own margins. The script
+!> finds its data beside itself wherever it is called from. Nothing in a script or in an SVG file
+!> depends on the time or the machine.
 !>
 !> Gnuplot 5.4 and later. Curves differ in colour, in lightness and in dashes or markers, so that
 !> they can be told apart in print without colour.
@@ -269,7 +269,8 @@ contains
             case (note_top)
                call buffer%add("set arrow from first "//number(note%x)//", graph 0 to first " &
                   & //number(note%x)//", graph 1"//thin//nl)
-               if (note%text /= "") call buffer%add("set label "//in_quotes(note%text)//" at first "//number(note%x) &
+               if (note%text /= "") call buffer%add("set label "//in_quotes(note%text) &
+                  & //" at first "//number(note%x) &
                   & //", graph 1 center offset 0, 0.6"//nl)
             case default
                call buffer%add("set label "//in_quotes(note%text)//" at first " &

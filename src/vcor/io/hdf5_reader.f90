@@ -85,10 +85,11 @@ contains
 
       input%path = printable(filename)
       if (len_trim(filename) == 0) then
-         call raise(error, error_file, "the name of the file is empty, expected that of a file of " &
-            & //"results")
+         call raise(error, error_file, "the name of the file is empty, expected that of a file " &
+            & //"of results")
       else if (directory_exists(filename)) then
-         call raise(error, error_file, input%path//": found a directory, expected a file of results")
+         call raise(error, error_file, input%path//": found a directory, expected a file of " &
+            & //"results")
       else if (.not. file_exists(filename)) then
          call raise(error, error_file, input%path//": there is no such file")
       end if
@@ -103,8 +104,8 @@ contains
       if (status < 0) then
          call raise(error, error_file, input%path//": cannot be read")
       else if (.not. is_hdf5) then
-         call raise(error, error_input, input%path//": this is no HDF5 file, expected the .h5 file " &
-            & //"of a run")
+         call raise(error, error_input, input%path//": this is no HDF5 file, expected the .h5 " &
+            & //"file of a run")
       else
          call h5fopen_f(trim(filename), h5f_acc_rdonly_f, input%file, status)
          if (status < 0) call raise(error, error_file, input%path//": HDF5 cannot open it: it is " &

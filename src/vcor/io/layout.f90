@@ -1,8 +1,8 @@
 !> Layout of figures: where panels, their legends and notes are on the page
 !>
-!> All is laid out in centimetres at the size of print: 8.5 cm wide, a column, or 17 cm, a page, with
-!> letters of 8 points. Above a pair of axes stand its legend, its notes and its heading, one line
-!> below the other; where only the first of several panels has a legend, it is that of all.
+!> All is laid out in centimetres at the size of print: 8.5 cm wide, a column, or 17 cm, a page,
+!> with letters of 8 points. Above a pair of axes stand its legend, its notes and its heading, one
+!> line below the other; where only the first of several panels has a legend, it is that of all.
 module vcor_io_layout
    use vcor_io_figure, only : figure_t, note_right, note_top, panel_t
    use vcor_kinds, only : wp
