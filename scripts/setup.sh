@@ -69,6 +69,8 @@ look() {
       # fpm finds HDF5 with it
       need "pkg-config" "pkg-config" have pkg-config
       need "h5dump" "hdf5-tools" have h5dump
+      # vcor plot draws with it, where it is there
+      need "gnuplot" "gnuplot-nox" have gnuplot
       need "python3 with venv" "python3 python3-venv" have_venv
    fi
 }

@@ -76,7 +76,7 @@ def test_history(vcor, results, plot):
         "run", PAPER / "sls_ghost.nml", "--print", "cor,residual_ratio,contact_time"
     ).split()
     assert f"COR {float(cor):.4f}" in found
-    assert f"residual {float(ratio):.4f}" in found
+    assert f"{float(ratio):.4f}" in found
     assert f"t0 = {1e3 * float(time):.3f} ms" in found
     assert plots(figure) == 9
     script = (vcor.folder / "figure.gp").read_text()
@@ -114,7 +114,7 @@ def test_several_histories(plot):
     assert plots(figure) == 18
     legend = [text for text in found if "COR" in text]
     assert len(legend) == 2
-    assert legend[0].startswith("SLS with ghost lines (COR 0.4313, t0 = 1.342 ms)")
+    assert legend[0].startswith("SLS with ghost lines: COR 0.4313, t0 = 1.342 ms")
     assert legend[1].startswith("BUTYL-B252, Prony series")
 
 
@@ -127,7 +127,7 @@ def test_history_without_separation(vcor):
     assert plots(figure) == 3
     assert not any("COR" in text for text in texts(figure))
     vcor.succeeds("plot", "case.h5", "case.h5", "--legend", "a", "--legend", "b", "--quiet")
-    assert "a (no separation)" in texts(figure)
+    assert "a: no separation" in texts(figure)
 
 
 def test_loop(vcor, results, plot):
@@ -462,6 +462,28 @@ def test_settings_of_the_user_do_not_count(vcor, plot, results):
     assert (vcor.folder / "figure.svg").read_bytes() == before
 
 
+def lightness(colour):
+    """L* of a colour like #4a9bd8, 0 to 100 (CIE 1976; sRGB, IEC 61966-2-1)."""
+    parts = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    luminance = linear @ [0.2126, 0.7152, 0.0722]
+    return 116 * luminance ** (1 / 3) - 16 if luminance > 0.008856 else 903.3 * luminance
+
+
+def test_curves_can_be_told_apart_in_grey(vcor, plot):
+    """No two styles share a lightness, nor a marker; the first four are far apart."""
+    plot("sls.h5", "--script")
+    script = (vcor.folder / "figure.gp").read_text()
+    styles = re.findall(r"set style line \d lc rgb '(#\w+)' lw \S+ pt (\d+) .* dt (.*)", script)
+    assert len(styles) == 8
+    light = [lightness(colour) for colour, _, _ in styles]
+    assert min(np.diff(sorted(light))) >= 4
+    assert min(np.diff(sorted(light[:4]))) >= 13
+    assert max(light) <= 82
+    assert len({marker for _, marker, _ in styles}) == 8
+    assert len({dash for _, _, dash in styles}) >= 7
+
+
 def test_figure_is_replaced(vcor, plot):
     (vcor.folder / "figure.svg").write_text("old")
     assert plots(plot("sls.h5")) == 6
@@ -478,6 +500,8 @@ REFUSED = {
     "other results": (["other.h5"], INPUT, "other.h5: there are no results of vcor"),
     "incomplete": (["part.h5"], INPUT, "part.h5: there is no 'indentation' in 'history'"),
     "lengths": (["lengths.h5"], INPUT, "'indentation' of 'history' has not as many values"),
+    "nothing moves": (["still.h5"], INPUT, "still.h5: the time history"),
+    "not a number": (["nan.h5"], INPUT, "nan.h5: the time history"),
     "compound": (["compound.h5"], FILE, "'summary/x' cannot be read"),
     "no moduli": (["sls.h5", "--kind", "moduli"], INPUT, "no moduli in this file"),
     "no history": (["sls_velocity.h5", "--kind", "loop"], INPUT, "this is a sweep"),
@@ -535,6 +559,12 @@ def bad(vcor, results):
         for name in ("time", "relative_velocity", "force"):
             file[f"history/{name}"] = np.arange(4.0)
         file["history/indentation"] = np.arange(3.0)
+    for name, value in (("still", 0.0), ("nan", np.nan)):
+        with h5py.File(folder / f"{name}.h5", "w") as file:
+            for column in ("time", "indentation", "relative_velocity", "force"):
+                file[f"history/{column}"] = [0.0, 1.0, 2.0 if column == "time" else value]
+            if not value:
+                file["history/force"][:] = 0.0
     with h5py.File(folder / "compound.h5", "w") as file:
         file["summary/x"] = np.zeros(3, dtype=[("a", float)])
     with h5py.File(folder / "radius.h5", "w") as file:
@@ -564,3 +594,19 @@ def test_what_others_wrote(bad):
 def test_quiet(vcor, results):
     assert vcor.succeeds("plot", results / "sls.h5", "--quiet") == ""
     assert {path.name for path in vcor.folder.iterdir()} == {"sls_history.svg"}
+
+
+@pytest.mark.parametrize("option", ["--help", "-h"])
+def test_help(vcor, option):
+    page = vcor.succeeds("help", "plot")
+    assert vcor.succeeds("plot", option) == page
+    assert vcor.succeeds("plot", "no.h5", option) == page
+    assert page.isascii() and page.endswith("\n")
+    assert all(len(line) <= 86 and line == line.rstrip() for line in page.splitlines())
+    for word in ("--kind", "--quantity", "--legend", "--output", "--format", "--script", "--quiet"):
+        assert f"\n  {word} " in page
+    for kind in ("history", "loop", "moduli", "sweep", "map"):
+        assert f"\n  {kind} " in page
+    assert "vcor plot" in vcor.succeeds("help")
+    vcor.refuses("help", "plto", code=USAGE, says="'plot'")
+    vcor.refuses("plto", "x.h5", code=USAGE, says="'plot'")

@@ -57,11 +57,18 @@ contains
       call take('force', course%force)
       if (allocated(error)) return
 
+      if (.not. (moves(course%indentation) .and. moves(course%velocity) &
+         .and. moves(course%force))) then
+         call raise(error, error_input, result%path//': the time history in this file is not that ' &
+            //'of an impact: nothing moves, or numbers are missing')
+         return
+      end if
+
       course%contact_time = get_number(result, 'contact_time')
       course%cor = get_number(result, 'cor')
       course%residual_ratio = get_number(result, 'residual_ratio')
       course%hysteresis_energy = get_number(result, 'hysteresis_energy')
-      course%impact_velocity = course%velocity(1)
+      course%impact_velocity = maxval(course%velocity)
       course%max_indentation = largest('max_indentation', course%indentation)
       course%max_force = largest('max_force', course%force)
       call thin(course)
@@ -86,6 +93,17 @@ contains
             error_input, result%path//": '"//name//"' of 'history' has not as many values as " &
             //'there are times, or fewer than two')
       end subroutine take
+
+      !> Whether values are finite, the largest of them above zero
+      pure function moves(values)
+         !> Values
+         real(wp), intent(in) :: values(:)
+         !> True if they are
+         logical :: moves
+
+         moves = all(ieee_is_finite(values))
+         if (moves) moves = maxval(values) > 0.0_wp
+      end function moves
 
       !> A largest value: the outcome's, which is between the times, or that of the history
       function largest(name, values)

@@ -170,7 +170,7 @@ contains
             call add_note(panel, note_right, t0, course%cor, &
                'COR '//number_text(course%cor, digits))
             call add_note(panel, note_right, t0, course%residual_ratio, &
-               'residual '//number_text(course%residual_ratio, digits))
+               number_text(course%residual_ratio, digits))
          end associate
       end subroutine add_marks
 
@@ -181,9 +181,9 @@ contains
          !> The text
          character(len=:), allocatable :: text
 
-         text = ' (no separation)'
-         if (ieee_is_finite(course%contact_time)) text = ' (COR '//number_text(course%cor, digits) &
-            //', t_0'//blank//'= '//number_text(factor*course%contact_time, digits)//' '//unit//')'
+         text = ': no separation'
+         if (ieee_is_finite(course%contact_time)) text = ': COR '//number_text(course%cor, digits) &
+            //', t_0'//blank//'= '//number_text(factor*course%contact_time, digits)//' '//unit
       end function outcome_text
    end subroutine history_figure
 

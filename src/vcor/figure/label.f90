@@ -6,6 +6,7 @@ module vcor_figure_label
    private
 
    public :: suit_unit, with_unit, quantity_label, parameter_label, number_text, is_geometric
+   public :: largest_of
 
 contains
 
@@ -171,7 +172,10 @@ contains
       n = size(values)
       yes = .false.
       if (n < 3) return
-      if (.not. all(values > 0.0_wp)) return
+      do i = 1, n
+         if (.not. ieee_is_finite(values(i))) return
+         if (.not. values(i) > 0.0_wp) return
+      end do
       step = log(values(n)/values(1))/real(n - 1, wp)
       if (.not. abs(step) > 0.0_wp) return
       do i = 2, n
@@ -179,5 +183,21 @@ contains
       end do
       yes = .true.
    end function is_geometric
+
+   !> Largest magnitude of some values
+   pure function largest_of(values) result(largest)
+      !> Values; what is not finite does not count
+      real(wp), intent(in) :: values(:)
+      !> Largest magnitude, -1 if none is finite
+      real(wp) :: largest
+
+      integer :: i
+
+      largest = -1.0_wp
+      do i = 1, size(values)
+         if (.not. ieee_is_finite(values(i))) cycle
+         largest = max(largest, abs(values(i)))
+      end do
+   end function largest_of
 
 end module vcor_figure_label

@@ -2,11 +2,11 @@
 module vcor_figure_map
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
-      suit_unit, with_unit
+   use vcor_figure_label, only : is_geometric, largest_of, number_text, parameter_label, &
+      quantity_label, suit_unit, with_unit
    use vcor_figure_legend, only : legend_t
    use vcor_figure_result, only : get_axes, get_column, result_t
-   use vcor_figure_sweep, only : largest_of, refuse_empty
+   use vcor_figure_sweep, only : refuse_empty
    use vcor_io_figure, only : add_curve, add_note, figure_axis_t, figure_t, line_grid, new_figure, &
       note_inside, panel_t, plain, shape_filled
    use vcor_io_hdf5_reader, only : dataset_t
@@ -108,7 +108,7 @@ contains
       real(wp) :: factor
 
       associate (column => parameter%column)
-         call suit_unit(column%unit, maxval(abs(column%reals)), factor, unit)
+         call suit_unit(column%unit, largest_of(column%reals), factor, unit)
          axis%label = with_unit(plain(parameter_label(column%name)), unit)
          axis%is_log = is_geometric(column%reals)
          values = factor*column%reals

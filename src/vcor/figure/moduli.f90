@@ -3,7 +3,7 @@
 module vcor_figure_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_t, raise
-   use vcor_figure_label, only : number_text, suit_unit, with_unit
+   use vcor_figure_label, only : largest_of, number_text, suit_unit, with_unit
    use vcor_figure_legend, only : fitted, legend_t, page_room
    use vcor_figure_result, only : get_column, get_texts, get_window, has_group, result_t
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_solid, new_figure, note_top, &
@@ -68,7 +68,7 @@ contains
       end if
       largest = 0.0_wp
       do i = 1, size(all)
-         largest = max(largest, maxval(all(i)%relaxation), maxval(all(i)%storage))
+         largest = max(largest, largest_of(all(i)%relaxation), largest_of(all(i)%storage))
       end do
       call suit_unit('Pa', largest, factor, unit)
 
@@ -86,7 +86,7 @@ contains
             call add_curve(frequency, one%frequency, one%tangent, line_solid, 3, &
                'loss tangent tan δ', at_right=.true.)
             frequency%right%label = 'loss tangent'
-            frequency%right%upper = room*maxval(one%tangent)
+            frequency%right%upper = room*largest_of(one%tangent)
          end associate
          call mark(results(1), figure%panels(1:1), figure%panels(2:2), .true.)
       else
@@ -104,7 +104,7 @@ contains
                call add_curve(figure%panels(2), one%frequency, factor*one%storage, line_solid, i)
                call add_curve(figure%panels(3), one%frequency, factor*one%loss, line_solid, i)
                call add_curve(figure%panels(4), one%frequency, one%tangent, line_solid, i)
-               figure%panels(4)%y%upper = max(figure%panels(4)%y%upper, room*maxval(one%tangent))
+               figure%panels(4)%y%upper = max(figure%panels(4)%y%upper, room*largest_of(one%tangent))
             end associate
          end do
          do i = 1, size(results)
@@ -227,15 +227,15 @@ contains
    function window_text(result) result(text)
       !> What a file holds
       type(result_t), intent(in) :: result
-      !> Its contact time and lowest frequency in parentheses, nothing where they are not known
+      !> Its contact time and lowest frequency after a colon, nothing where they are not known
       character(len=:), allocatable :: text
 
       real(wp) :: contact_time, min_frequency
 
       call get_window(result, 'relaxation', contact_time, min_frequency)
       text = ''
-      if (ieee_is_finite(contact_time)) text = ' ('//time_text(contact_time)//', ' &
-         //frequency_text(min_frequency)//')'
+      if (ieee_is_finite(contact_time)) text = ': '//time_text(contact_time)//', ' &
+         //frequency_text(min_frequency)
    end function window_text
 
    !> A contact time in words

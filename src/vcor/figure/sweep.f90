@@ -1,9 +1,8 @@
 !> Figures of sweeps: outcomes over the parameter that is varied, as Figs. 4, 8 and 9 of the paper
 module vcor_figure_sweep
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
-   use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
-      suit_unit, with_unit
+   use vcor_figure_label, only : is_geometric, largest_of, number_text, parameter_label, &
+      quantity_label, suit_unit, with_unit
    use vcor_figure_legend, only : column_room, fitted, legend_t, page_room
    use vcor_figure_result, only : get_axes, get_column, result_t
    use vcor_io_figure, only : add_curve, figure_t, line_solid, new_figure, points_only, plain, &
@@ -14,7 +13,7 @@ module vcor_figure_sweep
    implicit none
    private
 
-   public :: sweep_figure, refuse_empty, largest_of
+   public :: sweep_figure, refuse_empty
 
    !> One curve: values of a quantity over the parameter
    type :: line_t
@@ -58,7 +57,7 @@ contains
          call check_axes(results(i), axes, first, size(results), error)
          if (allocated(error)) return
          j = across(axes)
-         largest = max(largest, maxval(abs(axes(j)%column%reals)))
+         largest = max(largest, largest_of(axes(j)%column%reals))
          is_log = is_log .and. is_geometric(axes(j)%column%reals)
       end do
       associate (axis => first(across(first))%column)
@@ -176,7 +175,7 @@ contains
             table = reshape(y, [axes(2)%column%length, axes(1)%column%length])
             if (place == 2) table = transpose(table)
             associate (other => axes(3 - place)%column)
-               call suit_unit(other%unit, maxval(abs(other%reals)), factor, unit)
+               call suit_unit(other%unit, largest_of(other%reals), factor, unit)
                allocate (lines(other%length))
                do i = 1, size(lines)
                   lines(i)%x = x
@@ -218,21 +217,5 @@ contains
             //"' has no value at any point: no impact of this sweep has a result")
       end if
    end subroutine refuse_empty
-
-   !> Largest magnitude of some values
-   pure function largest_of(values) result(largest)
-      !> Values; what is not finite does not count
-      real(wp), intent(in) :: values(:)
-      !> Largest magnitude, -1 if none is finite
-      real(wp) :: largest
-
-      integer :: i
-
-      largest = -1.0_wp
-      do i = 1, size(values)
-         if (.not. ieee_is_finite(values(i))) cycle
-         largest = max(largest, abs(values(i)))
-      end do
-   end function largest_of
 
 end module vcor_figure_sweep

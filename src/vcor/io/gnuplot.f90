@@ -27,7 +27,7 @@ module vcor_io_gnuplot
    character(len=*), parameter :: nl = new_line("a")
    !> Colours of the styles, each of a lightness of its own
    character(len=7), parameter :: colours(style_count) = [character(len=7) :: "#000000", &
-      & "#c4470e", "#2f78b5", "#e0a020", "#6a3d7c", "#4fa36b", "#8fbfe8", "#8c8c8c"]
+      & "#b83a0a", "#4a9bd8", "#e8b030", "#5b3472", "#3c8f5c", "#9fcdf0", "#a8a8a8"]
    !> Dashes of the styles
    character(len=14), parameter :: dashes(style_count) = [character(len=14) :: "1", "'-'", &
       & "(14,3,2,3)", "'.'", "(16,4)", "(8,3,2,3,2,3)", "1", "(4,4)"]
@@ -138,7 +138,7 @@ contains
             & //"background 'white'"
       case ("pdf")
          text = "set terminal pdfcairo enhanced size "//short(width)//"cm,"//short(height) &
-            & //"cm font 'Arial,8' fontscale 1.0 linewidth 1.5"
+            & //"cm font 'Arial,8' fontscale 0.75 linewidth 1.5"
       case default
          text = "set terminal pngcairo enhanced size "//integer_text(nint(width*png_pixels))//"," &
             & //integer_text(nint(height*png_pixels))//" font 'Arial,8' fontscale 3.1 " &

@@ -17,8 +17,8 @@ module vcor_io_layout
    real(wp), parameter :: body_height = 5.2_wp
    !> Margins below, left, above and right of it where nothing is written there [cm]
    real(wp), parameter :: bottom = 1.2_wp, left = 1.6_wp, top = 0.25_wp, right = 0.4_wp
-   !> Margins right of it with an axis or notes there [cm]
-   real(wp), parameter :: right_axis = 1.6_wp, right_notes = 2.1_wp
+   !> Margin right of it with an axis there [cm]
+   real(wp), parameter :: right_axis = 1.6_wp
    !> From one line of text to the next [cm]
    real(wp), parameter :: line_height = 0.42_wp
    !> Width of a letter, on the wide side [cm]
@@ -169,7 +169,7 @@ contains
       end do
    end function letter_count
 
-   !> Whether a panel has a note at some place
+   !> Whether a panel has a note with a text at some place
    pure function has_note(panel, place) result(has)
       !> The panel
       type(panel_t), intent(in) :: panel
@@ -177,8 +177,12 @@ contains
       integer, intent(in) :: place
       !> True if it has
       logical :: has
+      integer :: i
 
-      has = any(panel%notes(:panel%note_count)%place == place)
+      has = .false.
+      do i = 1, panel%note_count
+         has = has .or. panel%notes(i)%place == place .and. panel%notes(i)%text /= ""
+      end do
    end function has_note
 
    !> Margin right of a panel
@@ -187,10 +191,14 @@ contains
       type(panel_t), intent(in) :: panel
       !> Margin [cm]
       real(wp) :: margin
+      integer :: i
 
       margin = right
       if (panel%right%label /= "") margin = right_axis
-      if (has_note(panel, note_right)) margin = right_notes
+      do i = 1, panel%note_count
+         if (panel%notes(i)%place == note_right) margin = max(margin, &
+            & right + real(letter_count(panel%notes(i)%text), wp)*letter_width)
+      end do
    end function right_of
 
 end module vcor_io_layout
