@@ -1,21 +1,23 @@
 !> The command line as a request
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
-   use vcor, only : error_t, error_usage, integer_text, most_threads, printable, quantity_names, &
-      raise, read_real, suggestion, time_range_t, wp
+   use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
+   use vcor_app_option_value, only : read_positive, read_whole
+   use vcor, only : error_t, error_usage, most_threads, printable, quantity_names, raise, &
+      suggestion, time_range_t
    implicit none
    private
 
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check material plot verify help'
+   character(len=*), parameter :: commands = 'run check material fit plot verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
       //'--help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
-   !> Options of material
+   !> Options of material, and of fit beside its own
    character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
       //'--quiet --help --version'
    !> Options of plot
@@ -45,6 +47,8 @@ module vcor_app_cli
       integer :: threads = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
+      !> What is to be fitted
+      type(fit_request_t) :: fit
       !> Kind of figure of --kind; unallocated without it
       character(len=:), allocatable :: kind
       !> Format of figures of --format; unallocated without it
@@ -74,8 +78,8 @@ contains
 
       allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, material, plot, verify, ' &
-            //'help (vcor help says more)')
+         call raise(error, error_usage, 'no command; known: run, check, material, fit, plot, ' &
+            //'verify, help (vcor help says more)')
          return
       end if
 
@@ -86,6 +90,8 @@ contains
          known = check_options
       case ('material')
          known = material_options
+      case ('fit')
+         known = fit_options//' '//material_options
       case ('plot')
          known = plot_options
       case ('verify')
@@ -138,12 +144,14 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--script')
+         case ('--quiet', '--shear', '--dynamic', '--script')
             if (mark > 0) then
                call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
             if (name == '--quiet') request%quiet = .true.
+            if (name == '--shear') request%fit%shear = .true.
+            if (name == '--dynamic') request%fit%dynamic = .true.
             if (name == '--script') request%script = .true.
             cycle
          case default
@@ -178,6 +186,7 @@ contains
 
       if (request%command == 'help') return
       if (request%command == 'verify' .and. size(request%settings) == 0) return
+      if (request%command == 'fit') return
       if (request%command == 'plot') then
          call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
       else
@@ -220,59 +229,12 @@ contains
          call read_positive(option, value, request%range%first, error)
       case ('--to')
          call read_positive(option, value, request%range%last, error)
-      case default
+      case ('--print', '--quantity')
          call add_names(option, value, request, error)
+      case default
+         call apply_fit_option(option, value, request%fit, error)
       end select
    end subroutine apply
-
-   !> Read a whole number
-   subroutine read_whole(option, value, least, most, number, error)
-      !> The option
-      character(len=*), intent(in) :: option
-      !> The number as it is written
-      character(len=*), intent(in) :: value
-      !> Smallest number
-      integer, intent(in) :: least
-      !> Largest number
-      integer, intent(in) :: most
-      !> The number
-      integer, intent(out) :: number
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: digits
-      integer, parameter :: most_digits = 9
-      integer :: status
-
-      number = least - 1
-      digits = trim(adjustl(value))
-      status = 0
-      if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
-         read (digits, *, iostat=status) number
-      if (status /= 0 .or. number < least .or. number > most) call raise(error, error_usage, &
-         option//": found '"//printable(digits)//"', expected a whole number from " &
-         //integer_text(least)//' to '//integer_text(most))
-   end subroutine read_whole
-
-   !> Read a number > 0
-   subroutine read_positive(option, value, number, error)
-      !> The option
-      character(len=*), intent(in) :: option
-      !> The number as it is written
-      character(len=*), intent(in) :: value
-      !> The number
-      real(wp), intent(out) :: number
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=*), parameter :: expected = 'a number from 1e-30 to 1e30'
-      character(len=:), allocatable :: message
-
-      call read_real(trim(adjustl(value)), expected, number, message)
-      if (.not. allocated(message) .and. .not. (number >= 1.0e-30_wp .and. number <= 1.0e30_wp)) &
-         message = 'found '//trim(adjustl(value))//', expected '//expected
-      if (allocated(message)) call raise(error, error_usage, option//': '//message)
-   end subroutine read_positive
 
    !> Split the value of --print or --quantity
    subroutine add_names(option, list, request, error)

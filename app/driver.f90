@@ -3,6 +3,7 @@ module vcor_app_driver
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_argument, only : argument_t
    use vcor_app_cli, only : request_t
+   use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
@@ -35,6 +36,8 @@ contains
          call check(request, error)
       case ('material')
          call materials(request, error)
+      case ('fit')
+         call fit_data(request, error)
       case ('plot')
          call plot(request, error)
       case ('verify')

@@ -103,7 +103,7 @@ contains
             ! bare numbers are for scripts, which would be surprised by files
             if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
                job%writes = .false.
-            if (request%command == 'verify') job%writes = .false.
+            if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
          end associate
          do j = 1, i
             call refuse_clash(request, jobs, i, j, error)

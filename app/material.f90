@@ -4,9 +4,10 @@ module vcor_app_material
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : short, significant
-   use vcor, only : case_t, compute_moduli, contact_separated, curves_t, error_t, integer_text, &
-      loss_tangent, make_directory, moduli_t, moduli_tables, named_table_t, outcome_t, printable, &
-      solve_point, table_t, version, worker_t, wp, write_csv, write_hdf5, write_stdout
+   use vcor_app_window, only : find_window, take_first_point, window_t
+   use vcor, only : case_t, compute_moduli, curves_t, error_t, integer_text, loss_tangent, &
+      make_directory, moduli_t, moduli_tables, named_table_t, printable, table_t, version, wp, &
+      write_csv, write_hdf5, write_stdout
    implicit none
    private
 
@@ -30,22 +31,12 @@ contains
       type(moduli_t) :: moduli
       type(table_t) :: summary
       character(len=:), allocatable :: title, files, notes
-      real(wp) :: contact_time, reference
-      integer :: i
+      type(window_t) :: window
 
-      ! a sweep has many impacts, its first one stands for them
-      case = job%case
-      notes = ''
-      do i = 1, size(job%sweep%grid%axes)
-         associate (axis => job%sweep%grid%axes(i))
-            call case%put(axis%handle, axis%values(1), error)
-            if (allocated(error)) return
-            notes = notes//'  note: the case varies '//axis%name//', here it is ' &
-               //trim(adjustl(significant(axis%values(1))))//nl
-         end associate
-      end do
-      call find_window(job, contact_time, reference, notes)
-      call compute_moduli(moduli, case, contact_time, reference, request%range, error)
+      call take_first_point(job, case, notes, error)
+      if (allocated(error)) return
+      call find_window(job, window, notes)
+      call compute_moduli(moduli, case, window%contact_time, window%reference, request%range, error)
       if (allocated(error)) return
 
       call case%get('case', 'title', title)
@@ -53,40 +44,6 @@ contains
       if (allocated(error) .or. request%quiet) return
       call write_stdout(report(job%case%source, title, moduli)//notes//files//nl, error)
    end subroutine show_materials
-
-   !> Contact time of the impact of a case, the first one of a sweep
-   subroutine find_window(job, contact_time, reference, notes)
-      !> The case
-      type(job_t), intent(in) :: job
-      !> Contact time [s]; 0: the impact has none
-      real(wp), intent(out) :: contact_time
-      !> Contact time or, where there is none, a time in its place [s]
-      real(wp), intent(out) :: reference
-      !> Notes, one to a line
-      character(len=:), allocatable, intent(inout) :: notes
-
-      !> Contact times are about three times the time scale of Hertz's impact
-      real(wp), parameter :: hertz = 3.0_wp
-      !> Where there is no impact at all [s]
-      real(wp), parameter :: any_impact = 1.0e-3_wp
-      type(worker_t) :: worker
-      type(outcome_t) :: outcome
-      type(error_t), allocatable :: trouble
-
-      contact_time = 0.0_wp
-      reference = any_impact
-      call solve_point(job%sweep, 1, worker, outcome, trouble)
-      if (allocated(trouble)) then
-         notes = notes//'  note: the impact cannot be solved ('//trouble%message &
-            //'): its window is not known'//nl
-      else if (outcome%status /= contact_separated) then
-         reference = hertz*worker%impact%time_scale()
-         notes = notes//'  note: the impact does not end in separation: its window is not known'//nl
-      else
-         contact_time = outcome%contact_time
-         reference = contact_time
-      end if
-   end subroutine find_window
 
    !> Write the files
    subroutine write_files(request, job, case, title, moduli, summary, files, error)

@@ -1,6 +1,7 @@
 !> Running a case: its impact, or the impacts of its sweep
 module vcor_app_run
    use vcor_app_cli, only : request_t
+   use vcor_app_band, only : warn_of_bands
    use vcor_app_job, only : endings, job_t
    use vcor_app_screen, only : report, short
    use vcor_app_sweep_screen, only : coordinates, sweep_report
@@ -51,6 +52,7 @@ contains
          call end_of(job, outcome, worker%trajectory, error)
       end if
 
+      call warn_of_bands(job, summary)
       call job%case%get('case', 'title', title)
       call summary_table(table, title, job%case%to_text(complete=.true.), job%sweep%grid, summary)
       call write_files(request, job, table, worker%trajectory, files, trouble)

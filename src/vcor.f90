@@ -16,18 +16,22 @@ module vcor
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : directory_exists, join_path, make_directory, same_file, write_stdout
+   use vcor_io_file, only : directory_exists, file_exists, join_path, make_directory, same_file, &
+      write_file, write_stdout
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, write_hdf5
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_real, only : read_real
    use vcor_io_results, only : history_table, summary_table
+   use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_fit, only : fit_material, fit_models, fit_t, fixable_parameters, parameter_t, &
+      samples_t, state_bound, state_fixed, state_free
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
@@ -42,17 +46,20 @@ module vcor
       attempt_halved, attempt_refined, compared_t, comparison_t
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
+   use vcor_study_identified, only : material_text, put_material
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, &
-      time_range_t
+      sampled_times, time_range_t
    use vcor_study_nearest, only : suggestion
    use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
       quantity_t, quantity_value, status_name
+   use vcor_study_reliance, only : find_reliance, reliance_t, solve_case
    use vcor_study_summary, only : new_summary, summary_t
    use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
       worker_t
    use vcor_study_text, only : printable
    use vcor_study_threads, only : default_threads, most_threads
+   use vcor_study_units, only : frequency_units, modulus_units, time_units
    use vcor_study_verification, only : build_law, law_count, verify_law
    use vcor_study_verification_row, only : law_t, row_t, verdict_t
    use vcor_version, only : version
@@ -83,12 +90,16 @@ module vcor
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: key_t, group_t, catalogue, groups, range_text
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
+   public :: samples_t, reading_t, read_samples, fit_t, parameter_t, fit_material
+   public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound
+   public :: material_text, put_material, reliance_t, find_reliance, solve_case
+   public :: sampled_times, time_units, frequency_units, modulus_units
    public :: place_in_table, write_rows, named_table_t
    public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables
    public :: result_t, legend_t, figure_t, figure_kinds, figure_formats
    public :: read_result, usual_kind, build_figure, draw
-   public :: split_path, directory_exists
-   public :: write_stdout, make_directory, join_path, same_file
+   public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
+   public :: file_exists, directory_exists
    public :: real_text, integer_text, printable, suggestion, read_real
 
 end module vcor

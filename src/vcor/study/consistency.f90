@@ -130,7 +130,27 @@ contains
       call self%get("material", "model", model, item)
       if (model == "sls") call check_sls(self, swept, item, error)
       if (model == "prony") call check_prony(self, swept, item, error)
+      if (.not. allocated(error)) call check_band(self, item, error)
    end subroutine check_material
+
+   !> The band of the data that a model was fitted to begins before it ends
+   subroutine check_band(self, item, error)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      real(wp) :: first, last
+
+      if (.not. (self%given("material", "valid_from", item) &
+         & .and. self%given("material", "valid_to", item))) return
+      call self%get("material", "valid_from", first, item)
+      call self%get("material", "valid_to", last, item)
+      if (.not. first < last) call fail(self, "valid_to", item, "found valid_from = " &
+         & //real_text(first)//" and valid_to = "//real_text(last) &
+         & //", expected valid_from < valid_to", error)
+   end subroutine check_band
 
    !> A standard linear solid is softer after a long time than at first: alpha <= beta
    subroutine check_sls(self, swept, item, error)

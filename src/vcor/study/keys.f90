@@ -164,6 +164,10 @@ module vcor_study_keys
       &    choices="ns us ms s min h", models="table", default="s"), &
       & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
       &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
+      & key_t("material", "valid_from", real_key, "First time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
       !
       & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
       &    choices="auto ive direct", default="auto"), &

@@ -166,6 +166,8 @@ contains
       curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
       curves%storage_at_min = curves%at_contact_time
       curves%loss_at_min = curves%at_contact_time
+      ! gfortran 12 does not make room for the result of an elemental function of a class
+      allocate (curves%relaxation(size(moduli%times)))
       curves%relaxation = material%relaxation(moduli%times)
       modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
       curves%storage = real(modulus, wp)
