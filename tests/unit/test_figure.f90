@@ -10,7 +10,7 @@ program test_figure
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_gnuplot_axis, only : in_quotes, number
    use vcor_io_hdf5, only : named_table_t, write_hdf5
-   use vcor_io_hdf5_reader, only : close_input, dataset_t, hdf5_input_t, list_members, member_t, &
+   use vcor_io_hdf5_contents, only : close_input, dataset_t, hdf5_input_t, list_members, member_t, &
       number_attribute, open_input, read_dataset, text_attribute
    use vcor_io_number, only : integer_text
    use vcor_io_posix, only : c_getpid

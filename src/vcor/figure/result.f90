@@ -3,7 +3,7 @@ module vcor_figure_result
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_drawing, only : split_path
-   use vcor_io_hdf5_reader, only : close_input, dataset_t, hdf5_input_t, list_members, &
+   use vcor_io_hdf5_contents, only : close_input, dataset_t, hdf5_input_t, list_members, &
       member_t, number_attribute, open_input, read_dataset, text_attribute
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp

@@ -1,4 +1,4 @@
-!> Tables as an HDF5 file; `vcor_io_hdf5_reader` reads it
+!> Tables as an HDF5 file
 !>
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
@@ -20,8 +20,8 @@
 !> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends.
 !> Objects hold no times: the same tables give the same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int64_t, &
-      & c_loc, c_null_char, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, &
+      & c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
       & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
@@ -36,7 +36,7 @@ module vcor_io_hdf5
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : quoted_path, write_file
-   use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
+   use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
       & text_value
    use vcor_kinds, only : wp
@@ -122,8 +122,8 @@ contains
       !> Further tables, each with its name
       type(named_table_t), intent(in), optional :: more(:)
       type(writer_t) :: writer
-      type(silence_t) :: silence
-      integer :: i, status
+      type(handler_t) :: handler
+      integer :: i
 
       call check_table(summary, error)
       if (allocated(error)) return
@@ -136,13 +136,12 @@ contains
          end do
       end if
 
-      call begin_silence(silence, status)
-      call note(writer, status, "open its library")
+      call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
          call build(writer, summary, history, more)
          call write_image(writer, filename, error)
          call close_all(writer)
-         call end_silence(silence)
+         call end_hdf5(handler)
       end if
 
       if (allocated(writer%fault) .and. .not. allocated(error)) call raise(error, error_file, &

@@ -1,29 +1,25 @@
-!> The HDF5 library as writer and reader need it: opened once, and silent while they work
-!>
-!> HDF5's Fortran interface can turn the printing of errors on and off but cannot tell whether it
-!> is on, and a program that uses this library may have a handler of its own: it is kept and set
-!> again.
+!> HDF5 as the modules that use it find it and leave it: its library open, its errors not printed
 module vcor_io_hdf5_library
-   use, intrinsic :: iso_c_binding, only : c_funptr, c_int, c_int64_t, c_null_funptr, c_null_ptr, &
-      & c_ptr
+   use, intrinsic :: iso_c_binding, only : c_funptr, c_int, c_int64_t, c_null_funptr, c_ptr
    use hdf5, only : h5iis_valid_f, h5open_f, h5t_native_double
    implicit none
    private
 
-   public :: silence_t, begin_silence, end_silence
+   public :: handler_t, begin_hdf5, end_hdf5
 
    !> The error stack that H5E functions take by default (H5E_DEFAULT)
    integer(c_int64_t), parameter :: default_stack = 0_c_int64_t
 
-   !> Handler of errors that is put aside
-   type :: silence_t
-      private
-      !> Handler, null if there is none
-      type(c_funptr) :: handler = c_null_funptr
-      !> What the handler is called with
-      type(c_ptr) :: client = c_null_ptr
-   end type silence_t
+   !> What handled errors before
+   type :: handler_t
+      !> The handler
+      type(c_funptr), private :: handler
+      !> What it is called with
+      type(c_ptr), private :: client
+   end type handler_t
 
+   ! HDF5's Fortran interface can turn the printing of errors on and off but cannot tell whether it
+   ! is on, and a program that uses this library may have a handler of its own
    interface
       !> Ask for the handler of errors
       function c_get_handler(stack, handler, client) result(status) bind(c, name="H5Eget_auto2")
@@ -54,29 +50,37 @@ module vcor_io_hdf5_library
 
 contains
 
-   !> Open the library if nobody has, and keep it from printing
-   subroutine begin_silence(silence, status)
-      !> What `end_silence` needs
-      type(silence_t), intent(out) :: silence
-      !> Negative on failure; then there is nothing to end
-      integer, intent(out) :: status
+   !> Open the library and keep it from printing
+   subroutine begin_hdf5(before, fault)
+      !> What handled errors before
+      type(handler_t), intent(out) :: before
+      !> What failed; unallocated on success
+      character(len=:), allocatable, intent(out) :: fault
+      integer :: status
       logical :: is_open
 
       ! The types of HDF5 are there if the library was opened, by whomever; it is never closed here,
       ! since that would close everything else the program has open in HDF5
       call h5iis_valid_f(h5t_native_double, is_open, status)
-      if (status < 0 .or. .not. is_open) call h5open_f(status)
-      if (status >= 0) status = c_get_handler(default_stack, silence%handler, silence%client)
-      if (status >= 0) status = c_set_handler(default_stack, c_null_funptr, c_null_ptr)
-   end subroutine begin_silence
+      if (status < 0 .or. .not. is_open) then
+         call h5open_f(status)
+         if (status < 0) fault = "open its library"
+      end if
+      if (allocated(fault)) return
+      if (c_get_handler(default_stack, before%handler, before%client) < 0) then
+         fault = "give its handler of errors"
+      else if (c_set_handler(default_stack, c_null_funptr, before%client) < 0) then
+         fault = "take a handler of errors"
+      end if
+   end subroutine begin_hdf5
 
    !> Errors are handled as before
-   subroutine end_silence(silence)
-      !> What `begin_silence` put aside
-      type(silence_t), intent(in) :: silence
-      integer :: ignored
+   subroutine end_hdf5(before)
+      !> What handled errors before
+      type(handler_t), intent(in) :: before
+      integer(c_int) :: ignored
 
-      ignored = c_set_handler(default_stack, silence%handler, silence%client)
-   end subroutine end_silence
+      ignored = c_set_handler(default_stack, before%handler, before%client)
+   end subroutine end_hdf5
 
 end module vcor_io_hdf5_library

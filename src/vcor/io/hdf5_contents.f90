@@ -1,4 +1,4 @@
-!> Reading HDF5 files: what is in them, numbers of any shape, text, attributes
+!> What is in an HDF5 file: its groups, numbers of any shape, text, attributes
 !>
 !>     call open_input(input, "case.h5", error)
 !>     call list_members(input, "summary", members, error)
@@ -10,7 +10,7 @@
 !> width and byte order, text of fixed or variable length. Members come in the order in which they
 !> were written where the file knows it, else by name. Every error is an `error_file` with the name
 !> of the file, but for a file that is there and is no HDF5 file: that is an `error_input`.
-module vcor_io_hdf5_reader
+module vcor_io_hdf5_contents
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_loc, c_null_char, &
       & c_null_ptr, c_ptr
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
@@ -27,7 +27,7 @@ module vcor_io_hdf5_reader
       & hsize_t, size_t
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_file, only : directory_exists, file_exists
-   use vcor_io_hdf5_library, only : begin_silence, end_silence, silence_t
+   use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp
    use vcor_study_text, only : printable, shortened
@@ -49,7 +49,7 @@ module vcor_io_hdf5_reader
       !> Its name as messages show it
       character(len=:), allocatable, public :: path
       !> Handler of errors before
-      type(silence_t) :: silence
+      type(handler_t) :: handler
    end type hdf5_input_t
 
    !> A member of a group
@@ -80,6 +80,7 @@ contains
       character(len=*), intent(in) :: filename
       !> Error of code `error_input` if it is no HDF5 file, `error_file` if it cannot be read
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: fault
       integer :: status
       logical :: is_hdf5
 
@@ -95,9 +96,9 @@ contains
       end if
       if (allocated(error)) return
 
-      call begin_silence(input%silence, status)
-      if (status < 0) then
-         call raise(error, error_file, input%path//": HDF5 cannot open its library")
+      call begin_hdf5(input%handler, fault)
+      if (allocated(fault)) then
+         call raise(error, error_file, input%path//": HDF5 cannot "//fault)
          return
       end if
       call h5fis_hdf5_f(trim(filename), is_hdf5, status)
@@ -111,7 +112,7 @@ contains
          if (status < 0) call raise(error, error_file, input%path//": HDF5 cannot open it: it is " &
             & //"damaged, or being written")
       end if
-      if (allocated(error)) call end_silence(input%silence)
+      if (allocated(error)) call end_hdf5(input%handler)
    end subroutine open_input
 
    !> Close a file
@@ -122,7 +123,7 @@ contains
 
       if (input%file < 0_hid_t) return
       call h5fclose_f(input%file, ignored)
-      call end_silence(input%silence)
+      call end_hdf5(input%handler)
       input%file = -1_hid_t
    end subroutine close_input
 
@@ -468,4 +469,4 @@ contains
       call h5aclose_f(attribute, ignored)
    end function attribute_of
 
-end module vcor_io_hdf5_reader
+end module vcor_io_hdf5_contents
