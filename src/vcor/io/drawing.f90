@@ -7,8 +7,8 @@ module vcor_io_drawing
    use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : check_name, file_exists, join_path, make_directory, quoted_path, &
-      & write_file
+   use vcor_io_file, only : create_file, discard, file_exists, join_path, make_directory, &
+      & output_file_t, quoted_path, write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_posix, only : c_getpid, c_remove, c_rename, c_text, last_errno, system_reason
    use vcor_study_text, only : integer_text
@@ -38,19 +38,15 @@ contains
       integer(c_int) :: ignored
       logical :: done, installed
 
-      call check_name(path//"."//format, error)
-      if (.not. allocated(error)) call check_name(path//".gp", error)
-      if (.not. allocated(error)) call check_name(path//".dat", error)
-      if (allocated(error)) return
       call split_path(path, directory, name)
       call make_directory(directory, error)
+      if (.not. allocated(error)) call probe(path//"."//format, error)
+      if (.not. allocated(error)) call probe(path//".gp", error)
+      if (.not. allocated(error)) call probe(path//".dat", error)
       if (allocated(error)) return
       folder = join_path(directory, "vcor-"//integer_text(int(c_getpid()))//".tmp")
       call make_directory(folder, error)
-      if (allocated(error)) then
-         error%message = "cannot write "//quoted_path(path//"."//format)//": "//error%message
-         return
-      end if
+      if (allocated(error)) return
 
       call write_file(join_path(folder, name//".gp"), script_text(figure, name, format), error)
       if (.not. allocated(error)) &
@@ -93,6 +89,18 @@ contains
             & //": "//system_reason(last_errno()))
       end subroutine take_over
    end subroutine draw
+
+   !> Refuse a name under which no file can be written; nothing is left of the try
+   subroutine probe(path, error)
+      !> Name of the file
+      character(len=*), intent(in) :: path
+      !> Set if there can be no such file
+      type(error_t), allocatable, intent(out) :: error
+      type(output_file_t) :: file
+
+      call create_file(file, path, error)
+      if (.not. allocated(error)) call discard(file)
+   end subroutine probe
 
    !> Whether gnuplot is in the PATH
    function has_gnuplot() result(has)

@@ -28,7 +28,7 @@ module vcor_io_file
    public :: output_file_t, create_file, put, commit, discard
    public :: write_file, write_stdout
    public :: file_exists, directory_exists, make_directory, join_path, quoted_path
-   public :: same_file, check_name
+   public :: same_file
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
    !>
