@@ -244,6 +244,23 @@ def test_sweep_that_is_logarithmic(vcor):
     assert "set logscale x" not in (vcor.folder / "case_sweep.gp").read_text()
 
 
+def test_values_in_any_order(vcor):
+    values = "9.0, 1.0, 5.0, 3.0"
+    vcor.write(SLS + f"&sweep\n parameter = 'impact.velocity'\n values = {values}\n/\n")
+    vcor.succeeds("run", "--quiet", "case.nml")
+    vcor.succeeds("plot", "case.h5", "--script")
+    (line,) = blocks(vcor.folder / "case_sweep.dat")
+    assert [x for x, _ in line] == [1.0, 3.0, 5.0, 9.0]
+    cor = dict(
+        zip(
+            (9.0, 1.0, 5.0, 3.0),
+            map(float, vcor.succeeds("run", "case.nml", "--print", "cor").split()),
+            strict=True,
+        )
+    )
+    assert [y for _, y in line] == pytest.approx([cor[x] for x, _ in line], rel=1e-8)
+
+
 def test_sweep_of_two_parameters(plot):
     """Curves over the parameter with more values."""
     figure = plot("grid.h5", "--kind", "sweep")

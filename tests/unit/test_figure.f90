@@ -254,6 +254,7 @@ contains
       call check_text(with_unit('time', 'ms'), 'time [ms]', 'label with a unit')
       call check_text(with_unit('ratio', '1'), 'ratio', 'label of a pure number')
       call check_text(parameter_label('sls_rubber.beta'), 'sls rubber beta', 'path of a parameter')
+      call check_text(parameter_label('a_rubber_with_a_very_long_name.beta'), 'beta', 'long path')
       call check_text(quantity_label('cor', 'coefficient of restitution, relative velocity'), &
          'coefficient of restitution', 'short label')
       call check_text(quantity_label('cor_sphere', 'coefficient of restitution, sphere alone'), &

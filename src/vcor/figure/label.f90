@@ -84,14 +84,17 @@ contains
       if (mark > 1 .and. name /= 'cor_sphere') label = label(:mark - 1)
    end function quantity_label
 
-   !> Label of a parameter that is swept
+   !> Label of a parameter that is swept, short enough for an axis
    pure function parameter_label(path) result(label)
       !> Its path, such as `sls_rubber.beta`
       character(len=*), intent(in) :: path
-      !> `sls rubber beta`
+      !> `sls rubber beta`; the key alone where that is too long
       character(len=:), allocatable :: label
 
+      integer, parameter :: longest = 30
+
       label = spaced(path)
+      if (len(label) > longest) label = spaced(path(index(path, '.', back=.true.) + 1:))
    end function parameter_label
 
    !> A name with blanks for points and underscores

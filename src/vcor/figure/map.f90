@@ -6,7 +6,7 @@ module vcor_figure_map
       quantity_label, suit_unit, with_unit
    use vcor_figure_legend, only : legend_t
    use vcor_figure_result, only : get_axes, get_column, result_t
-   use vcor_figure_sweep, only : refuse_empty
+   use vcor_figure_sweep, only : refuse_empty, rising
    use vcor_io_figure, only : add_curve, add_note, figure_axis_t, figure_t, line_grid, new_figure, &
       note_inside, panel_t, plain, shape_filled
    use vcor_io_hdf5_contents, only : dataset_t
@@ -19,7 +19,7 @@ module vcor_figure_map
    public :: map_figure
 
    !> Intervals between levels that are aimed at
-   integer, parameter :: wanted_intervals = 9
+   integer, parameter :: wanted_intervals = 10
    !> Least distance of two labels, and of a label from the edge, in widths and heights of the map
    real(wp), parameter :: label_width = 0.17_wp, label_height = 0.1_wp
    !> Shortest line that is labelled, in widths and heights of the map
@@ -78,8 +78,9 @@ contains
       call suit_unit(column%column%unit, largest_of(column%column%reals), factor, unit)
       ! the second dimension is the fastest
       z = transpose(reshape(factor*column%column%reals, [size(y), size(x)]))
-      call in_order(x, z, .false.)
-      call in_order(y, z, .true.)
+      z = z(rising(x), rising(y))
+      x = x(rising(x))
+      y = y(rising(y))
 
       call new_figure(figure, 'map over '//parameter_label(axes(1)%column%name)//' and ' &
          //parameter_label(axes(2)%column%name), panels=1, columns=1)
@@ -117,37 +118,6 @@ contains
          if (axis%is_log) values = log10(values)
       end associate
    end subroutine set_axis
-
-   !> Sort the values of a parameter, and what belongs to them
-   pure subroutine in_order(values, z, is_second)
-      !> Values of the parameter
-      real(wp), intent(inout) :: values(:)
-      !> Quantity, shape (first parameter, second parameter)
-      real(wp), intent(inout) :: z(:, :)
-      !> Whether it is the second parameter
-      logical, intent(in) :: is_second
-
-      real(wp) :: column(size(z, 1)), row(size(z, 2)), value
-      integer :: i, j
-
-      do i = 2, size(values)
-         do j = i, 2, -1
-            if (values(j - 1) <= values(j)) exit
-            value = values(j)
-            values(j) = values(j - 1)
-            values(j - 1) = value
-            if (is_second) then
-               column = z(:, j)
-               z(:, j) = z(:, j - 1)
-               z(:, j - 1) = column
-            else
-               row = z(j, :)
-               z(j, :) = z(j - 1, :)
-               z(j - 1, :) = row
-            end if
-         end do
-      end do
-   end subroutine in_order
 
    !> Which values are finite
    pure function are_finite(z) result(finite)
@@ -288,7 +258,7 @@ contains
       real(wp), intent(in) :: x_range(2), y_range(2)
 
       real(wp) :: placed(2, 200)
-      integer :: first, i, k, last, n, placed_count, start
+      integer :: first, i, j, k, last, n, placed_count, start
 
       placed_count = 0
       do i = 1, size(areas)
@@ -302,19 +272,19 @@ contains
             do first = 1, n
                if (loop%on_edge(first) .and. .not. loop%on_edge(modulo(first, n) + 1)) start = first
             end do
-            first = 0
+            if (.not. any(loop%on_edge)) then
+               call draw_line([(loop%x(at(j)), j=0, n)], [(loop%y(at(j)), j=0, n)], levels(k))
+               cycle
+            end if
+            first = 1
             do while (first < n)
-               if (loop%on_edge(at(first)) .and. loop%on_edge(at(first + 1))) then
-                  first = first + 1
-                  cycle
-               end if
-               last = first + 1
+               last = first
                do while (last < n .and. .not. loop%on_edge(at(last)))
                   last = last + 1
                end do
-               call draw_line([(loop%x(at(k)), k=first, last)], [(loop%y(at(k)), k=first, last)], &
-                  levels(areas(i)%band + merge(1, 0, loop%area < 0.0_wp)))
-               first = last
+               if (last - first > 1) call draw_line([(loop%x(at(j)), j=first, last - 1)], &
+                  [(loop%y(at(j)), j=first, last - 1)], levels(k))
+               first = last + 1
             end do
          end associate
       end do

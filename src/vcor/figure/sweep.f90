@@ -13,7 +13,7 @@ module vcor_figure_sweep
    implicit none
    private
 
-   public :: sweep_figure, refuse_empty
+   public :: sweep_figure, refuse_empty, rising
 
    !> One curve: values of a quantity over the parameter
    type :: line_t
@@ -167,8 +167,8 @@ contains
       associate (x => axes(place)%column%reals, y => column%column%reals)
          if (size(axes) == 1) then
             allocate (lines(1))
-            lines(1)%x = x
-            lines(1)%y = y
+            lines(1)%x = x(rising(x))
+            lines(1)%y = y(rising(x))
             lines(1)%text = text
          else
             ! the last dimension is the fastest
@@ -178,8 +178,8 @@ contains
                call suit_unit(other%unit, largest_of(other%reals), factor, unit)
                allocate (lines(other%length))
                do i = 1, size(lines)
-                  lines(i)%x = x
-                  lines(i)%y = table(i, :)
+                  lines(i)%x = x(rising(x))
+                  lines(i)%y = table(i, rising(x))
                   lines(i)%text = plain(parameter_label(other%name))//' = ' &
                      //number_text(factor*other%reals(i), 5)
                   if (unit /= '' .and. unit /= '1') lines(i)%text = lines(i)%text//' '//unit
@@ -188,6 +188,26 @@ contains
          end if
       end associate
    end subroutine cut_lines
+
+   !> Order in which values rise: a sweep may have its values in any
+   pure function rising(values) result(order)
+      !> Values
+      real(wp), intent(in) :: values(:)
+      !> Their numbers
+      integer :: order(size(values))
+
+      integer :: i, j, n
+
+      ! a long list is one of equal steps, upwards or downwards, and in order at once
+      n = size(values)
+      order = [(merge(i, n + 1 - i, values(1) <= values(n)), i=1, n)]
+      do i = 2, n
+         do j = i, 2, -1
+            if (values(order(j - 1)) <= values(order(j))) exit
+            order(j - 1:j) = order([j, j - 1])
+         end do
+      end do
+   end function rising
 
    !> Refuse a quantity without a single value, or with values that do not fit the parameters
    subroutine refuse_empty(result, column, error)

@@ -34,7 +34,7 @@ module vcor_io_gnuplot
    !> Markers of the styles
    integer, parameter :: markers(style_count) = [7, 5, 9, 13, 6, 4, 8, 12]
    !> Lightest and darkest colour of filled shapes, red, green, blue
-   real(wp), parameter :: lightest(3) = [250.0_wp, 251.0_wp, 253.0_wp]
+   real(wp), parameter :: lightest(3) = [234.0_wp, 241.0_wp, 248.0_wp]
    real(wp), parameter :: darkest(3) = [76.0_wp, 132.0_wp, 184.0_wp]
 
 contains
