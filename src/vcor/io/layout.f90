@@ -16,7 +16,7 @@ module vcor_io_layout
    !> Height of a pair of axes [cm]
    real(wp), parameter :: body_height = 5.2_wp
    !> Margins below, left, above and right of it where nothing is written there [cm]
-   real(wp), parameter :: bottom = 1.2_wp, left = 1.6_wp, top = 0.25_wp, right = 0.4_wp
+   real(wp), parameter :: bottom = 1.2_wp, left = 1.8_wp, top = 0.25_wp, right = 0.4_wp
    !> Margin right of it with an axis there [cm]
    real(wp), parameter :: right_axis = 1.6_wp
    !> From one line of text to the next [cm]

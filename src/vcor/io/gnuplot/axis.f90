@@ -83,9 +83,7 @@ contains
       integer :: i, power
 
       call buffer%add("set "//name//"label "//in_quotes(axis%label))
-      ! nearer to the numbers than gnuplot has it
       if (name == "x") call buffer%add(" offset 0, 0.4")
-      if (name == "y") call buffer%add(" offset 1, 0")
       call buffer%add(nl)
       ends = range
       if (axis%upper > axis%lower) ends = [axis%lower, axis%upper]
