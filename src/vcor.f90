@@ -2,8 +2,8 @@
 module vcor
    use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
       error_usage, raise
-   use vcor_figure, only : build_figure, figure_kinds => kinds, legend_t, read_result, result_t, &
-      usual_kind
+   use vcor_figure_build, only : build_figure, figure_kinds => kinds, legend_t, read_result, &
+      result_t, usual_kind
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, waves_none, &

@@ -1,5 +1,5 @@
 !> Figures of results by the name of their kind
-module vcor_figure
+module vcor_figure_build
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_figure_history, only : history_figure, loop_figure
    use vcor_figure_legend, only : legend_t, make_legends
@@ -112,4 +112,4 @@ contains
       end select
    end subroutine build_figure
 
-end module vcor_figure
+end module vcor_figure_build
