@@ -45,12 +45,11 @@ contains
       type(reliance_t) :: reliance, worst
       type(case_t) :: case
       type(error_t), allocatable :: error
-      integer :: points(2), i, k, cor, time, worst_point
+      integer :: points(2), i, k, time, worst_point
       logical, allocatable :: known(:)
 
       if (.not. (job%case%given('material', 'valid_from', item) &
          .or. job%case%given('material', 'valid_to', item))) return
-      cor = place_of('cor')
       time = place_of('contact_time')
       allocate (known(size(summary%status)))
       known = summary%status == contact_separated
@@ -66,11 +65,10 @@ contains
             end associate
             if (allocated(error)) return
          end do
-         call find_reliance(reliance, case, item, summary%values(cor)%at(points(i)), &
-            summary%values(time)%at(points(i)))
+         call find_reliance(reliance, case, item, summary%values(time)%at(points(i)))
          if (.not. reliance%leans) cycle
          if (worst_point > 0) then
-            if (change(reliance, points(i)) <= change(worst, worst_point)) cycle
+            if (change(reliance) <= change(worst)) cycle
          end if
          worst = reliance
          worst_point = points(i)
@@ -81,16 +79,14 @@ contains
    contains
 
       !> Change of cor by what is held constant
-      function change(found, point)
+      pure function change(found)
          !> What was found
          type(reliance_t), intent(in) :: found
-         !> Number of the point
-         integer, intent(in) :: point
          !> The change, large where the other impact has no result
          real(wp) :: change
 
          change = huge(change)
-         if (found%solved) change = abs(found%held - summary%values(cor)%at(point))
+         if (found%solved) change = abs(found%held - found%cor)
       end function change
 
       !> What is said
@@ -113,8 +109,8 @@ contains
          if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
          text = text//'): with its modulus held constant there '
          if (found%solved) then
-            text = text//'cor changes by '//short(found%held - summary%values(cor)%at(point)) &
-               //', from '//trim(adjustl(significant(summary%values(cor)%at(point), 6)))//' to ' &
+            text = text//'cor changes by '//short(found%held - found%cor) &
+               //', from '//trim(adjustl(significant(found%cor, 6)))//' to ' &
                //trim(adjustl(significant(found%held, 6)))//place
          else
             text = text//'it has no result'//place

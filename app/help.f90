@@ -10,7 +10,7 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run check material plot verify input output help'
+   character(len=*), parameter :: topics = 'run check material fit plot verify input output help'
 
 contains
 
@@ -32,6 +32,8 @@ contains
          text = check_page()
       case ('material')
          text = material_page()
+      case ('fit')
+         text = fit_page()
       case ('plot')
          text = plot_page()
       case ('verify')
@@ -55,9 +57,10 @@ contains
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
+         //'       vcor fit DATA                      identify a material from data'//nl &
          //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, material, plot,'//nl &
+         //'       vcor help [TOPIC]                  topics: run, check, material, fit, plot,'//nl &
          //'                                          verify, input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
@@ -122,6 +125,44 @@ contains
          //'  --output DIR            directory of the files, made if it is not there'//nl &
          //'  --quiet                 print nothing'//nl
    end function material_page
+
+   !> Page of fit
+   function fit_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor fit DATA [options]'//nl &
+         //'       vcor fit --from-model CASE.nml[:MATERIAL] [options]'//nl//nl &
+         //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
+         //'storage and loss modulus, and prints its parameters with standard errors, the'//nl &
+         //'misfit, the band of the data and a &material group to be pasted into a case.'//nl &
+         //'Columns are told by a header (t,E or f,E_stor,E_loss ...), units by the header, by'//nl &
+         //'a second line of units or by --units; without either, two columns are s and Pa,'//nl &
+         //'three are rad/s, Pa and Pa.'//nl//nl &
+         //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
+         //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
+         //'                          support, or until the largest misfit is below 0.05 %'//nl &
+         //'  --fix KEY=VALUE         give a parameter, in SI units; may be repeated'//nl &
+         //'  --units LIST            units of the columns: s,MPa or Hz,MPa or rad/s,Pa ...'//nl &
+         //'  --shear                 the moduli are shear moduli G: E = 2 (1 + nu) G'//nl &
+         //'  --poisson-ratio NU      of the material; default 0.5'//nl &
+         //'  --density RHO           of the material [kg/m3]'//nl &
+         //'  --name NAME             of the material; default: that of the file'//nl &
+         //'  --output PATH           write the group to this file, or into this directory'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'With --from-model a material of a case is sampled in place of data, the one that is'//nl &
+         //'named or that of the plate, and its impact is solved with it and with the fit.'//nl &
+         //'  --from T --to T         first and last time [s]; default: from 1e-5 to 10 times'//nl &
+         //'                          the contact time, in whole decades'//nl &
+         //'  --points N              number of samples; default: 50 to the decade'//nl &
+         //'  --dynamic               sample storage and loss modulus, over the reciprocals'//nl &
+         //'  --set GROUP.KEY=VALUE   replace a value of the case'//nl//nl &
+         //'The keys valid_from and valid_to of the group tell the band of the data. vcor run'//nl &
+         //'warns where the cor of an impact changes by more than 1e-4 with the modulus held'//nl &
+         //'constant outside of it.'//nl//nl &
+         //'exit code 5: the fit does not converge, or the data do not determine the'//nl &
+         //'parameters.'//nl
+   end function fit_page
 
    !> Page of plot
    function plot_page() result(text)

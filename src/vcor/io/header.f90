@@ -52,6 +52,8 @@ module vcor_io_header
       character(len=longest_word) :: name = ""
       !> Its unit; blank where it is not told
       character(len=longest_word) :: unit = ""
+      !> Line that tells the unit, or else the name
+      integer :: line = 0
    end type column_name_t
 
    !> What is known of the columns before the first number
@@ -86,15 +88,18 @@ contains
       if (left < 2 .or. right < left + 3 .or. header%hint_count == most_columns) return
       if (index(text(:left - 1), " ") > 0) return
       header%hint_count = header%hint_count + 1
-      header%hints(header%hint_count) = column_name_t(lower(text(:left - 1)), text(left + 2:right - 1))
+      header%hints(header%hint_count) = &
+         column_name_t(lower(text(:left - 1)), text(left + 2:right - 1))
    end subroutine note_comment
 
    !> Read the line of the names
-   pure subroutine read_names(header, content)
+   pure subroutine read_names(header, content, line)
       !> The header
       type(header_t), intent(inout) :: header
       !> The line
       character(len=*), intent(in) :: content
+      !> Its number
+      integer, intent(in) :: line
 
       integer :: i, k, columns, from(most_columns), to(most_columns)
       character(len=:), allocatable :: cell
@@ -111,6 +116,7 @@ contains
          end if
          header%count = header%count + 1
          call take_apart(cell, header%columns(header%count))
+         header%columns(header%count)%line = line
       end do
       do i = 1, header%count
          do k = 1, header%hint_count
@@ -121,11 +127,13 @@ contains
    end subroutine read_names
 
    !> Read the line of the units
-   pure subroutine read_units(header, content)
+   pure subroutine read_units(header, content, line)
       !> The header
       type(header_t), intent(inout) :: header
       !> The line
       character(len=*), intent(in) :: content
+      !> Its number
+      integer, intent(in) :: line
 
       integer :: i, columns, from(most_columns), to(most_columns)
       character(len=:), allocatable :: cell
@@ -134,7 +142,9 @@ contains
       header%lines = 2
       do i = 1, min(columns, header%count)
          cell = without_brackets(unquoted(content(from(i):to(i))))
-         if (cell /= "" .and. cell /= "-") header%columns(i)%unit = cell
+         if (cell == "" .or. cell == "-") cycle
+         header%columns(i)%unit = cell
+         header%columns(i)%line = line
       end do
    end subroutine read_units
 
@@ -178,7 +188,9 @@ contains
       mark = index(name, "(t)") + index(name, "(w)") + index(name, "(f)") + index(name, "(omega)")
       if (mark > 1) then
          i = mark + index(name(mark:), ")")
-         column%unit = without_brackets(cell(i:))
+         column%unit = adjustl(cell(i:))
+         if (column%unit(1:1) == "/") column%unit = column%unit(2:)
+         column%unit = without_brackets(column%unit)
          name = name(:mark - 1)
       else
          mark = scan(name, "[(/")

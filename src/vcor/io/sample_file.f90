@@ -173,9 +173,9 @@ contains
             end do
             if (.not. numeric) then
                if (header%lines == 0) then
-                  call read_names(header, content)
+                  call read_names(header, content, line)
                else
-                  call read_units(header, content)
+                  call read_units(header, content, line)
                end if
                cycle
             end if
@@ -183,8 +183,8 @@ contains
          if (n == 0) call make_plan(header, columns, reading, name, line, plan, error)
          if (allocated(error)) return
          if (columns /= plan%columns) then
-            message = "found "//integer_text(columns)//" columns, expected " &
-               //integer_text(plan%columns)//" as before"
+            message = "found "//integer_text(columns)//" column"//trim(merge("s", " ", &
+               columns > 1))//", expected "//integer_text(plan%columns)//" as before"
          else
             call read_point(content, from, to, plan, points(:, n + 1), message)
             if (.not. allocated(message) .and. n > 0) then
@@ -201,8 +201,11 @@ contains
          n = n + 1
          last_line = line
       end do
-      if (n < 2) call raise(error, error_input, name//": found "//integer_text(n)//" rows of " &
-         //"numbers, expected 2 at least, of time and modulus or of frequency, storage and loss " &
+      if (n >= 2) return
+      message = "found no numbers"
+      if (n == 1) message = "found one row of numbers"
+      call raise(error, error_input, name//":"//integer_text(max(1, line))//": "//message &
+         //", expected two rows at least, of time and modulus or of frequency, storage and loss " &
          //"modulus")
    end subroutine read_points
 
@@ -320,7 +323,10 @@ contains
             return
          end if
          if (word == "") word = default_unit(plan%roles(i))
-         call check_unit(word, plan%roles(i), name, error)
+         place = name
+         if (header%lines > 0) place = name//":" &
+            //integer_text(header%columns(plan%places(i))%line)
+         call check_unit(word, plan%roles(i), place, error)
          if (allocated(error)) return
          plan%units(i) = word
       end do

@@ -1,8 +1,8 @@
 !> Nonlinear least squares within bounds, and how well the solution is determined
 !>
-!> The iteration is MINPACK's (Levenberg and Marquardt). MINPACK knows no bounds: an unknown beyond
-!> one is taken as being on it, where the residuals do not depend on it any more, and the solution
-!> tells which unknowns have come to rest there.
+!> The iteration is MINPACK's (Levenberg and Marquardt). MINPACK knows no bounds, so it works on
+!> angles: an unknown is x = l + (u - l) (1 + sin y)/2, as in F. James and M. Roos, Comput. Phys.
+!> Commun. 10 (1975) 343. An iteration that runs into a bound can leave it again.
 module vcor_numeric_least_squares
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgesvd
@@ -74,35 +74,51 @@ contains
 
       real(wp), parameter :: first_step = 10.0_wp
       real(wp) :: j(size(r), size(x)), tol
-      real(wp), dimension(size(x)) :: scales, qtf, wa1, wa2, wa3
+      real(wp), dimension(size(x)) :: y, scales, qtf, wa1, wa2, wa3
       real(wp) :: wa4(size(r))
       integer :: order(size(x)), info, nfev, njev
 
       converged = .true.
-      x = within(problem, x)
       if (size(x) > 0) then
          tol = max(tolerance, 4.0_wp*epsilon(1.0_wp))
+         y = angles_of(problem, x)
          current => problem
-         call lmder(evaluate, size(r), size(x), x, r, j, size(r), tol, tol, 0.0_wp, most, scales, &
+         call lmder(evaluate, size(r), size(x), y, r, j, size(r), tol, tol, 0.0_wp, most, scales, &
             1, first_step, 0, info, nfev, njev, order, qtf, wa1, wa2, wa3, wa4)
          nullify (current)
          converged = info >= 1 .and. info /= 5
-         x = within(problem, x)
+         x = unknowns_of(problem, y)
       end if
       call problem%residuals(x, r)
    end subroutine minimise
 
-   !> Unknowns within their bounds
-   pure function within(problem, x) result(inside)
+   !> Unknowns of angles
+   pure function unknowns_of(problem, y) result(x)
+      !> The problem
+      class(least_squares_t), intent(in) :: problem
+      !> Angles, shape (n)
+      real(wp), intent(in) :: y(:)
+      !> Unknowns within their bounds, shape (n)
+      real(wp) :: x(size(y))
+
+      x = problem%lower + (problem%upper - problem%lower)*0.5_wp*(1.0_wp + sin(y))
+   end function unknowns_of
+
+   !> Angles of unknowns; of those at or beyond a bound, angles a little within
+   pure function angles_of(problem, x) result(y)
       !> The problem
       class(least_squares_t), intent(in) :: problem
       !> Unknowns, shape (n)
       real(wp), intent(in) :: x(:)
-      !> The nearest that are within the bounds, shape (n)
-      real(wp) :: inside(size(x))
+      !> Angles, shape (n)
+      real(wp) :: y(size(x))
 
-      inside = min(max(x, problem%lower), problem%upper)
-   end function within
+      !> Largest sine: at a bound itself nothing depends on the angle
+      real(wp), parameter :: most = 0.99_wp
+
+      y = asin(max(-most, min(most, &
+         2.0_wp*(x - problem%lower)/(problem%upper - problem%lower) - 1.0_wp)))
+   end function angles_of
 
    !> What MINPACK calls
    subroutine evaluate(m, n, x, fvec, fjac, ldfjac, iflag)
@@ -110,7 +126,7 @@ contains
       integer, intent(in) :: m
       !> Number of unknowns
       integer, intent(in) :: n
-      !> Unknowns
+      !> Angles
       real(wp), intent(in) :: x(n)
       !> Residuals
       real(wp), intent(inout) :: fvec(m)
@@ -124,13 +140,13 @@ contains
       real(wp) :: inside(n)
       integer :: i
 
-      inside = within(current, x)
+      inside = unknowns_of(current, x)
       if (iflag == 1) then
          call current%residuals(inside, fvec)
       else
          call current%jacobian(inside, fjac(:m, :))
          do i = 1, n
-            if (x(i) < current%lower(i) .or. x(i) > current%upper(i)) fjac(:m, i) = 0.0_wp
+            fjac(:m, i) = fjac(:m, i)*0.5_wp*(current%upper(i) - current%lower(i))*cos(x(i))
          end do
       end if
    end subroutine evaluate

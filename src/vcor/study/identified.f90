@@ -8,7 +8,7 @@ module vcor_study_identified
    implicit none
    private
 
-   public :: put_material, put_points, material_text
+   public :: put_material, put_points, put_solver, material_text
 
 contains
 
@@ -61,6 +61,27 @@ contains
       call put_list(case, item, 'times', times)
       call put_list(case, item, 'moduli', moduli)
    end subroutine put_points
+
+   !> Have the impact of a case solved by product integration, with steps as they are needed
+   subroutine put_solver(case, accuracy)
+      !> The case; it need not be validated again
+      type(case_t), intent(inout) :: case
+      !> Wanted error of the restitution [-]
+      real(wp), intent(in) :: accuracy
+
+      type(entry_t) :: entry
+
+      entry = case%entry(case%handle('solver', 'method'))
+      entry%text = 'direct'
+      call case%assign(case%handle('solver', 'method'), entry)
+      entry%text = 'product'
+      call case%assign(case%handle('solver', 'scheme'), entry)
+      call case%assign_number(case%handle('solver', 'accuracy'), accuracy)
+      entry = case%entry(case%handle('solver', 'time_step'))
+      entry%given = .false.
+      entry%present = .false.
+      call case%assign(case%handle('solver', 'time_step'), entry)
+   end subroutine put_solver
 
    !> A material as a &material group
    function material_text(data, density, poisson_ratio, valid_from, valid_to) result(text)

@@ -3,7 +3,8 @@
 !> The keys valid_from and valid_to of a material tell the band of these data. The measure is the
 !> change of the coefficient of restitution when the modulus is held constant outside of the band,
 !> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
-!> quantity that matters.
+!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it is;
+!> a sum of exponentials would go on growing before the band.
 module vcor_study_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t
@@ -15,14 +16,14 @@ module vcor_study_reliance
    use vcor_solver, only : solver_t
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
-   use vcor_study_identified, only : put_points
+   use vcor_study_identified, only : put_points, put_solver
    use vcor_study_moduli, only : sampled_times, time_range_t
    implicit none
    private
 
    public :: reliance_t, find_reliance, solve_case
 
-   !> Change of cor that is no reason to say anything
+   !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
    real(wp), parameter :: little = 1.0e-4_wp
    !> A contact is shorter than so many contact times, whatever the material is beyond them
    real(wp), parameter :: ample = 10.0_wp
@@ -37,6 +38,8 @@ module vcor_study_reliance
       real(wp) :: band(2) = 0.0_wp
       !> Whether there is an end to the band, before and after
       logical :: ends(2) = .false.
+      !> cor with the modulus as it is [-]
+      real(wp) :: cor = 0.0_wp
       !> cor with the modulus held constant outside of the band [-], if that impact has a result
       real(wp) :: held = 0.0_wp
       !> Whether that impact has a result
@@ -46,21 +49,19 @@ module vcor_study_reliance
 contains
 
    !> Find out how much an impact leans on a material beyond its data
-   subroutine find_reliance(reliance, case, item, cor, contact_time)
+   subroutine find_reliance(reliance, case, item, contact_time)
       !> What is found
       type(reliance_t), intent(out) :: reliance
       !> The case, with the parameters of the impact
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
-      !> Coefficient of restitution of the impact [-]
-      real(wp), intent(in) :: cor
-      !> Its contact time [s]
+      !> Contact time of the impact, which ends in separation [s]
       real(wp), intent(in) :: contact_time
 
       type(case_t) :: other
       class(material_t), allocatable :: material
-      type(outcome_t) :: held
+      type(outcome_t) :: held, free
       type(error_t), allocatable :: error
       real(wp), allocatable :: times(:), moduli(:)
       real(wp) :: first, last
@@ -83,13 +84,17 @@ contains
       allocate (moduli(size(times)))
       moduli = material%relaxation(times)
       other = case
+      call put_solver(other, accuracy=0.1_wp*little)
+      call solve_case(other, free, error)
+      if (allocated(error) .or. free%status /= contact_separated) return
+      reliance%cor = free%cor
       call put_points(other, item, times, moduli)
       call solve_case(other, held, error)
       reliance%solved = .not. allocated(error)
       if (reliance%solved) reliance%solved = held%status == contact_separated
-      if (reliance%solved) reliance%held = held%cor
+      reliance%held = held%cor
       reliance%leans = .true.
-      if (reliance%solved) reliance%leans = abs(held%cor - cor) > little
+      if (reliance%solved) reliance%leans = abs(held%cor - free%cor) > little
    end subroutine find_reliance
 
    !> Solve the impact of a case

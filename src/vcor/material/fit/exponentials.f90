@@ -15,10 +15,14 @@ module vcor_material_fit_exponentials
    !> beyond would be seen by one sample only: its modulus would be the noise of that sample times
    !> the exponential of this number
    real(wp), parameter :: fastest = 4.0_wp, slowest = 0.25_wp
+   !> The same for frequencies, of which a term is seen further away: like 1/x
+   real(wp), parameter :: fastest_seen = 30.0_wp, slowest_seen = 0.03_wp
    !> Range of a modulus beyond that of the samples, as a factor
    real(wp), parameter :: softest = 1.0e-8_wp, hardest = 1.0e4_wp
    !> Part of the smallest modulus below which the equilibrium modulus counts as 0
    real(wp), parameter :: nothing = 1.0e-6_wp
+   !> Part of the smallest modulus that an equilibrium modulus starts from at least
+   real(wp), parameter :: seed = 1.0e-2_wp
    !> What stands for a modulus of 0, whose logarithm is taken
    real(wp), parameter :: least_modulus = 1.0e-200_wp
 
@@ -61,7 +65,7 @@ contains
       !> The logarithm
       real(wp) :: rate
 
-      rate = log(slowest/samples%last_time())
+      rate = log(merge(slowest_seen, slowest, samples%dynamic)/samples%last_time())
    end function slowest_rate
 
    !> Logarithm of the largest rate of a term
@@ -71,7 +75,7 @@ contains
       !> The logarithm
       real(wp) :: rate
 
-      rate = log(fastest/samples%first_time())
+      rate = log(merge(fastest_seen, fastest, samples%dynamic)/samples%first_time())
    end function fastest_rate
 
    !> Moduli of a term of modulus 1 where there are samples: exp(-l t), or with x = omega/l
@@ -178,10 +182,11 @@ contains
       n = size(series%rates)
       if (.not. allocated(series%residuals)) allocate (series%residuals(samples%count()))
       problem = new_series_problem(samples, n, series%equilibrium, &
-         fixed < 0.0_wp .and. series%equilibrium > 0.0_wp)
+         fixed < 0.0_wp)
       first = merge(1, 0, problem%is_free)
       allocate (x(first + 2*n))
-      if (problem%is_free) x(1) = log(series%equilibrium)
+      ! least squares for given rates may do without a modulus that the refinement needs
+      if (problem%is_free) x(1) = log(max(series%equilibrium, seed*minval(samples%modulus)))
       x(first + 1:first + n) = log(series%moduli)
       x(first + n + 1:) = series%rates
       call minimise(problem, x, series%residuals, series%converged, tolerance, most)

@@ -98,7 +98,7 @@ contains
       !> Whether it is a solution
       logical, intent(inout) :: converged
 
-      real(wp), parameter :: touch = 1.0e-6_wp
+      real(wp), parameter :: touch = 1.0e-5_wp
       real(wp), allocatable :: kept(:)
       integer :: i
 

@@ -5,8 +5,8 @@
 !> the grid shows up as both, so neighbours are merged. Then moduli and rates are refined together,
 !> from two starts: the merged spectrum, and rates in equal steps.
 !>
-!> As many as the data support: terms are added one at a time until the largest misfit is below what
-!> any data are good for, or as long as they pay by the Bayesian information criterion
+!> As many as the data support: terms are added until the largest misfit is below what any data are
+!> good for, or as long as they pay by the Bayesian information criterion
 !> m ln(S/m) + p ln m of m moduli, p parameters and the sum of squares S (G. Schwarz, Ann. Stat. 6
 !> (1978) 461). In noise it ends where more terms would follow the noise.
 module vcor_material_fit_series
@@ -29,16 +29,20 @@ module vcor_material_fit_series
    real(wp), parameter :: good_enough = 5.0e-4_wp
    !> One term more that reduces the residual to this part completes a series that the data are
    real(wp), parameter :: completes = 1.0e-3_wp
-   !> Additional terms that do not pay before the search ends: some data need two at once
-   integer, parameter :: most_in_vain = 3
+   !> Steps that do not pay before the search ends: one may be a poor start
+   integer, parameter :: most_in_vain = 2
+   !> Factor by which the rates that a fit starts from go beyond the data
+   real(wp), parameter :: around = 4.0_wp
    !> Most terms
    integer, parameter :: most_terms = 60
    !> Reduction of the sum of squares that counts as none, while the number is searched and at last
-   real(wp), parameter :: coarse = 1.0e-4_wp, fine = 1.0e-9_wp
+   real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-7_wp
    !> Most evaluations, while the number is searched and at last
-   integer, parameter :: first_patience = 60, last_patience = 2000
+   integer, parameter :: first_patience = 60, last_patience = 500
    !> Part of the largest modulus that starts a term which least squares do without
    real(wp), parameter :: little = 1.0e-3_wp
+   !> Part of the smallest modulus of the samples below which a term is none
+   real(wp), parameter :: nothing = 1.0e-6_wp
 
 contains
 
@@ -56,21 +60,73 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(series_t) :: series, spectrum
+      integer :: n
 
       call find_spectrum(spectrum, samples, fixed)
       if (terms > 0) then
          call fit_terms(series, terms, spectrum, samples, fixed, last_patience)
       else
          call search(series, spectrum, samples, fixed)
+         call shorten(series, spectrum, samples, fixed)
       end if
-      call refine(series, samples, fixed, fine, last_patience)
-      if (.not. series%converged) then
-         call raise(error, error_numerical, 'the fit of a Prony series does not converge: give ' &
-            //'another number of terms with --terms')
-         return
-      end if
-      call conclude(fit, series, fixed, samples, error)
+      n = size(series%rates)
+      do
+         call refine(series, samples, fixed, fine, last_patience)
+         if (terms == 0) call prune(series, samples, fixed)
+         if (series%converged) then
+            call conclude(fit, series, fixed, samples, error)
+         else
+            call raise(error, error_numerical, 'the fit of a Prony series does not converge: ' &
+               //'give another number of terms with --terms')
+         end if
+         ! what the data do not support is not given: then take a term less
+         if (.not. allocated(error) .or. terms > 0 .or. n == 1) exit
+         n = n - 1
+         call fit_terms(series, n, spectrum, samples, fixed, last_patience)
+      end do
    end subroutine fit_series
+
+   !> Take terms away as long as the series stays good enough: the search has looked at iterations
+   !> that were cut short
+   subroutine shorten(series, spectrum, samples, fixed)
+      !> The series
+      type(series_t), intent(inout) :: series
+      !> The spectrum
+      type(series_t), intent(in) :: spectrum
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Equilibrium modulus [Pa]; negative: to be found
+      real(wp), intent(in) :: fixed
+
+      type(series_t) :: trial
+
+      do while (is_good(series) .and. size(series%rates) > 1)
+         call fit_terms(trial, size(series%rates) - 1, spectrum, samples, fixed, last_patience)
+         call refine(trial, samples, fixed, fine, last_patience)
+         if (.not. is_good(trial)) exit
+         ! data that are this series
+         if (norm2(series%residuals) < completes*norm2(trial%residuals)) exit
+         series = trial
+      end do
+   end subroutine shorten
+
+   !> Drop terms that the refinement has made next to nothing
+   subroutine prune(series, samples, fixed)
+      !> The series
+      type(series_t), intent(inout) :: series
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Equilibrium modulus [Pa]; negative: to be found
+      real(wp), intent(in) :: fixed
+
+      logical :: needed(size(series%rates))
+
+      needed = series%moduli > nothing*minval(samples%modulus)
+      if (all(needed) .or. .not. any(needed)) return
+      series%rates = pack(series%rates, needed)
+      series%moduli = pack(series%moduli, needed)
+      call refine(series, samples, fixed, fine, last_patience)
+   end subroutine prune
 
    !> The spectrum on a grid, neighbours merged
    subroutine find_spectrum(spectrum, samples, fixed)
@@ -144,8 +200,9 @@ contains
       type(series_t) :: other
       integer :: i
 
-      ! equal steps, half a step from the ends
-      associate (first => slowest_rate(samples), last => fastest_rate(samples))
+      ! equal steps over the band of the data and a little more, half a step from the ends
+      associate (first => log(1.0_wp/(around*samples%last_time())), &
+         last => log(around/samples%first_time()))
          series%rates = first + (last - first)*[(real(2*i - 1, wp), i=1, terms)]/real(2*terms, wp)
       end associate
       call start_from_rates(series, samples, fixed)
@@ -177,7 +234,7 @@ contains
          little*max(maxval(series%moduli), minval(samples%modulus)))
    end subroutine start_from_rates
 
-   !> Search the number of terms
+   !> Search the number of terms: with growing steps as far as it pays, then with steps that halve
    subroutine search(series, spectrum, samples, fixed)
       !> The series
       type(series_t), intent(out) :: series
@@ -189,30 +246,68 @@ contains
       real(wp), intent(in) :: fixed
 
       type(series_t) :: trial
-      real(wp) :: lowest, value
-      integer :: n, in_vain
+      real(wp) :: best
+      integer :: n, most, width, in_vain
+      logical :: better
 
-      lowest = huge(lowest)
+      most = min(most_terms, (samples%count() - 2)/2)
+      best = huge(best)
       in_vain = 0
-      do n = 1, min(most_terms, (samples%count() - 2)/2)
-         call fit_terms(trial, n, spectrum, samples, fixed, first_patience)
-         if (n > 1) then
-            if (maxval(abs(series%residuals)) <= good_enough) then
-               if (norm2(trial%residuals) < completes*norm2(series%residuals)) series = trial
-               return
-            end if
-         end if
-         value = criterion(trial)
-         if (n == 1 .or. value < lowest) then
-            lowest = value
-            series = trial
-            in_vain = 0
-         else
-            in_vain = in_vain + 1
-            if (in_vain == most_in_vain) exit
-         end if
+      n = 1
+      do
+         call try(n, better)
+         in_vain = merge(0, in_vain + 1, better)
+         if (n == most .or. in_vain == most_in_vain) exit
+         if (is_good(series)) exit
+         n = min(most, n + 1 + n/4)
       end do
+      width = 1 + size(series%rates)/4
+      do while (width > 1)
+         width = (width + 1)/2
+         n = size(series%rates)
+         call try(n - width, better)
+         if (.not. better .and. .not. is_good(series)) call try(n + width, better)
+         if (width == 2 .and. .not. better) width = 1
+         if (width == 1) call try(n - 1, better)
+      end do
+      ! data that are a series of one term more are told by what is left then
+      if (size(series%rates) == most) return
+      call fit_terms(trial, size(series%rates) + 1, spectrum, samples, fixed, first_patience)
+      if (norm2(trial%residuals) < completes*norm2(series%residuals)) series = trial
+
+   contains
+
+      !> Try a number of terms
+      subroutine try(terms, better)
+         !> The number
+         integer, intent(in) :: terms
+         !> Whether it is the best so far
+         logical, intent(out) :: better
+
+         real(wp) :: value
+
+         better = .false.
+         if (terms < 1 .or. terms > most) return
+         call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
+         value = criterion(trial)
+         ! of those that are good enough the shortest
+         if (is_good(trial)) value = -0.5_wp*huge(value)*(1.0_wp - 1.0e-3_wp*real(terms, wp))
+         better = value < best
+         if (.not. better) return
+         best = value
+         series = trial
+      end subroutine try
    end subroutine search
+
+   !> Whether a series is as good as any data
+   pure function is_good(series) result(yes)
+      !> The series
+      type(series_t), intent(in) :: series
+      !> Whether it is
+      logical :: yes
+
+      yes = maxval(abs(series%residuals)) <= good_enough
+   end function is_good
 
    !> Bayesian information criterion
    pure function criterion(series) result(value)
@@ -241,7 +336,7 @@ contains
       !> Error of code `error_numerical` if the data do not determine the terms
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp), parameter :: touch = 1.0e-9_wp
+      real(wp), parameter :: touch = 1.0e-5_wp
       type(series_problem_t) :: problem
       class(material_t), allocatable :: material
       integer, allocatable :: free(:)
@@ -280,8 +375,7 @@ contains
       end if
       where (x < problem%lower + touch .or. x > problem%upper - touch) &
          fit%parameters(free)%state = state_bound
-      if (any(fit%parameters(free)%name == 'moduli' &
-         .and. fit%parameters(free)%state == state_bound)) then
+      if (any(series%moduli <= nothing*minval(samples%modulus))) then
          call raise(error, error_numerical, 'the data do not support so many terms: take fewer, ' &
             //'or leave --terms out')
          return
