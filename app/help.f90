@@ -60,8 +60,8 @@ contains
          //'       vcor fit DATA                      identify a material from data'//nl &
          //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, material, fit, plot,'//nl &
-         //'                                          verify, input, output'//nl &
+         //'       vcor help [TOPIC]                  topics: run, check, material, fit,'//nl &
+         //'                                          plot, verify, input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
