@@ -10,7 +10,7 @@ from program import ROOT, program
 
 PAGE = ROOT / "docs" / "gallery.md"
 FOLDER = ROOT / "docs" / "gallery"
-RESPONSES = ["indentation s/smax", "velocity −s'/v0", "force F/Fmax", "time [ms]"]
+RESPONSES = ["indentation s/smax", "velocity −s′/v0", "force F/Fmax", "time [ms]"]
 COR = "coefficient of restitution"
 VELOCITY = "impact velocity [m/s]"
 PRONY, CERF, POWER = (

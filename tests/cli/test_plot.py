@@ -68,7 +68,7 @@ def test_history(vcor, results, plot):
         "time [ms]",
         "normalised response",
         "indentation s/smax",
-        "velocity −s'/v0",
+        "velocity −s′/v0",
         "force F/Fmax",
     ):
         assert text in found
@@ -108,7 +108,7 @@ def test_several_histories(plot):
     """A panel for each response, one legend."""
     figure = plot("sls_ghost.h5", "butyl_prony_ghost.h5")
     found = texts(figure)
-    for text in ("indentation s/smax", "velocity −s'/v0", "force F/Fmax"):
+    for text in ("indentation s/smax", "velocity −s′/v0", "force F/Fmax"):
         assert found.count(text) == 1
     assert found.count("time [ms]") == 3
     assert plots(figure) == 18

@@ -17,7 +17,7 @@ module vcor_figure_history
 
    !> Texts of the three normalised responses
    character(len=*), parameter :: indentation_text = 'indentation s/s_{max}', &
-      velocity_text = "velocity −s'/v_0", force_text = 'force F/F_{max}'
+      velocity_text = 'velocity −s′/v_0', force_text = 'force F/F_{max}'
    !> A blank that no renderer leaves out after a subscript
    character(len=*), parameter :: blank = char(194)//char(160)
    !> Significant digits of what is marked

@@ -27,7 +27,7 @@ module vcor_io_gnuplot
    character(len=*), parameter :: nl = new_line("a")
    !> Colours of the styles, each of a lightness of its own
    character(len=7), parameter :: colours(style_count) = [character(len=7) :: "#000000", &
-      & "#b83a0a", "#4a9bd8", "#e8b030", "#5b3472", "#3c8f5c", "#9fcdf0", "#a8a8a8"]
+      & "#a83208", "#3a86c4", "#e0a01a", "#5b3472", "#2f8052", "#9fcdf0", "#b8b8b8"]
    !> Dashes of the styles
    character(len=14), parameter :: dashes(style_count) = [character(len=14) :: "1", "'-'", &
       & "(14,3,2,3)", "'.'", "(16,4)", "(8,3,2,3,2,3)", "1", "(4,4)"]
