@@ -13,7 +13,7 @@ module vcor_app_band
 
 contains
 
-   !> Warn on stderr of materials of the bodies that the impacts of a case lean on beyond their data.
+   !> Warn on stderr of materials of the bodies that the impacts lean on beyond their data.
    !> Of a sweep the impacts of the shortest and the longest contact are looked at, in which that
    !> shows first
    subroutine warn_of_bands(job, summary)
@@ -109,9 +109,11 @@ contains
          if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
          text = text//'): with its modulus held constant there '
          if (found%solved) then
-            text = text//'cor changes by '//short(found%held - found%cor) &
-               //', from '//trim(adjustl(significant(found%cor, 6)))//' to ' &
-               //trim(adjustl(significant(found%held, 6)))//place
+            associate (cor => summary%values(place_of('cor'))%at(point))
+               text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
+                  //trim(adjustl(significant(cor, 5)))//' to ' &
+                  //trim(adjustl(significant(cor + found%held - found%cor, 5)))//place
+            end associate
          else
             text = text//'it has no result'//place
          end if

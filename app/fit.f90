@@ -5,8 +5,8 @@ module vcor_app_fit
    use vcor_app_fit_screen, only : fit_report, fit_remarks
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
    use vcor, only : data_file, directory_exists, error_input, error_t, error_usage, fit_material, &
-      fit_t, join_path, material_text, printable, raise, read_samples, reading_t, same_file, samples_t, &
-      write_file, write_stdout, wp
+      fit_t, join_path, material_text, printable, raise, read_samples, reading_t, same_file, &
+      samples_t, write_file, write_stdout, wp
    implicit none
    private
 

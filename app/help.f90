@@ -105,20 +105,20 @@ contains
       character(len=:), allocatable :: text
 
       text = 'usage: vcor material CASE.nml ... [options]'//nl//nl &
-         //'Computes the moduli of each material of a case, relaxation over time, storage, loss'//nl &
-         //'and loss tangent over angular frequency, and solves the impact for the window that'//nl &
-         //'matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
+         //'Computes the moduli of each material of a case, relaxation over time, storage,'//nl &
+         //'loss and loss tangent over angular frequency, and solves the impact for the'//nl &
+         //'window that matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
          //'  STEM_material.csv             a row per material: glassy and rubbery modulus,'//nl &
          //'                                values at t0 and 2 pi/t0'//nl &
          //'  STEM_material_relaxation.csv  material, time, relaxation_modulus, in_window'//nl &
          //'  STEM_material_dynamic.csv     material, frequency, storage_modulus,'//nl &
          //'                                loss_modulus, loss_tangent, in_window'//nl &
-         //'  STEM_material.h5              all of them: /summary, /relaxation, /dynamic; t0 and'//nl &
-         //'                                2 pi/t0 are attributes, contact_time and'//nl &
-         //'                                min_frequency'//nl//nl &
+         //'  STEM_material.h5              all of them: /summary, /relaxation, /dynamic;'//nl &
+         //'                                t0 and 2 pi/t0 are attributes, contact_time'//nl &
+         //'                                and min_frequency'//nl//nl &
          //'Where a case has &sweep groups, its first point counts.'//nl//nl &
-         //'  --from T --to T         first and last time [s]; default: from the glassy to the'//nl &
-         //'                          rubbery plateau, the contact time included. The'//nl &
+         //'  --from T --to T         first and last time [s]; default: from the glassy to'//nl &
+         //'                          the rubbery plateau, the contact time included. The'//nl &
          //'                          frequencies are the reciprocals of the times'//nl &
          //'  --points N              number of times; default: 50 to the decade'//nl &
          //'  --set GROUP.KEY=VALUE   replace a value of the case, as for run; repeatable'//nl &
@@ -136,9 +136,9 @@ contains
          //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
          //'storage and loss modulus, and prints its parameters with standard errors, the'//nl &
          //'misfit, the band of the data and a &material group to be pasted into a case.'//nl &
-         //'Columns are told by a header (t,E or f,E_stor,E_loss ...), units by the header, by'//nl &
-         //'a second line of units or by --units; without either, two columns are s and Pa,'//nl &
-         //'three are rad/s, Pa and Pa.'//nl//nl &
+         //'Columns are told by a header (t,E or f,E_stor,E_loss ...), units by the header,'//nl &
+         //'by a second line of units or by --units; without either, two columns are s and'//nl &
+         //'Pa, three are rad/s, Pa and Pa.'//nl//nl &
          //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
          //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
          //'                          support, or until the largest misfit is below 0.05 %'//nl &
@@ -150,8 +150,8 @@ contains
          //'  --name NAME             of the material; default: that of the file'//nl &
          //'  --output PATH           write the group to this file, or into this directory'//nl &
          //'  --quiet                 print nothing'//nl//nl &
-         //'With --from-model a material of a case is sampled in place of data, the one that is'//nl &
-         //'named or that of the plate, and its impact is solved with it and with the fit.'//nl &
+         //'With --from-model a material of a case is sampled in place of data, the one that'//nl &
+         //'is named or that of the plate, and its impact is solved with it and with the fit.'//nl &
          //'  --from T --to T         first and last time [s]; default: from 1e-5 to 10 times'//nl &
          //'                          the contact time, in whole decades'//nl &
          //'  --points N              number of samples; default: 50 to the decade'//nl &

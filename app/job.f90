@@ -164,7 +164,8 @@ contains
          if (old == new) cycle
          do j = 1, size(jobs(old)%endings)
             if (.not. jobs(old)%writes(j)) cycle
-            if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), jobs(old)%path//trim(jobs(old)%endings(j)))) then
+            if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), &
+               jobs(old)%path//trim(jobs(old)%endings(j)))) then
                call raise(error, error_input, request%files(new)%text//': its files would ' &
                   //'replace those of '//request%files(old)%text//': give one of them another ' &
                   //'output.stem')

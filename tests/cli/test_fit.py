@@ -6,7 +6,7 @@ import f90nml
 import numpy as np
 import pytest
 from cases import HEAD, case_text
-from program import FILE, INPUT, NUMERICAL, PAPER, SUCCESS, USAGE
+from program import FILE, INPUT, NUMERICAL, PAPER, ROOT, SUCCESS, USAGE
 
 POWER_LAW = PAPER / "butyl_power_law.nml"
 TIMES = np.logspace(-5, -1, 41)
@@ -387,3 +387,44 @@ def test_band_is_checked(vcor):
     vcor.refuses("run", POWER_LAW, *words, code=INPUT, says="valid_from < valid_to")
     vcor.refuses("run", POWER_LAW, "--set", "butyl.valid_from=0", code=INPUT, says="valid_from")
     vcor.refuses("run", POWER_LAW, "--set", "steel.valid_from=1", code=INPUT, says="rigid")
+
+
+# docs/fitting.md
+
+DOCUMENT = (ROOT / "docs" / "fitting.md").read_text()
+COMMANDS = [
+    line.split()[1:]
+    for block in re.findall(r"```sh\n(.*?)```", DOCUMENT, re.DOTALL)
+    for line in block.splitlines()
+]
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_commands_of_the_document(vcor, words):
+    """They run, and what the tables and the warning say is what comes out."""
+    done = vcor(*[ROOT / word if word.startswith("examples/") else word for word in words])
+    assert done.code == SUCCESS
+    if words[0] == "run":
+        assert done.err.replace(f"{ROOT}/", "").strip() in DOCUMENT
+    elif words[0] == "fit":
+        assert done.err == ""
+        assert f"| {cors(done.out)[1]:.4f} |" in DOCUMENT
+        if "prony," in done.out:
+            terms = len(np.atleast_1d(group(done.out)["times"]))
+            assert "2e-5" in words or re.search(
+                rf"\| {terms}[ (automatic)]* \|.*{cors(done.out)[1]:.4f}", DOCUMENT
+            )
+
+
+def test_the_document_has_commands():
+    assert len(COMMANDS) == 14
+
+
+def test_the_example_of_the_readme(vcor):
+    """Its numbers are those of the README, and those of the material that the data are of."""
+    words = ["--model", "mittag_leffler", "--density", "1100", "--name", "soft rubber"]
+    out = vcor.succeeds("fit", ROOT / "examples" / "soft_rubber_data.csv", *words)
+    shown = (ROOT / "README.md").read_text()
+    shown = shown[shown.index("57 points of time") : shown.index("band of the data    1.0E-07")]
+    assert shown in out
+    assert group(out)["exponent"] == pytest.approx(0.5, rel=1e-4)

@@ -5,7 +5,7 @@
 !>     /history           the same, if there is a history
 !>     /...               the same for each further table
 !>
-!> The numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
+!> Numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
 !> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
 !> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
 !> see named axes. A grid has datasets of more than one dimension, the first of the table first, as

@@ -1,7 +1,8 @@
 !> What the columns of a data file hold: their names, and the units that stand beside or below them
 !>
-!> A name may bring its unit: `E [MPa]`, `E (MPa)`, `E/MPa`. A second line of units, as other fitting
-!> tools write it, and lines `# name [unit] ...` before the header, as vcor writes them, do as well.
+!> A name may bring its unit: `E [MPa]`, `E (MPa)`, `E/MPa`. A second line of units, as other
+!> fitting tools write it, and lines `# name [unit] ...` before the header, as vcor writes them, do
+!> as well.
 module vcor_io_header
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : split
@@ -157,7 +158,8 @@ contains
 
       text = cell
       if (len(cell) < 3) return
-      if (cell(1:1) == '"' .and. cell(len(cell):) == '"') text = trim(adjustl(cell(2:len(cell) - 1)))
+      if (cell(1:1) == '"' .and. cell(len(cell):) == '"') &
+         text = trim(adjustl(cell(2:len(cell) - 1)))
    end function unquoted
 
    !> A unit without brackets around it
@@ -262,8 +264,8 @@ contains
       if (contains_word(known, unit)) return
       near = nearest_name(trim(unit), known)
       if (near /= "") near = "; did you mean '"//near//"'?"
-      call raise(error, error_input, place//": found '"//shortened(trim(unit))//"' as unit of the " &
-         //what//", expected one of "//join_words(known)//near)
+      call raise(error, error_input, place//": found '"//shortened(trim(unit))//"' as unit of " &
+         //"the "//what//", expected one of "//join_words(known)//near)
    end subroutine check_unit
 
 end module vcor_io_header

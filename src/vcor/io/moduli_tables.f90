@@ -4,10 +4,10 @@
 !>     relaxation    E(t), a row per material and time
 !>     dynamic       E', E'' and tan(delta), a row per material and angular frequency
 !>
-!> In HDF5 the last two are arrays with the dimensions material and time, or frequency. What does not
-!> deform is in the summary only. The window of the case's own impact, t <= t0 and omega >= omega_min,
-!> is told twice: by the facts contact_time and min_frequency of each table, which are missing where
-!> the impact has no result, and by the column in_window.
+!> In HDF5 the last two are arrays with the dimensions material and time, or frequency. What does
+!> not deform is in the summary only. The window of the case's own impact, t <= t0 and
+!> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
+!> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_moduli_tables
    use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
    use vcor_kinds, only : wp
@@ -21,8 +21,8 @@ module vcor_io_moduli_tables
    !> Value of in_window where there is no window
    integer, parameter :: unknown = -1
    !> What in_window says
-   character(len=*), parameter :: window_meaning = 'whether the impact of the case depends on it: ' &
-      //'1 yes, 0 no, -1 not known'
+   character(len=*), parameter :: window_meaning = 'whether the impact of the case depends on ' &
+      //'it: 1 yes, 0 no, -1 not known'
 
 contains
 

@@ -60,8 +60,8 @@ contains
       type(reading_t), intent(in) :: reading
       !> How it was understood, in words
       character(len=:), allocatable, intent(out) :: note
-      !> Error of code `error_file` when the file cannot be read, `error_input` when its contents are
-      !> wrong, `error_usage` when something has to be said about it; unallocated on success
+      !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
+      !> are wrong, `error_usage` when something has to be said about it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(plan_t) :: plan
@@ -380,9 +380,9 @@ contains
       end if
       if (all([(any(roles == plan%roles(i)), i=1, size(plan%roles))])) then
          plan%places = [(findloc(roles, plan%roles(i), dim=1), i=1, size(plan%roles))]
-      else if (size(roles) == size(plan%roles) &
-         .and. all(roles == role_none .or. roles == plan%roles)) then
-         plan%places = [(i, i=1, size(roles))]
+      else if (size(roles) == size(plan%roles)) then
+         if (all(roles == role_none .or. roles == plan%roles)) &
+            plan%places = [(i, i=1, size(roles))]
       end if
    end subroutine choose_columns
 

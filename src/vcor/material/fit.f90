@@ -63,8 +63,8 @@ contains
       unknowns = size(parameters_of(model)) - size(fixed)
       if (model == 'prony') unknowns = 2*max(1, terms) + 1 - size(fixed)
       if (samples%count() <= unknowns) then
-         call raise(error, error_input, 'found '//text_of(samples%count())//' moduli, expected at ' &
-            //'least '//text_of(unknowns + 1)//': the model has '//text_of(unknowns) &
+         call raise(error, error_input, 'found '//text_of(samples%count())//' moduli, expected ' &
+            //'at least '//text_of(unknowns + 1)//': the model has '//text_of(unknowns) &
             //' parameters to be found')
       else if (.not. samples%dynamic .and. maxval(samples%modulus) &
          <= (1.0_wp + constant)*minval(samples%modulus)) then

@@ -51,7 +51,7 @@ module vcor_numeric_least_squares
 
    !> The problem that MINPACK works at, which hands nothing on to the function that it calls; each
    !> thread has its own
-   class(least_squares_t), pointer, save :: current => null()
+   class(least_squares_t), pointer :: current => null()
 !$omp threadprivate(current)
 
 contains

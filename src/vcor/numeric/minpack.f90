@@ -1,7 +1,7 @@
 !> Explicit interface to the MINPACK routine that vcor uses
 !>
-!> J. J. More, B. S. Garbow, K. E. Hillstrom, "User Guide for MINPACK-1", Argonne National Laboratory
-!> report ANL-80-74 (1980).
+!> J. J. More, B. S. Garbow, K. E. Hillstrom, "User Guide for MINPACK-1", Argonne National
+!> Laboratory report ANL-80-74 (1980).
 module vcor_numeric_minpack
    use vcor_kinds, only : wp
    implicit none

@@ -3,8 +3,8 @@
 !> The keys valid_from and valid_to of a material tell the band of these data. The measure is the
 !> change of the coefficient of restitution when the modulus is held constant outside of the band,
 !> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
-!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it is;
-!> a sum of exponentials would go on growing before the band.
+!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it
+!> is; a sum of exponentials would go on growing before the band.
 module vcor_study_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t

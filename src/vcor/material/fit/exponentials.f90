@@ -40,8 +40,8 @@ module vcor_material_fit_exponentials
       logical :: converged = .false.
    end type series_t
 
-   !> The problem for MINPACK: the unknowns are the logarithms of the equilibrium modulus, if that is
-   !> free, of the moduli and of the rates
+   !> The problem for MINPACK: the unknowns are the logarithms of the equilibrium modulus, if that
+   !> is free, of the moduli and of the rates
    type, extends(least_squares_t) :: series_problem_t
       !> The samples
       type(samples_t) :: samples

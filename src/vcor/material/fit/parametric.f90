@@ -19,6 +19,7 @@ module vcor_material_fit_parametric
 
    !> Most evaluations of an iteration, per unknown
    integer, parameter :: patience = 400
+
 contains
 
    !> Fit a model to samples
@@ -86,8 +87,8 @@ contains
       call set_errors(fit, problem, solution, best, problem%free, error)
    end subroutine fit_parametric
 
-   !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1, and
-   !> the others are fitted again; anything else keeps its value
+   !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1,
+   !> and the others are fitted again; anything else keeps its value
    subroutine follow_bounds(problem, x, r, converged)
       !> The problem; what is at a bound is not free afterwards
       type(problem_t), intent(inout) :: problem
