@@ -11,7 +11,7 @@ module vcor_app_cli
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run merge check material fit verify help'
+   character(len=*), parameter :: commands = 'run merge check material fit plot verify help'
    !> Options of run
    character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
       //'--shard --quiet --help --version'
@@ -22,6 +22,9 @@ module vcor_app_cli
    !> Options of material, and of fit beside its own
    character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
       //'--quiet --help --version'
+   !> Options of plot
+   character(len=*), parameter :: plot_options = '--kind --quantity --legend --output --format ' &
+      //'--script --quiet --help --version'
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
@@ -54,6 +57,14 @@ module vcor_app_cli
       type(time_range_t) :: range
       !> What is to be fitted
       type(fit_request_t) :: fit
+      !> Kind of figure of --kind; unallocated without it
+      character(len=:), allocatable :: kind
+      !> Format of figures of --format; unallocated without it
+      character(len=:), allocatable :: format
+      !> Texts of --legend, shape (n)
+      type(argument_t), allocatable :: legends(:)
+      !> Whether the script of a figure is left
+      logical :: script = .false.
       !> Nothing on the screen
       logical :: quiet = .false.
       !> Form of a page of help: empty for the screen, else --man or --markdown
@@ -75,11 +86,11 @@ contains
       integer :: i, mark
       logical :: plain
 
-      allocate (request%files(0), request%settings(0), request%names(0))
+      allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
       request%form = ''
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
-            //'verify, help (vcor help says more)')
+            //'plot, verify, help (vcor help says more)')
          return
       end if
 
@@ -94,6 +105,8 @@ contains
          known = material_options
       case ('fit')
          known = fit_options//' '//material_options
+      case ('plot')
+         known = plot_options
       case ('verify')
          known = verify_options
       case ('help', '--help', '-h')
@@ -151,7 +164,7 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--resume', '--shear', '--dynamic')
+         case ('--quiet', '--resume', '--shear', '--dynamic', '--script')
             if (mark > 0) then
                call raise(error, error_usage, 'option '//name//' takes no value')
                return
@@ -160,6 +173,7 @@ contains
             if (name == '--resume') request%resume = .true.
             if (name == '--shear') request%fit%shear = .true.
             if (name == '--dynamic') request%fit%dynamic = .true.
+            if (name == '--script') request%script = .true.
             cycle
          case default
          end select
@@ -200,7 +214,12 @@ contains
          return
       end if
       if (request%command == 'fit') return
-      call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+      if (request%command == 'plot') then
+         call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
+      else
+         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
+            //' CASE.nml')
+      end if
    end subroutine refuse_no_case
 
    !> Take the value of an option
@@ -223,6 +242,12 @@ contains
          call append_word(request%settings, value)
       case ('--output')
          request%directory = value
+      case ('--kind')
+         request%kind = value
+      case ('--format')
+         request%format = value
+      case ('--legend')
+         call append_word(request%legends, value)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--shard')
@@ -233,8 +258,8 @@ contains
          call read_positive(option, value, request%range%first, error)
       case ('--to')
          call read_positive(option, value, request%range%last, error)
-      case ('--print')
-         call add_names(value, request, error)
+      case ('--print', '--quantity')
+         call add_names(option, value, request, error)
       case default
          call apply_fit_option(option, value, request%fit, error)
       end select
@@ -263,8 +288,10 @@ contains
       call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
 
-   !> Split the value of --print
-   subroutine add_names(list, request, error)
+   !> Split the value of --print or --quantity
+   subroutine add_names(option, list, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Names separated by commas
       character(len=*), intent(in) :: list
       !> The request
@@ -277,14 +304,16 @@ contains
       first = 1
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
-         call add_name(trim(adjustl(list(first:last))), request, error)
+         call add_name(option, trim(adjustl(list(first:last))), request, error)
          if (allocated(error)) return
          first = last + 2
       end do
    end subroutine add_names
 
-   !> Add one name of --print
-   subroutine add_name(name, request, error)
+   !> Add one name of --print or --quantity
+   subroutine add_name(option, name, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Name
       character(len=*), intent(in) :: name
       !> The request
@@ -294,7 +323,7 @@ contains
 
       ! what has a dot is a parameter of a sweep, and whether there is one the case says
       if (index(name, '.') == 0 .and. .not. has_word(quantity_names(), name)) then
-         call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+         call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option//'; ' &
             //suggestion(name, quantity_names()))
       else
          call append_word(request%names, name)

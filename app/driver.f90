@@ -9,6 +9,7 @@ module vcor_app_driver
    use vcor_app_merge, only : merge_shards
    use vcor_app_manual, only : manual_text
    use vcor_app_material, only : show_materials
+   use vcor_app_plot, only : plot
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
@@ -47,6 +48,8 @@ contains
          call materials(request, error)
       case ('fit')
          call fit_data(request, error)
+      case ('plot')
+         call plot(request, error)
       case ('verify')
          call verify(request, error)
       case default

@@ -10,7 +10,8 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run merge check material fit verify input output help'
+   character(len=*), parameter :: topics = &
+      'run merge check material fit plot verify input output help'
 
 contains
 
@@ -36,6 +37,8 @@ contains
          text = material_page()
       case ('fit')
          text = fit_page()
+      case ('plot')
+         text = plot_page()
       case ('verify')
          text = verify_page()
       case ('input')
@@ -59,9 +62,10 @@ contains
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
          //'       vcor fit DATA                      identify a material from data'//nl &
+         //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
          //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
-         //'                                          fit, verify, input, output'//nl &
+         //'                                          fit, plot, verify, input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
@@ -188,6 +192,37 @@ contains
          //'exit code 5: the fit does not converge, or the data do not determine the'//nl &
          //'parameters.'//nl
    end function fit_page
+
+   !> Page of plot
+   function plot_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor plot RESULT.h5 ... [options]'//nl//nl &
+         //'Draws the results of vcor run and vcor material through gnuplot, several of one'//nl &
+         //'kind in one figure with a legend. Kinds:'//nl &
+         //'  history  indentation, velocity and force over time, each over its largest'//nl &
+         //'           value; dashed: ghost lines after contact; values at its end marked'//nl &
+         //'  loop     contact force over indentation, the energy lost in the legend'//nl &
+         //'  moduli   relaxation modulus over time, storage and loss modulus and loss'//nl &
+         //'           tangent over frequency, for each material'//nl &
+         //'  sweep    quantities of the summary over the parameter that is swept'//nl &
+         //'  map      a quantity over two parameters, as contours'//nl//nl &
+         //'  --kind KIND             default: what the file holds; of an impact history,'//nl &
+         //'                          of a sweep of one parameter sweep, of two map'//nl &
+         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each;'//nl &
+         //'                          default: cor; names: vcor help output'//nl &
+         //'  --legend TEXT           text of the legend, once for each file, in order;'//nl &
+         //'                          default: titles, or in what the cases differ'//nl &
+         //'  --output FILE           name of the figure, or directory of STEM_KIND.svg;'//nl &
+         //'                          default: STEM_KIND.svg in the current directory'//nl &
+         //'  --format FORMAT         svg, pdf, png; default: what FILE ends with, else svg'//nl &
+         //'  --script                leave the script of gnuplot and its data, FILE with'//nl &
+         //'                          .gp and .dat, for work by hand'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'Figures are 8.5 cm wide, a column, or 17 cm, a page. Where gnuplot is missing the'//nl &
+         //'script is written and the exit code is 4.'//nl
+   end function plot_page
 
    !> Page of verify
    function verify_page() result(text)

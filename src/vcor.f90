@@ -2,6 +2,8 @@
 module vcor
    use vcor_error, only : code_meanings, code_names, error_file, error_input, error_internal, &
       error_numerical, error_t, error_usage, raise
+   use vcor_figure_build, only : build_figure, figure_kinds => kinds, legend_t, read_result, &
+      result_t, usual_kind
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
@@ -14,9 +16,12 @@ module vcor
       read_points
    use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
+   use vcor_io_drawing, only : draw, split_path
+   use vcor_io_figure, only : figure_t
    use vcor_io_file, only : directory_exists, file_exists, join_path, make_directory, &
       plain_file_exists, quoted_path, remove_file, same_file, stderr_is_terminal, write_file, &
       write_stdout, write_terminal
+   use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
    use vcor_io_hdf5_reader, only : open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
@@ -117,7 +122,9 @@ module vcor
    public :: material_text, put_material, reliance_t, find_reliance, solve_case
    public :: sampled_times, time_units, frequency_units, modulus_units
    public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables
-   public :: write_stdout, write_file, make_directory, join_path, same_file
+   public :: result_t, legend_t, figure_t, figure_kinds, figure_formats
+   public :: read_result, usual_kind, build_figure, draw
+   public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
    public :: file_exists, directory_exists, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion, read_real

@@ -1,4 +1,4 @@
-!> Tables as an HDF5 file, the only module that calls HDF5
+!> Tables as an HDF5 file
 !>
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
