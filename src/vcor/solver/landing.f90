@@ -120,8 +120,8 @@ contains
       ! and then from the last two iterations
       tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
       kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
-      memory_rate = (kappa*slope_at(hertz(crossing%indentation)) &
-         - slope_at(crossing%force))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
+      memory_rate = slope_at(kappa*hertz(crossing%indentation) - crossing%force) &
+         /(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
       correction = 0.0_wp
       panel%converged = .false.

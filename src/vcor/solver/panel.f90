@@ -311,7 +311,7 @@ contains
 
    !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
    !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
-   !> leave little of it
+   !> leave little of it. Force and impulses are those at the end of the panel only
    pure subroutine improve_panel(rule, map, scale, impact, kernel, start, tolerance, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
@@ -337,7 +337,7 @@ contains
       call set_up(equations, rule, map, scale, impact, kernel, start, panel)
       s = displaced(map, equations, panel%alpha(1:), panel%indentation(1:))
       panel%indentation(1:) = displaced(map, equations, panel%alpha(1:), s)
-      call integrate(map, equations, hertz(panel%indentation(1:)), panel)
+      call integrate_to_end(map, equations, hertz(panel%indentation(1:)), panel)
       panel%converged = largest(panel%indentation(1:) - s) <= tolerance*largest(s)
    end subroutine improve_panel
 
