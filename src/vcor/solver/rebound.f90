@@ -63,6 +63,7 @@ contains
       ! error of a panel, over what it may have, that can be put up with if a shorter one does not
       ! reduce it: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
+      integer, parameter :: enough_closings = 5
       ! first panel over the expected rebound at accuracy 1e-8, and its power of the accuracy
       real(wp), parameter :: first_share = 0.5_wp, growth_of_first = 0.12_wp, usual = 1.0e-8_wp
       ! a panel as long as this over the rest of the rebound is to be the last one; others leave a
@@ -73,12 +74,13 @@ contains
       real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, taken, rest, rate, excess, refused, refused_end, error_now, error_sum, alpha_rate
-      integer :: trial, n, kind
+      integer :: trial, n, kind, closings
       logical :: ends, last, inherited
 
       n = rules(1)%stages
       refused = huge(1.0_wp)
       refused_end = huge(1.0_wp)
+      closings = 0
       kind = linear
       if (kernel%error > 0.0_wp .or. kernel%viscosity > 0.0_wp) kind = 0
       rate = first_rate
@@ -134,8 +136,11 @@ contains
             /start%condition*taken)*alpha_rate*panel%impulse(n)/(panel%time(n)*impact%velocity)
          excess = error_now/(panel_share*accuracy)
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
-         if (ends) inherited = inherited .or. &
-            (excess <= tolerable_end .and. excess > 0.5_wp*refused_end)
+         if (ends) then
+            closings = closings + 1
+            inherited = inherited .or. (excess <= tolerable_end &
+               .and. (excess > 0.5_wp*refused_end .or. closings >= enough_closings))
+         end if
          if (.not. (excess <= 1.0_wp .or. inherited)) then
             refused = excess
             if (ends) refused_end = excess
