@@ -73,7 +73,8 @@ contains
       ! time of the approach, and its rate
       real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
-      real(wp) :: length, taken, rest, rate, excess, refused, refused_end, error_now, error_sum, alpha_rate
+      real(wp) :: length, taken, rest, rate, excess, refused, refused_end, end_found, slope
+      real(wp) :: error_now, error_sum, alpha_rate
       integer :: trial, n, kind, closings
       logical :: ends, last, inherited
 
@@ -81,6 +82,8 @@ contains
       refused = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
+      end_found = 0.0_wp
+      slope = 0.0_wp
       kind = linear
       if (kernel%error > 0.0_wp .or. kernel%viscosity > 0.0_wp) kind = 0
       rate = first_rate
@@ -89,6 +92,7 @@ contains
 
       do trial = 1, most_trials
          rest = -start%t1/rate
+         if (end_found > start%time) rest = end_found - start%time
          ends = length >= closing_share*rest
          taken = min(length, longest_share*rest)
          if (ends) taken = rest
@@ -99,7 +103,7 @@ contains
          end if
          if (ends) then
             call close_contact(panel, taken)
-            if (panel%converged) rate = -start%t1/taken
+            if (panel%converged) end_found = start%time + taken
          else
             call guess(panel, kind, taken)
             call solve(1, kind, taken, panel)
@@ -249,11 +253,11 @@ contains
          real(wp), parameter :: noticeable = 1.0e-7_wp, closest = 1.0e-13_wp
          ! no step goes farther than this, over the length
          real(wp), parameter :: farthest = 0.4_wp
-         real(wp) :: slope, correction, last_correction, condition, old_condition
+         real(wp) :: correction, last_correction, condition, old_condition
          integer :: iteration
 
-         ! the condition falls faster and faster
-         slope = -1.5_wp*start%condition/length
+         ! the condition falls faster and faster; once known, its rate at the end is known for good
+         if (.not. slope < 0.0_wp) slope = -1.5_wp*start%condition/length
          old_condition = 0.0_wp
          correction = 0.0_wp
          do iteration = 1, most_iterations
@@ -269,7 +273,7 @@ contains
             last_correction = correction
             correction = -condition/slope
             correction = sign(min(abs(correction), farthest*length), correction)
-            if (abs(correction) <= max(0.01_wp*min(accuracy, 1.0e-8_wp), closest)*length) return
+            if (abs(correction) <= max(0.1_wp*min(accuracy, 1.0e-8_wp), closest)*length) return
             ! rounding in the condition of stiff internal variables ends it, too
             if (iteration > 3 .and. abs(correction) <= noticeable*length &
                 .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
