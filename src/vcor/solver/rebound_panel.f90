@@ -122,7 +122,7 @@ contains
       type(factors_t) :: factors
       real(wp) :: size_now, size_before
       integer :: n, i, j, iteration
-      logical :: regular, frozen, remembers
+      logical :: regular, frozen, remembers, stands_still
 
       n = rule%stages
       frozen = impact%plate%frozen()
@@ -187,6 +187,13 @@ contains
          known = known + kernel%viscosity*known_v
       end if
       known(n + 1:) = 0.0_wp
+      stands_still = .not. map%slope + 2.0_wp*map%bend > 0.0_wp
+      if (stands_still) then
+         ! no force acts at the end, and it would not count
+         known(n) = 0.0_wp
+         t(n, :) = 0.0_wp
+         panel%t1(n) = 0.0_wp
+      end if
 
       ! t1 is guessed, and N follows from it
       condition = 0.0_wp
@@ -245,7 +252,7 @@ contains
          panel%deflection(1:) = start%deflection - apply(h, panel%drift(1:))
       end if
       panel%t1(0) = start%t1
-      if (.not. map%slope + 2.0_wp*map%bend > 0.0_wp) call extrapolate_to_end()
+      if (stands_still) call extrapolate_to_end()
 
    contains
 
