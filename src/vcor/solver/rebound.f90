@@ -273,7 +273,8 @@ contains
             last_correction = correction
             correction = -condition/slope
             correction = sign(min(abs(correction), farthest*length), correction)
-            if (abs(correction) <= max(0.1_wp*min(accuracy, 1.0e-8_wp), closest)*length) return
+            if (abs(correction) <= max(0.1_wp*min(accuracy, 1.0e-8_wp), closest) &
+                *(start%time + length)) return
             ! rounding in the condition of stiff internal variables ends it, too
             if (iteration > 3 .and. abs(correction) <= noticeable*length &
                 .and. abs(correction) >= 0.25_wp*abs(last_correction)) return

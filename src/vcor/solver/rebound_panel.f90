@@ -36,6 +36,8 @@ module vcor_solver_rebound_panel
       real(wp) :: force = 0.0_wp
       !> Condition N [N/m^0.5]
       real(wp) :: condition = 0.0_wp
+      !> Condition at the largest indentation, against which its errors are counted [N/m^0.5]
+      real(wp) :: largest_condition = 0.0_wp
       !> t1 [s]
       real(wp) :: t1 = 0.0_wp
       !> Impulse I [N s]
@@ -78,6 +80,7 @@ contains
       rebound%force = start%force
       rebound%condition = kernel%equilibrium*start%indentation &
          + sum(kernel%moduli*(start%indentation - approach%r))
+      rebound%largest_condition = rebound%condition
       rebound%t1 = start%time
       rebound%impulse = start%impulse
       rebound%second_impulse = start%second_impulse
@@ -220,7 +223,7 @@ contains
          condition = condition + change
          ! the force is extrapolated by its slope, whose error is of second order
          force = force + slope*change
-         size_now = maxval(abs(change))/maxval(abs(condition))
+         size_now = maxval(abs(change))/start%largest_condition
          panel%converged = size_now*min(1.0_wp, sqrt(size_now)) <= tolerance
          ! rounding in the condition of stiff internal variables ends it, too
          if (.not. panel%converged .and. .not. size_now < 0.5_wp*size_before) &
