@@ -98,26 +98,21 @@ contains
       law = 'law'
       text = '  what the choice of model is worth; * that of the case'//nl &
          //'  '//waves//'  '//law//right('cor', 14)//right('cor_sphere', 14) &
-         //right('contact_time', 20)//right('residual_indentation', 22)//nl
+         //right('contact_time [s]', 20)//right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
          associate (this => models(i))
             text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
             if (allocated(this%failure)) then
-               text = text//right('none', 14)//nl
+               text = text//right('refused', 14)//nl
             else if (this%outcome%status /= contact_separated) then
                text = text//right(status_name(this%outcome%status), 14)//nl
             else
                text = text//significant(this%outcome%cor, 8, 14) &
                   //significant(this%outcome%cor_sphere, 8, 14) &
                   //significant(this%outcome%contact_time, 8, 20) &
-                  //significant(this%outcome%residual_indentation, 8, 22)//nl
+                  //significant(this%outcome%residual_indentation, 8, 26)//nl
             end if
          end associate
-      end do
-      do i = 1, size(models)
-         if (.not. allocated(models(i)%failure)) cycle
-         text = text//'  none: '//models(i)%failure//nl
-         exit
       end do
       text = text//nl
    end function models_text

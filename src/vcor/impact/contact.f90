@@ -282,6 +282,7 @@ contains
       !> The sum, its `error` told
       type(exponential_sum_t), intent(out) :: terms
 
+      real(wp), parameter :: poor = 1.0e-7_wp
       type(exponential_sum_t) :: one
 
       if (allocated(self%second)) then
@@ -289,6 +290,12 @@ contains
       else
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
+         ! a spectrum with peaks that no rule resolves
+         if (terms%error > poor .and. .not. self%first%discrete) then
+            call fit_pair(self, window, one)
+            one%viscosity = self%viscosity()
+            if (one%error < terms%error) terms = one
+         end if
       end if
    end subroutine exponentials
 

@@ -4,7 +4,7 @@
 !>     1/Q = 1/Q_a + 1/Q_b,   Q = s L{E}(s)
 !>
 !> Two Prony series make a Prony series. Its rates are the zeros of P = Q_a + Q_b, one between each
-!> rate of both and the next, and the modulus that belongs to the rate l is Q_a^2/(l P') at s = -l.
+!> rate of both and the next, with those that both have, and the modulus that belongs to the rate l is Q_a^2/(l P') at s = -l.
 !> All other moduli are known by their transform, and as exponentials through their spectrum.
 module vcor_material_series
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
@@ -146,6 +146,13 @@ contains
          part_b = b%viscosity + sum(of_b(:n)/distance(:n))
          slope = sum((of_a(:n) + of_b(:n))/distance(:n)**2)
          modulus(k) = min(part_a**2, part_b**2)/slope
+      end do
+      ! a rate that both have stays one
+      do k = 1, n
+         if (.not. (pole(k) > 0.0_wp .and. min(of_a(k), of_b(k)) > 0.0_wp)) cycle
+         zeros = zeros + 1
+         rate(zeros) = pole(k)
+         modulus(zeros) = in_series(of_a(k), of_b(k))
       end do
       kept(:zeros) = modulus(:zeros) > nothing*sum(modulus(:zeros))
       call new_prony(prony, in_series(a%equilibrium, b%equilibrium), &

@@ -34,9 +34,9 @@ module vcor_solver_approach
       real(wp) :: s(0:width) = 0.0_wp
       !> Rate of the indentation [m/s]
       real(wp) :: rate(0:width) = 0.0_wp
-      !> w_k [m], shape (modes, 0:width)
+      !> w_k [m], shape (0:width, modes)
       real(wp), allocatable :: w(:, :)
-      !> p_k [m^1.5], shape (modes, 0:width)
+      !> p_k [m^1.5], shape (0:width, modes)
       real(wp), allocatable :: p(:, :)
    end type stretch_t
 
@@ -112,17 +112,17 @@ contains
          stretch%s = panel%indentation
          stretch%rate(0) = start_rate
          stretch%rate(1:stages) = rate(1:stages)
-         allocate (stretch%w(size(q), 0:width), stretch%p(size(q), 0:width))
+         allocate (stretch%w(0:width, size(q)), stretch%p(0:width, size(q)))
          s = apply(map%left, panel%indentation(1:))
          u = apply(map%left, hertz(panel%indentation(1:)))
          do k = 1, size(q)
             decay = constant(1.0_wp) + kernel%rates(k)*scale*map%eigenvalue
-            stretch%w(k, 0) = panel%indentation(0) - self%r(k)
-            stretch%p(k, 0) = hertz(panel%indentation(0)) - q(k)
-            stretch%w(k, 1:) = apply(map%right, &
+            stretch%w(0, k) = panel%indentation(0) - self%r(k)
+            stretch%p(0, k) = hertz(panel%indentation(0)) - q(k)
+            stretch%w(1:, k) = apply(map%right, &
                ratio(map%square, s - self%r(k)*map%left_one, decay))
-            stretch%p(k, 1:) = apply(map%right, ratio(map%square, u - q(k)*map%left_one, decay))
-            self%r(k) = panel%indentation(stages) - stretch%w(k, stages)
+            stretch%p(1:, k) = apply(map%right, ratio(map%square, u - q(k)*map%left_one, decay))
+            self%r(k) = panel%indentation(stages) - stretch%w(stages, k)
          end do
       end associate
    end subroutine add
@@ -162,6 +162,7 @@ contains
          theta = 0.0_wp
          if (offset > 0.0_wp) theta = 2.0_wp*offset/(stretch%map(1) &
             + sqrt(stretch%map(1)**2 + 4.0_wp*stretch%map(2)*offset))
+         basis = 0.0_wp
          before(0) = 1.0_wp
          do i = 1, n
             before(i) = before(i - 1)*(theta - self%point(i - 1))
@@ -172,19 +173,19 @@ contains
             after = after*(theta - self%point(i))
          end do
 
-         s = sum(basis(0:n)*stretch%s(0:n))
-         rate = sum(basis(0:n)*stretch%rate(0:n))
+         s = sum(basis*stretch%s)
+         rate = sum(basis*stretch%rate)
          firmness = kernel%equilibrium
          condition = kernel%equilibrium*s
          force = kernel%equilibrium*hertz(s)
          do k = 1, size(kernel%rates)
             if (kernel%rates(k)*(t - t1) > nothing) cycle
             share = kernel%moduli(k)*exp(-kernel%rates(k)*(t - t1))
-            w = basis(0)*stretch%w(k, 0)
-            p = basis(0)*stretch%p(k, 0)
-            do i = 1, n
-               w = w + basis(i)*stretch%w(k, i)
-               p = p + basis(i)*stretch%p(k, i)
+            w = 0.0_wp
+            p = 0.0_wp
+            do i = 0, width
+               w = w + basis(i)*stretch%w(i, k)
+               p = p + basis(i)*stretch%p(i, k)
             end do
             firmness = firmness + share
             condition = condition + share*w

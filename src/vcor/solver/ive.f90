@@ -313,7 +313,7 @@ contains
          if (turns) then
             call turn_round(kernel, start, stretches, rebound)
             call follow_rebound([self%collocator%rule, self%collocator%coarse], impact, kernel, &
-               memory, stretches, rebound, accuracy, self%collocator%tolerance, end_time, &
+               memory, stretches, rebound, accuracy, self%collocator%coarse_tolerance, end_time, &
                trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
             trajectory%cor_error = trajectory%cor_error + share_of_inner*inner &

@@ -15,7 +15,7 @@ module vcor_solver_modes
    implicit none
    private
 
-   public :: start_t, resolve_modes, resolve_plate, advance_modes
+   public :: start_t, resolve_modes, resolve_plate, advance_modes, sum_modes, lags_at_end
 
    !> State at the start of a panel
    type :: start_t
@@ -172,5 +172,87 @@ contains
          end associate
       end function at_end
    end subroutine advance_modes
+
+   !> Sum of G_k/(1 + l_k H) as a function of the eigenvalues, and the vector sum of
+   !> G_k q_k (1 + l_k H)^-1 1
+   pure subroutine sum_modes(moduli, rates, q, map, scale, share, vector)
+      !> G_k, shape (modes)
+      real(wp), intent(in) :: moduli(:)
+      !> l_k [1/s], shape (modes)
+      real(wp), intent(in) :: rates(:)
+      !> Values q_k at the start of the panel, shape (modes)
+      real(wp), intent(in) :: q(:)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> The function
+      real(wp), intent(out) :: share(width)
+      !> The vector
+      real(wp), intent(out) :: vector(width)
+
+      real(wp), dimension(width) :: one, lambda, with_q
+      integer :: k
+
+      lambda = scale*map%eigenvalue
+      share = 0.0_wp
+      with_q = 0.0_wp
+      do k = 1, size(q)
+         one = moduli(k)*ratio(map%square, constant(1.0_wp), &
+            constant(1.0_wp) + rates(k)*lambda)
+         share = share + one
+         with_q = with_q + q(k)*one
+      end do
+      vector = apply(map%right, times(map%square, with_q, map%left_one))
+   end subroutine sum_modes
+
+   !> Sum of G_k (1 + l_k H)^-1 (x - q_k) at the end of a panel whose map stands still there. What
+   !> collocation at the end says about modes that have settled is lost in that; they are
+   !> extrapolated from the other points
+   pure function lags_at_end(rule, map, scale, terms, q, x) result(total)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> G_k and l_k
+      type(exponential_sum_t), intent(in) :: terms
+      !> q_k at the start of the panel, shape (modes)
+      real(wp), intent(in) :: q(:)
+      !> x at the start and at the stages
+      real(wp), intent(in) :: x(0:width)
+      !> Sum
+      real(wp) :: total
+
+      ! product of rate and length from which a mode counts as settled
+      real(wp), parameter :: settled = 30.0_wp
+      real(wp) :: part(width)
+      logical :: chosen(size(q))
+
+      chosen = terms%rates*scale > settled
+      part = lags(.not. chosen)
+      total = part(rule%stages)
+      if (.not. any(chosen)) return
+      part = lags(chosen)
+      total = total + rule%end_weight(0)*sum(terms%moduli*(x(0) - q), mask=chosen) &
+         + sum(rule%end_weight(1:rule%stages - 1)*part(1:rule%stages - 1))
+
+   contains
+
+      !> The sum over some modes at the stages
+      pure function lags(mask) result(part)
+         !> The modes, shape (modes)
+         logical, intent(in) :: mask(:)
+         !> The sum
+         real(wp) :: part(width)
+
+         real(wp) :: f(width), with_q(width)
+
+         call sum_modes(pack(terms%moduli, mask), pack(terms%rates, mask), pack(q, mask), map, &
+            scale, f, with_q)
+         part = apply(map%right, times(map%square, f, apply(map%left, x(1:)))) - with_q
+      end function lags
+   end function lags_at_end
 
 end module vcor_solver_modes

@@ -60,8 +60,10 @@ contains
       integer, parameter :: most_trials = 400
       ! share of the accuracy that one panel may use up
       real(wp), parameter :: panel_share = 0.3_wp
-      ! error of a panel, over what it may have, that can be put up with if it is inherited
-      real(wp), parameter :: tolerable = 4.0_wp
+      ! error of a panel, over what it may have, that can be put up with if a shorter one does not
+      ! reduce it: handed down by the panels before, or rounding in stiff internal variables
+      real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
+      integer, parameter :: enough_closings = 5
       ! first panel over the expected rebound at accuracy 1e-8, and its power of the accuracy
       real(wp), parameter :: first_share = 0.5_wp, growth_of_first = 0.12_wp, usual = 1.0e-8_wp
       ! a panel as long as this over the rest of the rebound is to be the last one; others leave a
@@ -71,12 +73,17 @@ contains
       ! time of the approach, and its rate
       real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
-      real(wp) :: length, taken, rest, rate, excess, refused, error_now, error_sum, alpha_rate
-      integer :: trial, n, kind
+      real(wp) :: length, taken, rest, rate, excess, refused, refused_end, end_found, slope
+      real(wp) :: error_now, error_sum, alpha_rate
+      integer :: trial, n, kind, closings
       logical :: ends, last, inherited
 
       n = rules(1)%stages
       refused = huge(1.0_wp)
+      refused_end = huge(1.0_wp)
+      closings = 0
+      end_found = 0.0_wp
+      slope = 0.0_wp
       kind = linear
       if (kernel%error > 0.0_wp .or. kernel%viscosity > 0.0_wp) kind = 0
       rate = first_rate
@@ -85,6 +92,7 @@ contains
 
       do trial = 1, most_trials
          rest = -start%t1/rate
+         if (end_found > start%time) rest = end_found - start%time
          ends = length >= closing_share*rest
          taken = min(length, longest_share*rest)
          if (ends) taken = rest
@@ -95,7 +103,7 @@ contains
          end if
          if (ends) then
             call close_contact(panel, taken)
-            if (panel%converged) rate = -start%t1/taken
+            if (panel%converged) end_found = start%time + taken
          else
             call guess(panel, kind, taken)
             call solve(1, kind, taken, panel)
@@ -122,15 +130,24 @@ contains
          end if
 
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         ! at the end the drift is extrapolated, by which both have errors of the same size
          error_now = companion_share*(abs(panel%impulse(n) - companion%impulse(n - 1)) &
-            *(1.0_wp/impact%mass + alpha_rate) + abs(panel%drift(n) - companion%drift(n - 1)) &
+            *(1.0_wp/impact%mass + alpha_rate) &
+            + merge(1.0_wp/companion_share, 1.0_wp, ends) &
+            *abs(panel%drift(n) - companion%drift(n - 1)) &
             + abs(panel%indentation(n) - companion%indentation(n - 1))/start%t1)/impact%velocity
          if (ends) error_now = error_now + abs((panel%condition(n) - companion%condition(n - 1)) &
             /start%condition*taken)*alpha_rate*panel%impulse(n)/(panel%time(n)*impact%velocity)
          excess = error_now/(panel_share*accuracy)
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
+         if (ends) then
+            closings = closings + 1
+            inherited = inherited .or. (excess <= tolerable_end &
+               .and. (excess > 0.5_wp*refused_end .or. closings >= enough_closings))
+         end if
          if (.not. (excess <= 1.0_wp .or. inherited)) then
             refused = excess
+            if (ends) refused_end = excess
             length = 0.5_wp*taken
             cycle
          end if
@@ -236,11 +253,11 @@ contains
          real(wp), parameter :: noticeable = 1.0e-7_wp, closest = 1.0e-13_wp
          ! no step goes farther than this, over the length
          real(wp), parameter :: farthest = 0.4_wp
-         real(wp) :: slope, correction, last_correction, condition, old_condition
+         real(wp) :: correction, last_correction, condition, old_condition
          integer :: iteration
 
-         ! the condition falls faster and faster
-         slope = -1.5_wp*start%condition/length
+         ! the condition falls faster and faster; once known, its rate at the end is known for good
+         if (.not. slope < 0.0_wp) slope = -1.5_wp*start%condition/length
          old_condition = 0.0_wp
          correction = 0.0_wp
          do iteration = 1, most_iterations
@@ -256,7 +273,8 @@ contains
             last_correction = correction
             correction = -condition/slope
             correction = sign(min(abs(correction), farthest*length), correction)
-            if (abs(correction) <= max(0.01_wp*min(accuracy, 1.0e-8_wp), closest)*length) return
+            if (abs(correction) <= max(0.1_wp*min(accuracy, 1.0e-8_wp), closest) &
+                *(start%time + length)) return
             ! rounding in the condition of stiff internal variables ends it, too
             if (iteration > 3 .and. abs(correction) <= noticeable*length &
                 .and. abs(correction) >= 0.25_wp*abs(last_correction)) return

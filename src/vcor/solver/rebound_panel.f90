@@ -15,10 +15,10 @@ module vcor_solver_rebound_panel
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : apply, factorise, factors_t
-   use vcor_numeric_pairs, only : constant, ratio, times
+   use vcor_numeric_pairs, only : constant, times
    use vcor_solver_approach, only : approach_t
    use vcor_solver_general_panel, only : function_of_h
-   use vcor_solver_modes, only : advance_modes, start_t
+   use vcor_solver_modes, only : advance_modes, lags_at_end, start_t, sum_modes
    use vcor_solver_panel, only : panel_t
    implicit none
    private
@@ -36,6 +36,8 @@ module vcor_solver_rebound_panel
       real(wp) :: force = 0.0_wp
       !> Condition N [N/m^0.5]
       real(wp) :: condition = 0.0_wp
+      !> Condition at the largest indentation, against which its errors are counted [N/m^0.5]
+      real(wp) :: largest_condition = 0.0_wp
       !> t1 [s]
       real(wp) :: t1 = 0.0_wp
       !> Impulse I [N s]
@@ -78,6 +80,7 @@ contains
       rebound%force = start%force
       rebound%condition = kernel%equilibrium*start%indentation &
          + sum(kernel%moduli*(start%indentation - approach%r))
+      rebound%largest_condition = rebound%condition
       rebound%t1 = start%time
       rebound%impulse = start%impulse
       rebound%second_impulse = start%second_impulse
@@ -122,7 +125,7 @@ contains
       type(factors_t) :: factors
       real(wp) :: size_now, size_before
       integer :: n, i, j, iteration
-      logical :: regular, frozen, remembers
+      logical :: regular, frozen, remembers, stands_still
 
       n = rule%stages
       frozen = impact%plate%frozen()
@@ -187,6 +190,13 @@ contains
          known = known + kernel%viscosity*known_v
       end if
       known(n + 1:) = 0.0_wp
+      stands_still = .not. map%slope + 2.0_wp*map%bend > 0.0_wp
+      if (stands_still) then
+         ! no force acts at the end, and it would not count
+         known(n) = 0.0_wp
+         t(n, :) = 0.0_wp
+         panel%t1(n) = 0.0_wp
+      end if
 
       ! t1 is guessed, and N follows from it
       condition = 0.0_wp
@@ -213,7 +223,7 @@ contains
          condition = condition + change
          ! the force is extrapolated by its slope, whose error is of second order
          force = force + slope*change
-         size_now = maxval(abs(change))/maxval(abs(condition))
+         size_now = maxval(abs(change))/start%largest_condition
          panel%converged = size_now*min(1.0_wp, sqrt(size_now)) <= tolerance
          ! rounding in the condition of stiff internal variables ends it, too
          if (.not. panel%converged .and. .not. size_now < 0.5_wp*size_before) &
@@ -245,7 +255,7 @@ contains
          panel%deflection(1:) = start%deflection - apply(h, panel%drift(1:))
       end if
       panel%t1(0) = start%t1
-      if (.not. map%slope + 2.0_wp*map%bend > 0.0_wp) call extrapolate_to_end()
+      if (stands_still) call extrapolate_to_end()
 
    contains
 
@@ -254,47 +264,13 @@ contains
       !> other points. The end has no weight in the integrals
       subroutine extrapolate_to_end()
 
-         real(wp) :: at_start, part(width)
-
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
-         call sum_settled(kernel, start%r, panel%indentation(1:), panel%indentation(0), part, &
-            at_start)
-         panel%condition(n) = panel%condition(n) - part(n) &
-            + rule%end_weight(0)*at_start + sum(rule%end_weight(1:n - 1)*part(1:n - 1))
-         if (remembers) then
-            call sum_settled(memory, -start%p, panel%impulse(1:) - start%impulse, 0.0_wp, part, &
-               at_start)
-            panel%drift(n) = panel%drift(n) + part(n) &
-               - rule%end_weight(0)*at_start - sum(rule%end_weight(1:n - 1)*part(1:n - 1))
-         end if
+         panel%condition(n) = kernel%equilibrium*panel%indentation(n) &
+            + kernel%viscosity*(known_v(n) - sum(q(n, :)*force)) &
+            + lags_at_end(rule, map, scale, kernel, start%r, panel%indentation)
+         if (remembers) panel%drift(n) = &
+            -lags_at_end(rule, map, scale, memory, -start%p, panel%impulse - start%impulse)
       end subroutine extrapolate_to_end
-
-      !> Sum of G_k (1 + l_k H)^-1 (x - q_k) over the modes that settle within the panel
-      subroutine sum_settled(terms, q, x, first, part, at_start)
-         !> G_k and l_k
-         type(exponential_sum_t), intent(in) :: terms
-         !> q_k at the start of the panel, shape (modes)
-         real(wp), intent(in) :: q(:)
-         !> x at the stages
-         real(wp), intent(in) :: x(width)
-         !> x at the start
-         real(wp), intent(in) :: first
-         !> Sum at the stages
-         real(wp), intent(out) :: part(width)
-         !> Sum at the start
-         real(wp), intent(out) :: at_start
-
-         ! product of rate and length from which a mode counts as settled
-         real(wp), parameter :: settled = 30.0_wp
-         real(wp) :: with_q(width)
-         logical :: chosen(size(q))
-
-         chosen = terms%rates*scale > settled
-         at_start = sum(terms%moduli*(first - q), mask=chosen)
-         call sum_modes(pack(terms%moduli, chosen), pack(terms%rates, chosen), &
-            pack(q, chosen), map, scale, share, with_q)
-         part = apply(map%right, times(map%square, share, apply(map%left, x))) - with_q
-      end subroutine sum_settled
 
       !> N by t1
       subroutine guess_condition(t1, time, condition)
@@ -316,39 +292,6 @@ contains
          end if
       end subroutine guess_condition
    end subroutine solve_rebound_panel
-
-   !> Sum of G_k/(1 + l_k H) as a function of the eigenvalues, and the vector sum of
-   !> G_k q_k (1 + l_k H)^-1 1
-   pure subroutine sum_modes(moduli, rates, q, map, scale, share, vector)
-      !> G_k, shape (modes)
-      real(wp), intent(in) :: moduli(:)
-      !> l_k [1/s], shape (modes)
-      real(wp), intent(in) :: rates(:)
-      !> Values q_k at the start of the panel, shape (modes)
-      real(wp), intent(in) :: q(:)
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Scale of the map [s]
-      real(wp), intent(in) :: scale
-      !> The function
-      real(wp), intent(out) :: share(width)
-      !> The vector
-      real(wp), intent(out) :: vector(width)
-
-      real(wp), dimension(width) :: one, lambda, with_q
-      integer :: k
-
-      lambda = scale*map%eigenvalue
-      share = 0.0_wp
-      with_q = 0.0_wp
-      do k = 1, size(q)
-         one = moduli(k)*ratio(map%square, constant(1.0_wp), &
-            constant(1.0_wp) + rates(k)*lambda)
-         share = share + one
-         with_q = with_q + q(k)*one
-      end do
-      vector = apply(map%right, times(map%square, with_q, map%left_one))
-   end subroutine sum_modes
 
    !> Make the end of a panel the start of the next one
    pure subroutine advance_rebound(rule, map, scale, kernel, memory, panel, start)

@@ -58,6 +58,9 @@ contains
             other = case
             call set(other, 'plate', 'waves', trim(plates(i)))
             call set(other, 'contact', 'law', trim(laws(j)))
+            call set(other, 'solver', 'method', 'auto')
+            call set(other, 'solver', 'scheme', 'product')
+            call set(other, 'solver', 'continue_after_separation')
             call other%validate(error)
             if (allocated(error) .and. plates(i) /= waves .and. j == 1 &
                 .and. .not. case%given('plate', 'half_thickness')) exit
@@ -75,7 +78,7 @@ contains
       allocate (models, source=all(:n))
    end subroutine solve_models
 
-   !> Give a key a text
+   !> Give a key a text, or false to a switch
    subroutine set(case, group, key, text)
       !> The case
       type(case_t), intent(inout) :: case
@@ -83,12 +86,13 @@ contains
       character(len=*), intent(in) :: group
       !> Key
       character(len=*), intent(in) :: key
-      !> The text
-      character(len=*), intent(in) :: text
+      !> The text; absent: false
+      character(len=*), intent(in), optional :: text
 
       type(entry_t) :: entry
 
-      entry%text = text
+      if (present(text)) entry%text = text
+      entry%flag = .false.
       entry%present = .true.
       call case%assign(case%handle(group, key), entry)
    end subroutine set
@@ -107,9 +111,6 @@ contains
       type(error_t), allocatable :: error
 
       call describe_solver(case, settings)
-      settings%method = 'ive'
-      settings%scheme = 'product'
-      settings%ghost = .false.
       call build_impact(case, impact, error)
       if (.not. allocated(error)) call new_solver(solver, settings, impact, error)
       if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
