@@ -1,24 +1,37 @@
 !> The command line as a request
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
-   use vcor, only : error_t, error_usage, integer_text, most_threads, printable, quantity_names, &
-      raise, suggestion
+   use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
+   use vcor_app_option_value, only : read_positive, read_whole
+   use vcor, only : error_t, error_usage, most_threads, printable, quantity_names, raise, &
+      suggestion, time_range_t
    implicit none
    private
 
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check verify help'
+   character(len=*), parameter :: commands = 'run merge check material fit plot verify help'
    !> Options of run
-   character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
-      //'--help --version'
+   character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
+      //'--shard --quiet --help --version'
+   !> Options of merge
+   character(len=*), parameter :: merge_options = '--output --quiet --help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
+   !> Options of material, and of fit beside its own
+   character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
+      //'--quiet --help --version'
+   !> Options of plot
+   character(len=*), parameter :: plot_options = '--kind --quantity --legend --output --format ' &
+      //'--script --quiet --help --version'
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
    character(len=*), parameter :: help_options = '--man --markdown --help --version'
+
+   !> Most points of --points
+   integer, parameter :: most_points = 100000
 
    !> What the user asks for
    type :: request_t
@@ -34,6 +47,24 @@ module vcor_app_cli
       character(len=:), allocatable :: directory
       !> Threads of --threads; 0 without it
       integer :: threads = 0
+      !> Whether to go on with what is there
+      logical :: resume = .false.
+      !> Number of the shard; 0 without --shard
+      integer :: shard = 0
+      !> Number of shards; 0 without --shard
+      integer :: shards = 0
+      !> Times of --from, --to and --points
+      type(time_range_t) :: range
+      !> What is to be fitted
+      type(fit_request_t) :: fit
+      !> Kind of figure of --kind; unallocated without it
+      character(len=:), allocatable :: kind
+      !> Format of figures of --format; unallocated without it
+      character(len=:), allocatable :: format
+      !> Texts of --legend, shape (n)
+      type(argument_t), allocatable :: legends(:)
+      !> Whether the script of a figure is left
+      logical :: script = .false.
       !> Nothing on the screen
       logical :: quiet = .false.
       !> Form of a page of help: empty for the screen, else --man or --markdown
@@ -55,19 +86,27 @@ contains
       integer :: i, mark
       logical :: plain
 
-      allocate (request%files(0), request%settings(0), request%names(0))
+      allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
       request%form = ''
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, verify, help ' &
-            //'(vcor help says more)')
+         call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
+            //'plot, verify, help (vcor help says more)')
          return
       end if
 
       select case (words(1)%text)
       case ('run')
          known = run_options
+      case ('merge')
+         known = merge_options
       case ('check')
          known = check_options
+      case ('material')
+         known = material_options
+      case ('fit')
+         known = fit_options//' '//material_options
+      case ('plot')
+         known = plot_options
       case ('verify')
          known = verify_options
       case ('help', '--help', '-h')
@@ -125,12 +164,16 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet')
+         case ('--quiet', '--resume', '--shear', '--dynamic', '--script')
             if (mark > 0) then
-               call raise(error, error_usage, 'option --quiet takes no value')
+               call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
-            request%quiet = .true.
+            if (name == '--quiet') request%quiet = .true.
+            if (name == '--resume') request%resume = .true.
+            if (name == '--shear') request%fit%shear = .true.
+            if (name == '--dynamic') request%fit%dynamic = .true.
+            if (name == '--script') request%script = .true.
             cycle
          case default
          end select
@@ -150,6 +193,8 @@ contains
       end do
 
       if (size(request%files) == 0) call refuse_no_case(request, error)
+      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
+         '--print is for whole sweeps, found --shard as well')
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
@@ -164,7 +209,17 @@ contains
 
       if (request%command == 'help') return
       if (request%command == 'verify' .and. size(request%settings) == 0) return
-      call raise(error, error_usage, 'no case file; expected vcor '//request%command//' CASE.nml')
+      if (request%command == 'merge') then
+         call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
+         return
+      end if
+      if (request%command == 'fit') return
+      if (request%command == 'plot') then
+         call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
+      else
+         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
+            //' CASE.nml')
+      end if
    end subroutine refuse_no_case
 
    !> Take the value of an option
@@ -187,38 +242,56 @@ contains
          call append_word(request%settings, value)
       case ('--output')
          request%directory = value
+      case ('--kind')
+         request%kind = value
+      case ('--format')
+         request%format = value
+      case ('--legend')
+         call append_word(request%legends, value)
       case ('--threads')
-         call read_threads(value, request%threads, error)
+         call read_whole(option, value, 1, most_threads, request%threads, error)
+      case ('--shard')
+         call read_shard(value, request, error)
+      case ('--points')
+         call read_whole(option, value, 2, most_points, request%range%points, error)
+      case ('--from')
+         call read_positive(option, value, request%range%first, error)
+      case ('--to')
+         call read_positive(option, value, request%range%last, error)
+      case ('--print', '--quantity')
+         call add_names(option, value, request, error)
       case default
-         call add_names(value, request, error)
+         call apply_fit_option(option, value, request%fit, error)
       end select
    end subroutine apply
 
-   !> Read the value of --threads
-   subroutine read_threads(value, threads, error)
-      !> The number as it is written
+   !> Read the value of --shard, I/N
+   subroutine read_shard(value, request, error)
+      !> The value as it is written
       character(len=*), intent(in) :: value
-      !> The number
-      integer, intent(out) :: threads
+      !> The request
+      type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: digits
-      integer, parameter :: most_digits = 9
-      integer :: status
+      integer, parameter :: most_shards = 1000000
+      integer :: mark
 
-      threads = 0
-      digits = trim(adjustl(value))
-      status = 0
-      if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
-         read (digits, *, iostat=status) threads
-      if (status /= 0 .or. threads < 1 .or. threads > most_threads) call raise(error, error_usage, &
-         "--threads: found '"//printable(digits)//"', expected a whole number from 1 to " &
-         //integer_text(most_threads))
-   end subroutine read_threads
+      mark = index(value, '/')
+      if (mark == 0) then
+         call raise(error, error_usage, "--shard: found '"//printable(trim(value)) &
+            //"', expected I/N: shard I of N, as in --shard 1/4")
+         return
+      end if
+      call read_whole('--shard', value(mark + 1:), 1, most_shards, request%shards, error)
+      if (allocated(error)) return
+      call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
+   end subroutine read_shard
 
-   !> Split the value of --print
-   subroutine add_names(list, request, error)
+   !> Split the value of --print or --quantity
+   subroutine add_names(option, list, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Names separated by commas
       character(len=*), intent(in) :: list
       !> The request
@@ -231,14 +304,16 @@ contains
       first = 1
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
-         call add_name(trim(adjustl(list(first:last))), request, error)
+         call add_name(option, trim(adjustl(list(first:last))), request, error)
          if (allocated(error)) return
          first = last + 2
       end do
    end subroutine add_names
 
-   !> Add one name of --print
-   subroutine add_name(name, request, error)
+   !> Add one name of --print or --quantity
+   subroutine add_name(option, name, request, error)
+      !> The option
+      character(len=*), intent(in) :: option
       !> Name
       character(len=*), intent(in) :: name
       !> The request
@@ -248,7 +323,7 @@ contains
 
       ! what has a dot is a parameter of a sweep, and whether there is one the case says
       if (index(name, '.') == 0 .and. .not. has_word(quantity_names(), name)) then
-         call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+         call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option//'; ' &
             //suggestion(name, quantity_names()))
       else
          call append_word(request%names, name)

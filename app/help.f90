@@ -10,7 +10,8 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run check verify input output help'
+   character(len=*), parameter :: topics = &
+      'run merge check material fit plot verify input output help'
 
 contains
 
@@ -28,8 +29,16 @@ contains
          text = overview()
       case ('run')
          text = run_page()
+      case ('merge')
+         text = merge_page()
       case ('check')
          text = check_page()
+      case ('material')
+         text = material_page()
+      case ('fit')
+         text = fit_page()
+      case ('plot')
+         text = plot_page()
       case ('verify')
          text = verify_page()
       case ('input')
@@ -49,10 +58,15 @@ contains
 
       text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
+         //'       vcor merge SHARD.h5 ...            one sweep from its shards'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
+         //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
+         //'       vcor fit DATA                      identify a material from data'//nl &
+         //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, verify, input, output' &
-         //nl//'       vcor --version'//nl//nl &
+         //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
+         //'                                          fit, plot, verify, input, output'//nl &
+         //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
       text = text//nl//'pages of the manual: vcor help [input|output] --man, or --markdown'//nl
@@ -77,8 +91,32 @@ contains
          //'                          impact, and write files only if --output is given;'//nl &
          //'                          names: vcor help output, or a parameter that is swept'//nl &
          //'  --threads N             threads of a sweep; default: as many as there are cores'//nl &
-         //'  --quiet                 print nothing'//nl
+         //'  --resume                go on with a sweep that was interrupted'//nl &
+         //'  --shard I/N             solve part I of N of a sweep, to STEM_shard_I_of_N.h5;'//nl &
+         //'                          vcor merge makes one of them'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'A sweep that takes more than a moment keeps what is finished in STEM.part.h5, a'//nl &
+         //'valid file at any time. SIGINT (Ctrl-C) and SIGTERM end it after the points at'//nl &
+         //'work, with exit code 130 or 143. With --resume the same command goes on, after a'//nl &
+         //'crash too, and gives the same files. A file of another case, or of another'//nl &
+         //'version, is refused.'//nl &
+         //'Results of another case are replaced, and that is said; unfinished ones are not.'//nl &
+         //'Built for MPI (cmake --preset mpi), mpirun vcor run shares a sweep among ranks.'//nl
    end function run_page
+
+   !> Page of merge
+   function merge_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor merge STEM_shard_*.h5 [options]'//nl//nl &
+         //'Makes STEM_summary.csv and STEM.h5 of the files that vcor run --shard I/N has'//nl &
+         //'written, the same as one run makes. All N shards are needed, each once, finished,'//nl &
+         //'of the same case and version. Exit code 5: points without result, as for run.'//nl//nl &
+         //'  --output DIR            directory of the files, made if it is not there;'//nl &
+         //'                          default: that of the case'//nl &
+         //'  --quiet                 print nothing'//nl
+   end function merge_page
 
    !> Page of check
    function check_page() result(text)
@@ -89,6 +127,102 @@ contains
          //'Validates each case and prints it with every default filled in; what it prints is'//nl &
          //'a case file again.'//nl
    end function check_page
+
+   !> Page of material
+   function material_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor material CASE.nml ... [options]'//nl//nl &
+         //'Computes the moduli of each material of a case, relaxation over time, storage,'//nl &
+         //'loss and loss tangent over angular frequency, and solves the impact for the'//nl &
+         //'window that matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
+         //'  STEM_material.csv             a row per material: glassy and rubbery modulus,'//nl &
+         //'                                values at t0 and 2 pi/t0'//nl &
+         //'  STEM_material_relaxation.csv  material, time, relaxation_modulus, in_window'//nl &
+         //'  STEM_material_dynamic.csv     material, frequency, storage_modulus,'//nl &
+         //'                                loss_modulus, loss_tangent, in_window'//nl &
+         //'  STEM_material.h5              all of them: /summary, /relaxation, /dynamic;'//nl &
+         //'                                t0 and 2 pi/t0 are attributes, contact_time'//nl &
+         //'                                and min_frequency'//nl//nl &
+         //'Where a case has &sweep groups, its first point counts.'//nl//nl &
+         //'  --from T --to T         first and last time [s]; default: from the glassy to'//nl &
+         //'                          the rubbery plateau, the contact time included. The'//nl &
+         //'                          frequencies are the reciprocals of the times'//nl &
+         //'  --points N              number of times; default: 50 to the decade'//nl &
+         //'  --set GROUP.KEY=VALUE   replace a value of the case, as for run; repeatable'//nl &
+         //'  --output DIR            directory of the files, made if it is not there'//nl &
+         //'  --quiet                 print nothing'//nl
+   end function material_page
+
+   !> Page of fit
+   function fit_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor fit DATA [options]'//nl &
+         //'       vcor fit --from-model CASE.nml[:MATERIAL] [options]'//nl//nl &
+         //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
+         //'storage and loss modulus, and prints its parameters with standard errors, the'//nl &
+         //'misfit, the band of the data and a &material group to be pasted into a case.'//nl &
+         //'Columns are told by a header (t,E or f,E_stor,E_loss ...), units by the header,'//nl &
+         //'by a second line of units or by --units; without either, two columns are s and'//nl &
+         //'Pa, three are rad/s, Pa and Pa.'//nl//nl &
+         //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
+         //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
+         //'                          support, or until the largest misfit is below 0.05 %'//nl &
+         //'  --fix KEY=VALUE         give a parameter, in SI units; may be repeated'//nl &
+         //'  --units LIST            units of the columns: s,MPa or Hz,MPa or rad/s,Pa ...'//nl &
+         //'  --shear                 the moduli are shear moduli G: E = 2 (1 + nu) G'//nl &
+         //'  --poisson-ratio NU      of the material; default 0.5'//nl &
+         //'  --density RHO           of the material [kg/m3]'//nl &
+         //'  --name NAME             of the material; default: that of the file'//nl &
+         //'  --output PATH           write the group to this file, or into this directory'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'With --from-model a material of a case is sampled in place of data, the one that'//nl &
+         //'is named or that of the plate, and its impact is solved with it and with the fit.'//nl &
+         //'  --from T --to T         first and last time [s]; default: from 1e-5 to 10 times'//nl &
+         //'                          the contact time, in whole decades'//nl &
+         //'  --points N              number of samples; default: 50 to the decade'//nl &
+         //'  --dynamic               sample storage and loss modulus, over the reciprocals'//nl &
+         //'  --set GROUP.KEY=VALUE   replace a value of the case'//nl//nl &
+         //'The keys valid_from and valid_to of the group tell the band of the data. vcor run'//nl &
+         //'warns where the cor of an impact changes by more than 1e-4 with the modulus held'//nl &
+         //'constant outside of it.'//nl//nl &
+         //'exit code 5: the fit does not converge, or the data do not determine the'//nl &
+         //'parameters.'//nl
+   end function fit_page
+
+   !> Page of plot
+   function plot_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor plot RESULT.h5 ... [options]'//nl//nl &
+         //'Draws the results of vcor run and vcor material through gnuplot, several of one'//nl &
+         //'kind in one figure with a legend. Kinds:'//nl &
+         //'  history  indentation, velocity and force over time, each over its largest'//nl &
+         //'           value; dashed: ghost lines after contact; values at its end marked'//nl &
+         //'  loop     contact force over indentation, the energy lost in the legend'//nl &
+         //'  moduli   relaxation modulus over time, storage and loss modulus and loss'//nl &
+         //'           tangent over frequency, for each material'//nl &
+         //'  sweep    quantities of the summary over the parameter that is swept'//nl &
+         //'  map      a quantity over two parameters, as contours'//nl//nl &
+         //'  --kind KIND             default: what the file holds; of an impact history,'//nl &
+         //'                          of a sweep of one parameter sweep, of two map'//nl &
+         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each;'//nl &
+         //'                          default: cor; names: vcor help output'//nl &
+         //'  --legend TEXT           text of the legend, once for each file, in order;'//nl &
+         //'                          default: titles, or in what the cases differ'//nl &
+         //'  --output FILE           name of the figure, or directory of STEM_KIND.svg;'//nl &
+         //'                          default: STEM_KIND.svg in the current directory'//nl &
+         //'  --format FORMAT         svg, pdf, png; default: what FILE ends with, else svg'//nl &
+         //'  --script                leave the script of gnuplot and its data, FILE with'//nl &
+         //'                          .gp and .dat, for work by hand'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'Figures are 8.5 cm wide, a column, or 17 cm, a page. Where gnuplot is missing the'//nl &
+         //'script is written and the exit code is 4.'//nl
+   end function plot_page
 
    !> Page of verify
    function verify_page() result(text)

@@ -3,12 +3,16 @@ module vcor_app_job
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
-      join_path, method_for, new_sweep, override, printable, quantity_names, raise, read_case, &
-      read_data, same_file, single_impact, suggestion, sweep_t
+      integer_text, join_path, method_for, new_part, new_sweep, override, part_t, &
+      printable, quantity_names, raise, read_case, read_data, same_file, single_impact, &
+      suggestion, sweep_t
    implicit none
    private
 
-   public :: job_t, prepare, endings
+   public :: job_t, prepare, endings, material_endings, shard_text
+
+   !> Letters of the longest ending
+   integer, parameter :: longest_ending = 24
 
    !> One case of a call, ready to run
    type :: job_t
@@ -16,20 +20,28 @@ module vcor_app_job
       type(case_t) :: case
       !> Its impacts
       type(sweep_t) :: sweep
+      !> Those of them that are to be solved
+      type(part_t) :: part
       !> Its impact where it has one only
       type(impact_t) :: impact
       !> Its method
       character(len=:), allocatable :: method
       !> Directory and stem of its files
       character(len=:), allocatable :: path
+      !> What the names of its files end with
+      character(len=longest_ending), allocatable :: endings(:)
       !> Which of its files it writes, in the order of `endings`
-      logical :: writes(3) = .true.
+      logical, allocatable :: writes(:)
       !> Whether there is a time history in them
       logical :: history = .true.
    end type job_t
 
-   !> What the names of the files end with
-   character(len=*), parameter :: endings(3) = [character(len=12) :: '_summary.csv', '.csv', '.h5']
+   !> What the names of the files of run end with
+   character(len=*), parameter :: endings(3) = [character(len=longest_ending) :: &
+      '_summary.csv', '.csv', '.h5']
+   !> What the names of the files of material end with
+   character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
+      '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
 
 contains
 
@@ -78,17 +90,29 @@ contains
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)
             job%path = join_path(directory, stem)
+            job%part = new_part(job%sweep%grid%count(), 1, 1)
             call job%case%get('output', 'csv', csv)
             call job%case%get('output', 'hdf5', hdf5)
             call job%case%get('output', 'history', history)
             ! a time history is that of one impact
             history = history .and. .not. job%sweep%is_grid()
             job%history = history
-            job%writes = [csv, csv .and. history, hdf5]
+            if (request%command == 'material') then
+               job%endings = material_endings
+               job%writes = [csv, csv, csv, hdf5]
+            else
+               job%endings = endings
+               job%writes = [csv, csv .and. history, hdf5]
+            end if
             ! bare numbers are for scripts, which would be surprised by files
             if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
                job%writes = .false.
-            if (request%command == 'verify') job%writes = .false.
+            if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
+            call take_shard(request, job, error)
+            if (allocated(error)) return
+            if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
+               '--resume: no file is written that could be resumed; --print needs --output for it')
+            if (allocated(error)) return
          end associate
          do j = 1, i
             call refuse_clash(request, jobs, i, j, error)
@@ -96,6 +120,48 @@ contains
          end do
       end do
    end subroutine prepare
+
+   !> Take the part of --shard
+   subroutine take_shard(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(inout) :: job
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: number, parts
+
+      if (request%shards == 0) return
+      number = integer_text(request%shard)
+      parts = integer_text(request%shards)
+      if (.not. job%sweep%is_grid()) then
+         call raise(error, error_usage, '--shard takes a part of a sweep, but ' &
+            //job%case%source//' has no &sweep group')
+         return
+      else if (request%shards > job%part%points) then
+         call raise(error, error_usage, '--shard: found '//number//'/'//parts//', but ' &
+            //job%case%source//' has '//integer_text(job%part%points) &
+            //' points; expected no more shards than points')
+         return
+      end if
+      job%part = new_part(job%part%points, request%shard, request%shards)
+      job%path = job%path//'_shard_'//number//'_of_'//parts
+      ! what vcor merge reads
+      job%writes = [.false., .false., .true.]
+   end subroutine take_shard
+
+   !> Which shard, for messages
+   function shard_text(part) result(text)
+      !> The part
+      type(part_t), intent(in) :: part
+      !> Words, or nothing
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (part%parts > 1) text = ' of shard '//integer_text(part%number)//' of ' &
+         //integer_text(part%parts)
+   end function shard_text
 
    !> Names of --print with a dot are parameters that the case sweeps
    subroutine check_names(request, grid, error)
@@ -136,20 +202,21 @@ contains
 
       integer :: i, j
 
-      do i = 1, size(endings)
+      do i = 1, size(jobs(new)%endings)
          if (jobs(new)%writes(i)) call keep_data(new, old)
          if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
          if (allocated(error)) return
          if (.not. jobs(new)%writes(i)) cycle
-         if (same_file(jobs(new)%path//trim(endings(i)), request%files(old)%text)) then
+         if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), request%files(old)%text)) then
             call raise(error, error_input, request%files(new)%text//': its results would replace ' &
                //'the case file '//request%files(old)%text//': give it another output.stem')
             return
          end if
          if (old == new) cycle
-         do j = 1, size(endings)
+         do j = 1, size(jobs(old)%endings)
             if (.not. jobs(old)%writes(j)) cycle
-            if (same_file(jobs(new)%path//trim(endings(i)), jobs(old)%path//trim(endings(j)))) then
+            if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), &
+               jobs(old)%path//trim(jobs(old)%endings(j)))) then
                call raise(error, error_input, request%files(new)%text//': its files would ' &
                   //'replace those of '//request%files(old)%text//': give one of them another ' &
                   //'output.stem')
@@ -168,7 +235,7 @@ contains
          integer, intent(in) :: reader
 
          do j = 1, jobs(reader)%case%count('material')
-            if (.not. same_file(jobs(writer)%path//trim(endings(i)), &
+            if (.not. same_file(jobs(writer)%path//trim(jobs(writer)%endings(i)), &
                data_file(jobs(reader)%case, j))) cycle
             call raise(error, error_input, request%files(writer)%text//': its results would ' &
                //'replace the data file '//data_file(jobs(reader)%case, j) &

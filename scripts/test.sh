@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing and runs every test: CMake release and debug, fpm, the linter.
+# Installs what is missing and runs every test: CMake release, debug and MPI, fpm, the linter.
 # Stops at the first step that fails. The last line is the sum of all tests: N passed, N failed
 set -euo pipefail
 
@@ -104,6 +104,7 @@ make_venv
 
 with_cmake release
 with_cmake debug
+with_cmake mpi
 with_fpm
 
 begin "linter"

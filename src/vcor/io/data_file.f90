@@ -5,6 +5,7 @@
 !> they do on any system, and a byte-order mark is passed over.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
+   use vcor_io_columns, only : lines_in, split, start_of, take_line
    use vcor_io_file, only : join_path
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
@@ -13,14 +14,12 @@ module vcor_io_data_file
    use vcor_study_case, only : case_t
    use vcor_study_store, only : entry_t
    use vcor_study_text, only : integer_text, printable, real_text
+   use vcor_study_units, only : unit_size
    implicit none
    private
 
    public :: read_data, data_file
 
-   character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
-   character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
-   character(len=*), parameter :: blanks = " "//achar(9)
    !> What the columns hold
    character(len=*), parameter :: names(2) = [character(len=7) :: "time", "modulus"]
 
@@ -48,9 +47,9 @@ contains
             return
          end if
          call case%get("material", "time_unit", unit, item)
-         scale(1) = size_of(unit)
+         scale(1) = unit_size(unit)
          call case%get("material", "modulus_unit", unit, item)
-         scale(2) = size_of(unit)
+         scale(2) = unit_size(unit)
          call read_points(text, printable(path), scale, times%list, moduli%list, error)
          if (allocated(error)) return
          call case%assign(case%handle("material", "times", item), times)
@@ -70,35 +69,6 @@ contains
       call case%get("material", "file", path, item)
       if (path /= "") path = join_path(case%source(:index(case%source, "/", back=.true.)), path)
    end function data_file
-
-   !> A unit in that of the SI
-   pure function size_of(unit) result(scale)
-      !> One of the choices of time_unit and modulus_unit
-      character(len=*), intent(in) :: unit
-      !> In seconds or Pa
-      real(wp) :: scale
-
-      select case (unit)
-      case ("ns")
-         scale = 1.0e-9_wp
-      case ("us")
-         scale = 1.0e-6_wp
-      case ("ms")
-         scale = 1.0e-3_wp
-      case ("min")
-         scale = 60.0_wp
-      case ("h")
-         scale = 3600.0_wp
-      case ("kPa")
-         scale = 1.0e3_wp
-      case ("MPa")
-         scale = 1.0e6_wp
-      case ("GPa")
-         scale = 1.0e9_wp
-      case default
-         scale = 1.0_wp
-      end select
-   end function size_of
 
    !> Read the points
    subroutine read_points(text, name, scale, times, moduli, error)
@@ -120,8 +90,7 @@ contains
       logical :: first
 
       allocate(points(2, lines_in(text)))
-      start = 1
-      if (index(text, byte_order_mark) == 1) start = 1 + len(byte_order_mark)
+      start = start_of(text)
       line = 0
       n = 0
       first = .true.
@@ -158,78 +127,6 @@ contains
       times = points(1, :n)*scale(1)
       moduli = points(2, :n)*scale(2)
    end subroutine read_points
-
-   !> Number of lines in a text, or a little more
-   pure function lines_in(text) result(n)
-      !> The text
-      character(len=*), intent(in) :: text
-      !> The number
-      integer :: n
-      integer :: i
-
-      n = 1
-      do i = 1, len(text)
-         if (text(i:i) == line_feed .or. text(i:i) == carriage_return) n = n + 1
-      end do
-   end function lines_in
-
-   !> Take a line from a text
-   pure subroutine take_line(text, start, content)
-      !> The text
-      character(len=*), intent(in) :: text
-      !> Where the line begins, on return where the next one does
-      integer, intent(inout) :: start
-      !> The line without its end and without what follows a #
-      character(len=:), allocatable, intent(out) :: content
-      integer :: last, mark
-
-      last = scan(text(start:), carriage_return//line_feed) + start - 2
-      if (last < start - 1) last = len(text)
-      mark = index(text(start:last), "#")
-      content = text(start:merge(start + mark - 2, last, mark > 0))
-      start = last + 2
-      if (start > len(text)) return
-      if (text(start-1:start) == carriage_return//line_feed) start = start + 1
-   end subroutine take_line
-
-   !> Find the columns of a line: between commas or semicolons if there are any, else between blanks
-   pure subroutine split(content, columns, from, to)
-      !> The line
-      character(len=*), intent(in) :: content
-      !> Their number, 0 in a blank line
-      integer, intent(out) :: columns
-      !> Where each of the first two begins
-      integer, intent(out) :: from(2)
-      !> Where it ends, blanks left out
-      integer, intent(out) :: to(2)
-      integer :: start, last, column
-
-      columns = 0
-      from = 1
-      to = 0
-      if (verify(content, blanks) == 0) return
-      start = 1
-      do
-         if (scan(content, ",;") > 0) then
-            last = scan(content(start:), ",;") + start - 2
-         else
-            start = verify(content(start:), blanks) + start - 1
-            last = scan(content(start:), blanks) + start - 2
-         end if
-         if (last < start - 1) last = len(content)
-         columns = columns + 1
-         column = min(columns, 2)
-         if (columns <= 2) then
-            from(column) = start
-            to(column) = start - 1 + verify(content(start:last), blanks, back=.true.)
-            if (to(column) >= start) from(column) = start - 1 &
-               & + verify(content(start:last), blanks)
-         end if
-         start = last + 2
-         if (last == len(content)) exit
-         if (scan(content, ",;") == 0 .and. verify(content(last+1:), blanks) == 0) exit
-      end do
-   end subroutine split
 
    !> Read time and modulus
    subroutine read_point(content, from, to, scale, point, message)

@@ -1,29 +1,33 @@
-!> Tables as an HDF5 file, the only module that calls HDF5
+!> Tables as an HDF5 file
 !>
 !>     /                  attributes program, version, title, case
 !>     /summary           a dataset per dimension and column, in their order
 !>     /history           the same, if there is a history
+!>     /...               the same for each further table
 !>
+!> Numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
 !> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
 !> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
 !> see named axes. A grid has datasets of more than one dimension, the first of the table first, as
 !> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
 !> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
-!> Columns of more than `longest_plain` numbers are compressed (deflate, which every HDF5 reads): a
-!> sweep of 100,000 points becomes a quarter smaller, in a fiftieth of the time that it took to
-!> solve. More than one quarter the digits of different impacts do not give.
+!> Columns of more than `longest_plain` numbers most of which repeat the one before are compressed
+!> (deflate, which every HDF5 reads): numbers of steps, what the sweep leaves as it is, points
+!> without result. Such a column all but vanishes. The digits of different impacts do not repeat:
+!> deflate takes a quarter off, in a time in which a tenth of them is solved, on one core, whatever
+!> the number of threads and ranks.
 !>
 !> HDF5 builds the file in memory and `vcor_io_file` writes it, so that a full disk is none of
 !> HDF5's business: it keeps a file that cannot be closed, and complains when the program ends.
 !> Objects hold no times: the same tables give the same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_funptr, c_int, &
-      & c_int64_t, c_loc, c_null_char, c_null_funptr, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, &
+      & c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
       & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
-      & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, h5iis_valid_f, h5open_f, &
+      & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, &
       & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
       & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
       & h5pcreate_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_fapl_core_f, &
@@ -34,12 +38,30 @@ module vcor_io_hdf5
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : quoted_path, write_file
+   use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
       & text_value
+   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: write_hdf5
+   public :: write_hdf5, remark_t, named_table_t
+
+   !> Text that describes a file
+   type :: remark_t
+      !> Name of the attribute
+      character(len=:), allocatable :: name
+      !> Its value
+      character(len=:), allocatable :: text
+   end type remark_t
+
+   !> A table and the name of its group
+   type :: named_table_t
+      !> Name of the group
+      character(len=:), allocatable :: name
+      !> The table
+      type(table_t) :: table
+   end type named_table_t
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -56,8 +78,6 @@ module vcor_io_hdf5
       & //char(10)
    !> HDF5 wants a name for a file in memory too and reads what has that name: nothing can
    character(len=*), parameter :: no_path = "/dev/null/vcor.h5"
-   !> The error stack that H5E functions take by default (H5E_DEFAULT)
-   integer(c_int64_t), parameter :: default_stack = 0_c_int64_t
 
    !> A file that is being built in memory
    type :: writer_t
@@ -73,28 +93,15 @@ module vcor_io_hdf5
       integer(hid_t) :: dataset_creation = nothing
       !> Whether the library can compress
       logical :: compresses = .false.
+      !> Whether nothing is to be compressed
+      logical :: is_plain = .false.
       !> Type of text
       integer(hid_t) :: text_type = nothing
       !> What failed first; not allocated as long as nothing did
       character(len=:), allocatable :: fault
    end type writer_t
 
-   ! HDF5's Fortran interface can turn the printing of errors on and off but cannot tell whether it
-   ! is on, and a program that uses this library may have a handler of its own
    interface
-      !> Ask for the handler of errors
-      function c_get_handler(stack, handler, client) result(status) bind(c, name="H5Eget_auto2")
-         import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
-         integer(c_int64_t), intent(in), value :: stack
-         !> Handler, null if there is none
-         type(c_funptr), intent(out) :: handler
-         !> What the handler is called with
-         type(c_ptr), intent(out) :: client
-         !> Negative on failure
-         integer(c_int) :: status
-      end function c_get_handler
-
       !> Ask for what the driver of a file works with
       function c_get_vfd_handle(file, access, handle) result(status) &
          & bind(c, name="H5Fget_vfd_handle")
@@ -108,27 +115,14 @@ module vcor_io_hdf5
          !> Negative on failure
          integer(c_int) :: status
       end function c_get_vfd_handle
-
-      !> Set the handler of errors
-      function c_set_handler(stack, handler, client) result(status) bind(c, name="H5Eset_auto2")
-         import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
-         integer(c_int64_t), intent(in), value :: stack
-         !> Handler, null for none
-         type(c_funptr), intent(in), value :: handler
-         !> What the handler is called with
-         type(c_ptr), intent(in), value :: client
-         !> Negative on failure
-         integer(c_int) :: status
-      end function c_set_handler
    end interface
 
 contains
 
-   !> Write the summary and, if there is one, the history to a file
+   !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error)
+   subroutine write_hdf5(filename, summary, history, error, remarks, plain, more)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -137,32 +131,34 @@ contains
       type(table_t), intent(in), optional :: history
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> More that describes the file, shape (n)
+      type(remark_t), intent(in), optional :: remarks(:)
+      !> Whether all numbers are to be stored as they are, in one piece: false if it is not given
+      logical, intent(in), optional :: plain
+      !> Further tables, each with its name
+      type(named_table_t), intent(in), optional :: more(:)
       type(writer_t) :: writer
-      type(c_funptr) :: handler
-      type(c_ptr) :: client
-      integer :: status
-      logical :: is_open
+      type(handler_t) :: handler
+      integer :: i
 
       call check_table(summary, error)
       if (allocated(error)) return
       if (present(history)) call check_table(history, error)
       if (allocated(error)) return
-
-      ! The types of HDF5 are there if the library was opened, by whomever; it is never closed here,
-      ! since that would close everything else the program has open in HDF5
-      call h5iis_valid_f(h5t_native_double, is_open, status)
-      if (status < 0 .or. .not. is_open) then
-         call h5open_f(status)
-         call note(writer, status, "open its library")
+      if (present(more)) then
+         do i = 1, size(more)
+            call check_table(more(i)%table, error)
+            if (allocated(error)) return
+         end do
       end if
-      status = c_get_handler(default_stack, handler, client)
-      call note(writer, status, "give its handler of errors")
+
+      call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         status = c_set_handler(default_stack, c_null_funptr, c_null_ptr)
-         call build(writer, summary, history)
+         if (present(plain)) writer%is_plain = plain
+         call build(writer, summary, history, remarks, more)
          call write_image(writer, filename, error)
          call close_all(writer)
-         status = c_set_handler(default_stack, handler, client)
+         call end_hdf5(handler)
       end if
 
       if (allocated(writer%fault) .and. .not. allocated(error)) call raise(error, error_file, &
@@ -170,14 +166,18 @@ contains
    end subroutine write_hdf5
 
    !> Build the file in memory
-   subroutine build(writer, summary, history)
+   subroutine build(writer, summary, history, remarks, more)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
       !> A row per impact
       type(table_t), intent(in) :: summary
       !> A row per time
       type(table_t), intent(in), optional :: history
-      integer :: status
+      !> More that describes the file
+      type(remark_t), intent(in), optional :: remarks(:)
+      !> Further tables
+      type(named_table_t), intent(in), optional :: more(:)
+      integer :: i, status
 
       call prepare(writer)
       if (allocated(writer%fault)) return
@@ -188,8 +188,18 @@ contains
       call put_attribute(writer, writer%file, "version", summary%version)
       call put_attribute(writer, writer%file, "title", summary%title)
       call put_attribute(writer, writer%file, "case", summary%case_text)
+      if (present(remarks)) then
+         do i = 1, size(remarks)
+            call put_attribute(writer, writer%file, remarks(i)%name, remarks(i)%text)
+         end do
+      end if
       call put_table(writer, "summary", summary)
       if (present(history)) call put_table(writer, "history", history)
+      if (present(more)) then
+         do i = 1, size(more)
+            call put_table(writer, more(i)%name, more(i)%table)
+         end do
+      end if
    end subroutine build
 
    !> Make the property lists and types that all objects share
@@ -252,6 +262,12 @@ contains
       call h5gcreate_f(writer%file, name, group, status, gcpl_id=writer%group_creation)
       call note(writer, status, "create the group '"//name//"'")
       if (allocated(writer%fault)) return
+      do i = 1, table%fact_count
+         associate (fact => table%facts(i))
+            call put_number(writer, group, fact%name, fact%value)
+            call put_attribute(writer, group, fact%name//"_units", fact%unit)
+         end associate
+      end do
 
       scales = nothing
       do i = 1, table%dimension_count
@@ -320,7 +336,7 @@ contains
       call note(writer, status, "make the dimensions of '"//column%name//"'")
       if (allocated(writer%fault)) return
       creation = writer%dataset_creation
-      if (column%length > longest_plain .and. len(column%unit) > 0 .and. writer%compresses) &
+      if (writer%compresses .and. pays(column) .and. .not. writer%is_plain) &
          & call prepare_compression(writer, backwards, creation)
       call h5dcreate_f(group, link_name(column%name), file_type, space, dataset, status, &
          & dcpl_id=creation)
@@ -345,6 +361,32 @@ contains
       if (len(column%unit) > 0) call put_attribute(writer, dataset, "units", column%unit)
       call put_attribute(writer, dataset, "long_name", column%long_name)
    end subroutine put_column
+
+   !> Whether a column is worth to be compressed: it is long, and most of its values repeat the one
+   !> before
+   pure function pays(column)
+      !> The column
+      type(column_t), intent(in) :: column
+      !> Whether it is
+      logical :: pays
+      integer(c_int64_t), parameter :: bits = 0_c_int64_t
+      integer :: n, repeated
+
+      pays = .false.
+      n = column%length
+      if (n <= longest_plain) return
+      select case (column%kind)
+      case (real_column)
+         ! as bits: NaN is not equal to itself
+         repeated = count(transfer(column%reals(2:), bits, n - 1) &
+            & == transfer(column%reals(:n-1), bits, n - 1))
+      case (integer_column)
+         repeated = count(column%integers(2:) == column%integers(:n-1))
+      case default
+         repeated = 0
+      end select
+      pays = repeated > n/2
+   end function pays
 
    !> How to create a dataset that is compressed. (Text is not: HDF5 keeps it apart from the
    !> dataset.)
@@ -426,6 +468,37 @@ contains
       call h5aclose_f(attribute, status)
       call note(writer, status, "close the attribute '"//name//"'")
    end subroutine put_attribute
+
+   !> Write a number as an attribute
+   subroutine put_number(writer, object, name, number)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> The number
+      real(wp), intent(in) :: number
+      real(wp), target :: value
+      integer(hid_t) :: attribute, space
+      integer :: status
+
+      if (allocated(writer%fault)) return
+      call h5screate_f(h5s_scalar_f, space, status)
+      call note(writer, status, "make the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+      call h5acreate_f(object, name, h5t_ieee_f64le, space, attribute, status)
+      call note(writer, status, "create the attribute '"//name//"'")
+      call h5sclose_f(space, status)
+      call note(writer, status, "close the dimensions of the attribute '"//name//"'")
+      if (allocated(writer%fault)) return
+
+      value = number
+      call h5awrite_f(attribute, h5t_native_double, c_loc(value), status)
+      call note(writer, status, "write the attribute '"//name//"'")
+      call h5aclose_f(attribute, status)
+      call note(writer, status, "close the attribute '"//name//"'")
+   end subroutine put_number
 
    !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
    subroutine write_image(writer, filename, error)

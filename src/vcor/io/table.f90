@@ -20,8 +20,8 @@ module vcor_io_table
    implicit none
    private
 
-   public :: table_t, column_t, dimension_t
-   public :: new_table, add_dimension, add_column, move_in_column, check_table
+   public :: table_t, column_t, dimension_t, fact_t
+   public :: new_table, add_dimension, add_column, add_fact, move_in_column, check_table
    public :: row_count, coordinate_row, text_value
    public :: real_column, integer_column, text_column
 
@@ -62,6 +62,18 @@ module vcor_io_table
       logical :: is_index = .false.
    end type dimension_t
 
+   !> A number that holds for a table as a whole
+   type :: fact_t
+      !> Name, one word
+      character(len=:), allocatable :: name
+      !> The number
+      real(wp) :: value = 0.0_wp
+      !> Unit
+      character(len=:), allocatable :: unit
+      !> What it is, one line
+      character(len=:), allocatable :: long_name
+   end type fact_t
+
    !> A table
    type :: table_t
       !> Version of the program that made it
@@ -78,6 +90,10 @@ module vcor_io_table
       type(column_t), allocatable :: columns(:)
       !> Number of columns
       integer :: column_count = 0
+      !> Numbers that hold for all of it; those in use are 1 to `fact_count`
+      type(fact_t) :: facts(4)
+      !> Number of these
+      integer :: fact_count = 0
       !> First fault in building the table; not allocated if there is none
       character(len=:), allocatable :: fault
    end type table_t
@@ -308,6 +324,32 @@ contains
       if (allocated(table%fault)) return
       call join_texts(table%columns(table%column_count), values)
    end subroutine add_text_column
+
+   !> Add a number that holds for a table as a whole
+   pure subroutine add_fact(table, name, value, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name
+      character(len=*), intent(in) :: name
+      !> The number
+      real(wp), intent(in) :: value
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: long_name
+
+      if (table%fact_count == size(table%facts)) then
+         table%fault = "a table has more facts than there is room for"
+         return
+      end if
+      table%fact_count = table%fact_count + 1
+      associate (fact => table%facts(table%fact_count))
+         fact%name = name
+         fact%value = value
+         fact%unit = unit
+         fact%long_name = long_name
+      end associate
+   end subroutine add_fact
 
    !> Add a column of real numbers, which move
    pure subroutine move_in_real_column(table, name, values, unit, long_name)

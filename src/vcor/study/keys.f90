@@ -110,14 +110,14 @@ module vcor_study_keys
       &    "Half of the thickness; not needed without waves", "m", positive), &
       & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
       & key_t("plate", "waves", text_key, "Model of the flexural waves in the plate", &
-      &    choices="none constant relaxing frozen", default="relaxing"), &
+      &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
       & key_t("plate", "surface_radius", real_key, &
       &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       !
-      & key_t("contact", "law", text_key, "Contact law", choices="boltzmann", &
-      &    default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", choices="eq1", &
-      &    default="eq1"), &
+      & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
+      &    choices="boltzmann receding", default="boltzmann"), &
+      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", &
+      &    choices="eq1 series", default="eq1"), &
       !
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
@@ -166,6 +166,10 @@ module vcor_study_keys
       &    choices="ns us ms s min h", models="table", default="s"), &
       & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
       &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
+      & key_t("material", "valid_from", real_key, "First time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
       !
       & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
       &    choices="auto ive direct", default="auto"), &

@@ -10,10 +10,11 @@ module vcor_study_quantity
 
    public :: quantity_t, quantities, history_quantities
    public :: quantity_value, quantity_values, quantity_names, status_name
-   public :: status_t, statuses, point_invalid, point_failed, longest_status
+   public :: status_t, statuses, point_pending, point_invalid, point_failed, longest_status
 
-   !> Status of a point of a sweep beside the `contact_*` constants: its parameters describe no
-   !> impact
+   !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
+   integer, parameter :: point_pending = -1
+   !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
    !> The numerical solution failed
    integer, parameter :: point_failed = 4
@@ -43,7 +44,9 @@ module vcor_study_quantity
       'in a sweep: the values of the point make no impact', &
       'the message says which one is out of range, or contradicts others'), &
       status_t(point_failed, 'failed', 'in a sweep: the numerical solution failed', &
-      'the message says why; the other method, by solver.method, may succeed')]
+      'the message says why; the other method, by solver.method, may succeed'), &
+      status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
+      'the same command with --resume')]
 
    !> One quantity
    type :: quantity_t
@@ -141,7 +144,7 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, invalid or failed
+      !> separated, no_separation, sticks, invalid, failed or pending
       character(len=:), allocatable :: name
 
       integer :: i

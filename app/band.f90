@@ -1,0 +1,135 @@
+!> Warnings of impacts that lean on a material beyond the data that it was fitted to
+module vcor_app_band
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use vcor_app_job, only : job_t
+   use vcor_app_screen, only : short, significant
+   use vcor_app_sweep_screen, only : coordinates
+   use vcor, only : case_t, contact_separated, error_t, find_reliance, printable, quantities, &
+      reliance_t, summary_t, wp
+   implicit none
+   private
+
+   public :: warn_of_bands
+
+contains
+
+   !> Warn on stderr of materials of the bodies that the impacts lean on beyond their data.
+   !> Of a sweep the impacts of the shortest and the longest contact are looked at, in which that
+   !> shows first
+   subroutine warn_of_bands(job, summary)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Outcomes of its impacts
+      type(summary_t), intent(in) :: summary
+
+      character(len=:), allocatable :: name
+      integer :: sphere, plate
+
+      call job%case%get('sphere', 'material', name)
+      sphere = job%case%find_material(name)
+      call job%case%get('plate', 'material', name)
+      plate = job%case%find_material(name)
+      call warn_of_band(job, summary, sphere)
+      if (plate /= sphere) call warn_of_band(job, summary, plate)
+   end subroutine warn_of_bands
+
+   !> Warn of one material
+   subroutine warn_of_band(job, summary, item)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Outcomes of its impacts
+      type(summary_t), intent(in) :: summary
+      !> Number of the material
+      integer, intent(in) :: item
+
+      type(reliance_t) :: reliance, worst
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+      integer :: points(2), i, k, time, worst_point
+      logical, allocatable :: known(:)
+
+      if (.not. (job%case%given('material', 'valid_from', item) &
+         .or. job%case%given('material', 'valid_to', item))) return
+      time = place_of('contact_time')
+      allocate (known(size(summary%status)))
+      known = summary%status == contact_separated
+      if (.not. any(known)) return
+      points = [minloc(summary%values(time)%at, dim=1, mask=known), &
+         maxloc(summary%values(time)%at, dim=1, mask=known)]
+      worst_point = 0
+      do i = 1, merge(1, 2, points(1) == points(2))
+         case = job%case
+         do k = 1, size(job%sweep%grid%axes)
+            associate (axis => job%sweep%grid%axes(k), place => job%sweep%grid%places(points(i)))
+               call case%put(axis%handle, axis%values(place(k)), error)
+            end associate
+            if (allocated(error)) return
+         end do
+         call find_reliance(reliance, case, item, summary%values(time)%at(points(i)))
+         if (.not. reliance%leans) cycle
+         if (worst_point > 0) then
+            if (change(reliance) <= change(worst)) cycle
+         end if
+         worst = reliance
+         worst_point = points(i)
+      end do
+      if (worst_point > 0) write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
+         //message(worst, worst_point)
+
+   contains
+
+      !> Change of cor by what is held constant
+      pure function change(found)
+         !> What was found
+         type(reliance_t), intent(in) :: found
+         !> The change, large where the other impact has no result
+         real(wp) :: change
+
+         change = huge(change)
+         if (found%solved) change = abs(found%held - found%cor)
+      end function change
+
+      !> What is said
+      function message(found, point) result(text)
+         !> What was found
+         type(reliance_t), intent(in) :: found
+         !> Number of the point
+         integer, intent(in) :: point
+         !> One line
+         character(len=:), allocatable :: text
+
+         character(len=:), allocatable :: name, place
+
+         call job%case%get('material', 'name', name, item)
+         place = ''
+         if (job%sweep%is_grid()) place = ' (at '//coordinates(job, point)//')'
+         text = "the impact leans on '"//printable(name)//"' beyond the data it was fitted to ("
+         if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'
+         if (all(found%ends)) text = text//', '
+         if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
+         text = text//'): with its modulus held constant there '
+         if (found%solved) then
+            associate (cor => summary%values(place_of('cor'))%at(point))
+               text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
+                  //trim(adjustl(significant(cor, 5)))//' to ' &
+                  //trim(adjustl(significant(cor + found%held - found%cor, 5)))//place
+            end associate
+         else
+            text = text//'it has no result'//place
+         end if
+      end function message
+   end subroutine warn_of_band
+
+   !> Place of a quantity in a summary
+   pure function place_of(name) result(place)
+      !> Name of the quantity
+      character(len=*), intent(in) :: name
+      !> Its place
+      integer :: place
+
+      do place = 1, size(quantities)
+         if (quantities(place)%name == name) return
+      end do
+   end function place_of
+
+end module vcor_app_band

@@ -1,0 +1,137 @@
+!> What the screen shows of a fit
+module vcor_app_fit_screen
+   use vcor_app_screen, only : short, significant
+   use vcor, only : fit_t, integer_text, printable, samples_t, state_bound, &
+      state_fixed, version, wp
+   implicit none
+   private
+
+   public :: fit_report, fit_remarks
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+
+contains
+
+   !> Report of a fit
+   function fit_report(fit, source, note, samples, tail) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Data file, or case
+      character(len=*), intent(in) :: source
+      !> What was read
+      character(len=*), intent(in) :: note
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Notes and files, one to a line
+      character(len=*), intent(in) :: tail
+      !> Text of several lines
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = 'vcor '//version//'  '//printable(source)//nl//note//nl//nl//'  ' &
+         //fit%data%model//terms_of(fit)//nl
+      do i = 1, size(fit%parameters)
+         text = text//line(fit, i)
+      end do
+      text = text//nl &
+         //'  rms misfit          '//percent(fit%rms)//nl &
+         //'  largest misfit      '//percent(fit%largest)//place_of(fit, samples)//nl &
+         //'  band of the data    '//short(samples%first_time())//' to ' &
+         //short(samples%last_time())//' s'
+      if (samples%dynamic) text = text//', from '//short(samples%at(1))//' to ' &
+         //short(samples%at(size(samples%at)))//' rad/s'
+      text = text//nl//tail//nl
+   end function fit_report
+
+   !> Remarks before a group: what it was fitted to and how well
+   function fit_remarks(fit, source, samples) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Data file, or case
+      character(len=*), intent(in) :: source
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Lines that begin with an exclamation mark
+      character(len=:), allocatable :: text
+
+      text = '! vcor '//version//' fit of '//fit%data%model//terms_of(fit)//' to ' &
+         //printable(source)//nl &
+         //'! rms misfit '//trim(adjustl(percent(fit%rms)))//', largest ' &
+         //trim(adjustl(percent(fit%largest)))//place_of(fit, samples)//nl
+   end function fit_remarks
+
+   !> Number of terms of a Prony series
+   function terms_of(fit) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> In words; nothing for other models
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (fit%data%model /= 'prony') return
+      text = ', '//integer_text(size(fit%data%moduli))//' terms'
+      if (size(fit%data%moduli) == 1) text = ', 1 term'
+   end function terms_of
+
+   !> Where the largest misfit is
+   pure function place_of(fit, samples) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> In words
+      character(len=:), allocatable :: text
+
+      if (.not. samples%dynamic) then
+         text = ' at '//short(fit%largest_at)//' s'
+      else if (fit%largest_in_loss) then
+         text = ' of the loss modulus at '//short(fit%largest_at)//' rad/s'
+      else
+         text = ' of the storage modulus at '//short(fit%largest_at)//' rad/s'
+      end if
+   end function place_of
+
+   !> A ratio in percent
+   pure function percent(ratio) result(text)
+      !> The ratio
+      real(wp), intent(in) :: ratio
+      !> Its text
+      character(len=:), allocatable :: text
+
+      text = short(100.0_wp*ratio)//' %'
+   end function percent
+
+   !> Line of a parameter
+   function line(fit, i) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Number of the parameter
+      integer, intent(in) :: i
+      !> The line
+      character(len=:), allocatable :: text
+
+      character(len=24) :: name
+      character(len=8) :: unit
+
+      associate (parameter => fit%parameters(i))
+         name = parameter%name
+         if (fit%data%model == 'prony' .and. i > 1) &
+            name = trim(parameter%name)//'('//integer_text(i/2)//')'
+         unit = parameter%unit
+         if (unit == '1') unit = ''
+         text = '    '//name//significant(parameter%value)//' '//unit
+         select case (parameter%state)
+         case (state_fixed)
+            text = text//'given'
+         case (state_bound)
+            text = text//'at its bound, the data say no more'
+         case default
+            text = text//'+- '//short(parameter%error)
+         end select
+      end associate
+      text = text//nl
+   end function line
+
+end module vcor_app_fit_screen

@@ -1,0 +1,178 @@
+!> Moduli of the materials of a case: computed, written to files and shown
+module vcor_app_material
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_app_cli, only : request_t
+   use vcor_app_job, only : job_t
+   use vcor_app_screen, only : short, significant
+   use vcor_app_window, only : find_window, take_first_point, window_t
+   use vcor, only : case_t, compute_moduli, curves_t, error_t, integer_text, loss_tangent, &
+      make_directory, moduli_t, moduli_tables, named_table_t, printable, table_t, version, wp, &
+      write_csv, write_hdf5, write_stdout
+   implicit none
+   private
+
+   public :: show_materials
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+
+contains
+
+   !> Compute, write and show the moduli of a case
+   subroutine show_materials(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Unallocated on success, with or without an impact that ends
+      type(error_t), allocatable, intent(out) :: error
+
+      type(case_t) :: case
+      type(moduli_t) :: moduli
+      type(table_t) :: summary
+      character(len=:), allocatable :: title, files, notes
+      type(window_t) :: window
+
+      call take_first_point(job, case, notes, error)
+      if (allocated(error)) return
+      call find_window(job, window, notes)
+      call compute_moduli(moduli, case, window%contact_time, window%reference, request%range, error)
+      if (allocated(error)) return
+
+      call case%get('case', 'title', title)
+      call write_files(request, job, case, title, moduli, summary, files, error)
+      if (allocated(error) .or. request%quiet) return
+      call write_stdout(report(job%case%source, title, moduli)//notes//files//nl, error)
+   end subroutine show_materials
+
+   !> Write the files
+   subroutine write_files(request, job, case, title, moduli, summary, files, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> What is written, and where
+      type(job_t), intent(in) :: job
+      !> The case, for the heads of the files
+      type(case_t), intent(in) :: case
+      !> Its title
+      character(len=*), intent(in) :: title
+      !> The moduli
+      type(moduli_t), intent(in) :: moduli
+      !> A row per material
+      type(table_t), intent(out) :: summary
+      !> Files written, one to a line
+      character(len=:), allocatable, intent(out) :: files
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(named_table_t) :: curves(2)
+      character(len=:), allocatable :: directory
+      integer :: i
+
+      files = ''
+      curves(1)%name = 'relaxation'
+      curves(2)%name = 'dynamic'
+      call moduli_tables(moduli, title, case%to_text(complete=.true.), summary, curves(1)%table, &
+         curves(2)%table)
+      if (.not. any(job%writes)) return
+      call case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call make_directory(directory, error)
+      if (.not. allocated(error) .and. job%writes(1)) &
+         call write_csv(job%path//trim(job%endings(1)), summary, error)
+      do i = 1, size(curves)
+         if (.not. allocated(error) .and. job%writes(i + 1)) &
+            call write_csv(job%path//trim(job%endings(i + 1)), curves(i)%table, error)
+      end do
+      if (.not. allocated(error) .and. job%writes(4)) &
+         call write_hdf5(job%path//trim(job%endings(4)), summary, error=error, more=curves)
+      if (allocated(error)) return
+      do i = 1, size(job%endings)
+         if (job%writes(i)) &
+            files = files//'  written '//job%path//trim(job%endings(i))//nl
+      end do
+   end subroutine write_files
+
+   !> What the screen shows
+   function report(filename, title, moduli) result(text)
+      !> Case file
+      character(len=*), intent(in) :: filename
+      !> Title of the case
+      character(len=*), intent(in) :: title
+      !> The moduli
+      type(moduli_t), intent(in) :: moduli
+      !> Text of several lines
+      character(len=:), allocatable :: text
+
+      integer :: i, n
+
+      text = 'vcor '//version//'  '//filename//nl
+      if (len_trim(title) > 0) text = text//trim(title)//nl
+      n = size(moduli%times)
+      text = text//nl//'  '//integer_text(n)//' times from '//short(moduli%times(1))//' to ' &
+         //short(moduli%times(n))//' s'
+      if (moduli%contact_time > 0.0_wp) text = text//', the impact up to t0 = ' &
+         //trim(adjustl(significant(moduli%contact_time)))//' s'
+      text = text//nl//'  '//integer_text(n)//' frequencies from '//short(moduli%frequencies(1)) &
+         //' to '//short(moduli%frequencies(n))//' rad/s'
+      if (moduli%contact_time > 0.0_wp) text = text//', the impact from 2 pi/t0 = ' &
+         //trim(adjustl(significant(moduli%min_frequency)))//' rad/s'
+      text = text//nl
+      do i = 1, size(moduli%materials)
+         associate (material => moduli%materials(i))
+            text = text//nl//'  '//printable(material%name)//', '//material%model//nl
+            if (material%rigid) then
+               text = text//'    does not deform: no moduli'//nl
+            else
+               text = text//values_of(material)
+            end if
+         end associate
+      end do
+      text = text//nl
+   end function report
+
+   !> Values of one material
+   function values_of(curves) result(text)
+      !> Its curves
+      type(curves_t), intent(in) :: curves
+      !> Lines
+      character(len=:), allocatable :: text
+
+      text = line('glassy modulus', 'E(0)', curves%glassy, 'Pa') &
+         //line('rubbery modulus', 'E(inf)', curves%rubbery, 'Pa')
+      if (curves%viscosity > 0.0_wp) &
+         text = text//line('dashpot in parallel', 'eta', curves%viscosity, 'Pa s')
+      if (ieee_is_nan(curves%at_contact_time)) return
+      text = text//line('relaxation modulus at t0', 'E(t0)', curves%at_contact_time, 'Pa') &
+         //line('storage modulus at 2 pi/t0', "E'", curves%storage_at_min, 'Pa') &
+         //line('loss modulus at 2 pi/t0', "E''", curves%loss_at_min, 'Pa') &
+         //line('loss tangent at 2 pi/t0', 'tan(d)', &
+         loss_tangent(curves%storage_at_min, curves%loss_at_min), '')
+   end function values_of
+
+   !> One line of a table
+   function line(meaning, symbol, value, unit) result(text)
+      !> What it is
+      character(len=*), intent(in) :: meaning
+      !> Its symbol
+      character(len=*), intent(in) :: symbol
+      !> Its value
+      real(wp), intent(in) :: value
+      !> Its unit
+      character(len=*), intent(in) :: unit
+      !> The line
+      character(len=:), allocatable :: text
+
+      character(len=32) :: wide
+      character(len=8) :: narrow
+
+      wide = meaning
+      narrow = symbol
+      if (value > huge(value)) then
+         text = '    '//wide//narrow//'        infinite'
+      else
+         text = trim('    '//wide//narrow//significant(value)//' '//unit)
+      end if
+      text = text//nl
+   end function line
+
+end module vcor_app_material

@@ -1,0 +1,192 @@
+!> A material of a case in place of measured data
+module vcor_app_sampling
+   use vcor_app_argument, only : append_word
+   use vcor_app_cli, only : request_t
+   use vcor_app_job, only : job_t, prepare
+   use vcor_app_window, only : find_window, take_first_point, window_t
+   use vcor, only : build_material, case_t, error_input, error_t, error_usage, file_exists, &
+      integer_text, material_data_t, material_t, printable, put_material, raise, sampled_times, &
+      samples_t, solve_case, outcome_t, contact_separated, time_range_t, wp
+   implicit none
+   private
+
+   public :: sampled_t, sample_model, compare_impacts
+
+   !> Decades before and after the contact time that are sampled unless the user says otherwise
+   integer, parameter :: before = 5, after = 1
+
+   !> What was sampled
+   type :: sampled_t
+      !> The case
+      type(case_t) :: case
+      !> Number of the material
+      integer :: item = 0
+      !> Its name
+      character(len=:), allocatable :: name
+      !> Its density [kg/m3]; 0: not given
+      real(wp) :: density = 0.0_wp
+      !> Its Poisson's ratio [-]
+      real(wp) :: poisson_ratio = 0.0_wp
+      !> The impact with it
+      type(window_t) :: window
+      !> Notes, one to a line
+      character(len=:), allocatable :: notes
+   end type sampled_t
+
+contains
+
+   !> Sample a material of a case
+   subroutine sample_model(request, sampled, samples, note, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> What was sampled
+      type(sampled_t), intent(out) :: sampled
+      !> The samples
+      type(samples_t), intent(out) :: samples
+      !> What they are, in words
+      character(len=:), allocatable, intent(out) :: note
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(request_t) :: reading
+      type(job_t), allocatable :: jobs(:)
+      type(time_range_t) :: range
+      class(material_t), allocatable :: material
+      character(len=:), allocatable :: filename, name
+      complex(wp), allocatable :: modulus(:)
+      integer :: n
+
+      call take_name(request%fit%source, filename, name)
+      reading = request
+      deallocate (reading%files)
+      allocate (reading%files(0))
+      call append_word(reading%files, filename)
+      call prepare(reading, jobs, error)
+      if (allocated(error)) return
+      call take_first_point(jobs(1), sampled%case, sampled%notes, error)
+      if (allocated(error)) return
+      call find_material(sampled, filename, name, error)
+      if (allocated(error)) return
+      call build_material(sampled%case, sampled%item, material, error)
+      if (allocated(error)) return
+      sampled%name = material%name
+      sampled%density = material%density
+      sampled%poisson_ratio = material%poisson_ratio
+      if (material%rigid .or. material%elastic()) then
+         call raise(error, error_input, filename//": the material '"//printable(material%name) &
+            //"' does not relax: nothing is there to be fitted")
+      else if (material%viscosity > 0.0_wp) then
+         call raise(error, error_input, filename//": the material '"//printable(material%name) &
+            //"' has a dashpot in parallel (viscosity), expected one that relaxes only")
+      end if
+      if (allocated(error)) return
+      call find_window(jobs(1), sampled%window, sampled%notes)
+
+      range = request%range
+      if (.not. range%first > 0.0_wp) &
+         range%first = 10.0_wp**(floor(log10(sampled%window%reference)) - before)
+      if (.not. range%last > 0.0_wp) &
+         range%last = 10.0_wp**(ceiling(log10(sampled%window%reference)) + after)
+      if (.not. range%first < range%last) then
+         call raise(error, error_usage, 'expected --from before --to')
+         return
+      end if
+      samples%dynamic = request%fit%dynamic
+      if (samples%dynamic) range = time_range_t(1.0_wp/range%last, 1.0_wp/range%first, range%points)
+      samples%at = sampled_times(range)
+      n = size(samples%at)
+      allocate (samples%modulus(n), samples%loss(merge(n, 0, samples%dynamic)))
+      note = integer_text(n)//' samples of '//printable(material%name)//', '
+      if (samples%dynamic) then
+         allocate (modulus(n))
+         modulus = material%complex_modulus(cmplx(0.0_wp, samples%at, wp))
+         samples%modulus = real(modulus, wp)
+         samples%loss = aimag(modulus)
+         note = note//'angular frequency [rad/s], storage modulus [Pa], loss modulus [Pa]'
+      else
+         samples%modulus = material%relaxation(samples%at)
+         note = note//'time [s], relaxation modulus [Pa]'
+      end if
+      if (.not. (all(samples%modulus > tiny(1.0_wp)) .and. all(samples%loss > tiny(1.0_wp)))) &
+         call raise(error, error_input, filename//': the modulus vanishes in the range of the ' &
+            //'samples, expected a narrower one (--from, --to)')
+   end subroutine sample_model
+
+   !> Take CASE.nml:NAME apart; a file of this name is a case
+   subroutine take_name(source, filename, name)
+      !> What the user gave
+      character(len=*), intent(in) :: source
+      !> The case file
+      character(len=:), allocatable, intent(out) :: filename
+      !> The material, empty where none is named
+      character(len=:), allocatable, intent(out) :: name
+
+      integer :: mark
+
+      filename = source
+      name = ''
+      if (file_exists(source)) return
+      mark = index(source, ':', back=.true.)
+      if (mark < 2) return
+      filename = source(:mark - 1)
+      name = source(mark + 1:)
+   end subroutine take_name
+
+   !> Find the material: the one that is named, else that of the plate unless it is rigid
+   subroutine find_material(sampled, filename, name, error)
+      !> What is sampled, its case set
+      type(sampled_t), intent(inout) :: sampled
+      !> Name of the case file
+      character(len=*), intent(in) :: filename
+      !> Name of the material, or empty
+      character(len=*), intent(in) :: name
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: other, model
+
+      other = name
+      if (name == '') then
+         call sampled%case%get('plate', 'material', other)
+         sampled%item = sampled%case%find_material(other)
+         call sampled%case%get('material', 'model', model, sampled%item)
+         if (model == 'rigid' .or. model == 'elastic') &
+            call sampled%case%get('sphere', 'material', other)
+      end if
+      sampled%item = sampled%case%find_material(other)
+      if (sampled%item == 0) call raise(error, error_usage, '--from-model: there is no material ' &
+         //"'"//printable(other)//"' in "//printable(filename))
+   end subroutine find_material
+
+   !> The impact of the case with the material that was sampled and with the one that was found
+   function compare_impacts(sampled, data) result(text)
+      !> What was sampled
+      type(sampled_t), intent(in) :: sampled
+      !> The material that was found
+      type(material_data_t), intent(in) :: data
+      !> Line, or nothing where the impact has no result
+      character(len=:), allocatable :: text
+
+      type(case_t) :: case
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      character(len=96) :: line
+
+      text = ''
+      if (.not. sampled%window%contact_time > 0.0_wp) return
+      case = sampled%case
+      call put_material(case, sampled%item, data)
+      call solve_case(case, outcome, error)
+      if (allocated(error)) then
+         text = '  the impact of the case cannot be solved with the fit'//new_line('a')
+      else if (outcome%status /= contact_separated) then
+         text = '  the impact of the case does not end in separation with the fit'//new_line('a')
+      else
+         write (line, '(a, f10.7, a, f10.7, a, es9.1)') '  cor of the impact   ', &
+            sampled%window%cor, '  with the fit ', outcome%cor, '  difference ', &
+            outcome%cor - sampled%window%cor
+         text = trim(line)//new_line('a')
+      end if
+   end function compare_impacts
+
+end module vcor_app_sampling

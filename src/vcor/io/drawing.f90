@@ -1,0 +1,168 @@
+!> From a figure to its file: script and data are written, gnuplot draws
+!>
+!> All is made in a folder of its own beside the file, `vcor-PROCESS.tmp`, and renamed when it is
+!> complete, so that no half figure is ever seen. Gnuplot runs without the settings of the user,
+!> which would make a figure look different from machine to machine.
+module vcor_io_drawing
+   use, intrinsic :: iso_c_binding, only : c_int
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_figure, only : figure_t
+   use vcor_io_file, only : create_file, discard, file_exists, join_path, make_directory, &
+      & output_file_t, quoted_path, write_file
+   use vcor_io_gnuplot, only : data_text, script_text
+   use vcor_io_posix, only : c_getpid, c_remove, c_rename, c_text, last_errno, system_reason
+   use vcor_study_text, only : integer_text
+   implicit none
+   private
+
+   public :: draw, has_gnuplot, split_path
+
+contains
+
+   !> Draw a figure
+   !>
+   !> Where gnuplot is missing, or fails, the script and its data are left and the error names the
+   !> script.
+   subroutine draw(figure, path, format, keep, error)
+      !> The figure
+      type(figure_t), intent(in) :: figure
+      !> Its file without the extension; replaced if it is there
+      character(len=*), intent(in) :: path
+      !> One of `formats` of `vcor_io_gnuplot`, which is the extension too
+      character(len=*), intent(in) :: format
+      !> Whether script and data, `path.gp` and `path.dat`, are left
+      logical, intent(in) :: keep
+      !> Error of code `error_file`
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: directory, folder, name
+      integer(c_int) :: ignored
+      logical :: done, installed
+
+      call split_path(path, directory, name)
+      call make_directory(directory, error)
+      if (.not. allocated(error)) call probe(path//"."//format, error)
+      if (.not. allocated(error)) call probe(path//".gp", error)
+      if (.not. allocated(error)) call probe(path//".dat", error)
+      if (allocated(error)) return
+      folder = join_path(directory, "vcor-"//integer_text(int(c_getpid()))//".tmp")
+      call make_directory(folder, error)
+      if (allocated(error)) return
+
+      call write_file(join_path(folder, name//".gp"), script_text(figure, name, format), error)
+      if (.not. allocated(error)) &
+         & call write_file(join_path(folder, name//".dat"), data_text(figure), error)
+      if (.not. allocated(error)) then
+         installed = has_gnuplot()
+         done = .false.
+         if (installed) call run_gnuplot(join_path(folder, name), format, done)
+         if (done) call take_over(format)
+         if (keep .or. .not. done) then
+            call take_over("dat")
+            call take_over("gp")
+         end if
+         if (.not. allocated(error) .and. .not. installed) then
+            call raise(error, error_file, "cannot draw "//quoted_path(path//"."//format) &
+               & //": there is no gnuplot (Debian's package gnuplot-nox); its script is written, " &
+               & //quoted_path(path//".gp"))
+         else if (.not. allocated(error) .and. .not. done) then
+            call raise(error, error_file, "cannot draw "//quoted_path(path//"."//format) &
+               & //": gnuplot fails; to see why: gnuplot "//quoted_path(path//".gp"))
+         end if
+      end if
+
+      ignored = c_remove(c_text(join_path(folder, name//"."//format)))
+      ignored = c_remove(c_text(join_path(folder, name//".dat")))
+      ignored = c_remove(c_text(join_path(folder, name//".gp")))
+      ignored = c_remove(c_text(folder))
+
+   contains
+
+      !> Give a file its real name
+      subroutine take_over(extension)
+         !> Its extension
+         character(len=*), intent(in) :: extension
+
+         if (allocated(error)) return
+         if (c_rename(c_text(join_path(folder, name//"."//extension)), &
+            & c_text(path//"."//extension)) /= 0) &
+            & call raise(error, error_file, "cannot write "//quoted_path(path//"."//extension) &
+            & //": "//system_reason(last_errno()))
+      end subroutine take_over
+   end subroutine draw
+
+   !> Refuse a name under which no file can be written; nothing is left of the try
+   subroutine probe(path, error)
+      !> Name of the file
+      character(len=*), intent(in) :: path
+      !> Set if there can be no such file
+      type(error_t), allocatable, intent(out) :: error
+      type(output_file_t) :: file
+
+      call create_file(file, path, error)
+      if (.not. allocated(error)) call discard(file)
+   end subroutine probe
+
+   !> Whether gnuplot is in the PATH
+   function has_gnuplot() result(has)
+      !> True if it is
+      logical :: has
+      integer :: code, status
+
+      code = 1
+      call execute_command_line("command -v gnuplot >/dev/null 2>&1", exitstat=code, cmdstat=status)
+      has = status == 0 .and. code == 0
+   end function has_gnuplot
+
+   !> Let gnuplot draw
+   subroutine run_gnuplot(path, format, done)
+      !> Script without its extension
+      character(len=*), intent(in) :: path
+      !> Format of the figure
+      character(len=*), intent(in) :: format
+      !> Whether there is a figure now
+      logical, intent(out) :: done
+      integer :: code, status
+
+      code = 1
+      call execute_command_line("gnuplot --default-settings "//for_shell(path//".gp") &
+         & //" </dev/null >/dev/null 2>&1", exitstat=code, cmdstat=status)
+      done = file_exists(path//"."//format)
+      done = done .and. status == 0 .and. code == 0
+   end subroutine run_gnuplot
+
+   !> A word as the shell takes it
+   pure function for_shell(word) result(between)
+      !> Any word
+      character(len=*), intent(in) :: word
+      !> The word in single quotes
+      character(len=:), allocatable :: between
+      integer :: i
+
+      between = "'"
+      if (index(word, "-") == 1) between = "'./"
+      do i = 1, len(word)
+         if (word(i:i) == "'") then
+            between = between//"'\''"
+         else
+            between = between//word(i:i)
+         end if
+      end do
+      between = between//"'"
+   end function for_shell
+
+   !> Folder and name of a path
+   pure subroutine split_path(path, directory, name)
+      !> The path
+      character(len=*), intent(in) :: path
+      !> Its folder, with the slash; empty: the current one
+      character(len=:), allocatable, intent(out) :: directory
+      !> What comes after it
+      character(len=:), allocatable, intent(out) :: name
+      integer :: slash
+
+      slash = index(path, "/", back=.true.)
+      directory = path(:slash)
+      name = path(slash+1:)
+   end subroutine split_path
+
+end module vcor_io_drawing

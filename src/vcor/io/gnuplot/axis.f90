@@ -1,0 +1,171 @@
+!> Axes of gnuplot scripts: ranges, ticks and labels; texts and numbers as gnuplot reads them
+module vcor_io_gnuplot_axis
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_io_figure, only : figure_axis_t, panel_t
+   use vcor_kinds, only : wp
+   use vcor_study_buffer, only : buffer_t
+   use vcor_study_text, only : real_text
+   implicit none
+   private
+
+   public :: put_axis, across, along, in_quotes, number
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line("a")
+   !> Decades of a logarithmic axis from which on only powers of ten are labelled
+   real(wp), parameter :: many_decades = 2.5_wp
+   !> Decades up to which it is drawn linear, as it would have hardly a label
+   real(wp), parameter :: few_decades = 0.7_wp
+
+   !> Room below and above the values on a vertical logarithmic axis, as a share of its length
+   real(wp), parameter :: margin = 0.04_wp
+
+contains
+
+   !> Range of the horizontal values of a panel
+   pure function across(panel) result(range)
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Least and largest
+      real(wp) :: range(2)
+      integer :: i
+
+      range = [huge(1.0_wp), -huge(1.0_wp)]
+      do i = 1, panel%curve_count
+         call widen(range, panel%curves(i)%x)
+      end do
+   end function across
+
+   !> Range of the vertical values of a panel
+   pure function along(panel, at_right) result(range)
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Of which axis
+      logical, intent(in) :: at_right
+      !> Least and largest
+      real(wp) :: range(2)
+      integer :: i
+
+      range = [huge(1.0_wp), -huge(1.0_wp)]
+      do i = 1, panel%curve_count
+         if (panel%curves(i)%at_right .eqv. at_right) call widen(range, panel%curves(i)%y)
+      end do
+   end function along
+
+   !> Widen a range to hold some values
+   pure subroutine widen(range, values)
+      !> Least and largest
+      real(wp), intent(inout) :: range(2)
+      !> Values; what is not finite does not count
+      real(wp), intent(in) :: values(:)
+      integer :: i
+
+      do i = 1, size(values)
+         if (.not. ieee_is_finite(values(i))) cycle
+         range(1) = min(range(1), values(i))
+         range(2) = max(range(2), values(i))
+      end do
+   end subroutine widen
+
+   !> Label, scale, range and ticks of an axis
+   subroutine put_axis(buffer, name, axis, range)
+      !> The script
+      type(buffer_t), intent(inout) :: buffer
+      !> x, y or y2
+      character(len=*), intent(in) :: name
+      !> The axis
+      type(figure_axis_t), intent(in) :: axis
+      !> Least and largest value of the data
+      real(wp), intent(in) :: range(2)
+      real(wp), parameter :: steps(3) = [1.0_wp, 2.0_wp, 5.0_wp]
+      character(len=:), allocatable :: ticks
+      real(wp) :: ends(2), tick
+      integer :: i, power
+
+      call buffer%add("set "//name//"label "//in_quotes(axis%label))
+      if (name == "x") call buffer%add(" offset 0, 0.4")
+      call buffer%add(nl)
+      ends = range
+      if (axis%upper > axis%lower) ends = [axis%lower, axis%upper]
+      if (.not. axis%is_log) then
+         if (axis%upper > axis%lower .or. (name == "x" .and. ends(2) > ends(1))) then
+            ! a range that begins near zero begins there
+            if (name == "x" .and. ends(1) > 0.0_wp .and. ends(1) < 0.1_wp*ends(2) &
+               & .and. .not. axis%upper > axis%lower) ends(1) = 0.0_wp
+            call buffer%add("set "//name//"range ["//number(ends(1))//":" &
+               & //number(ends(2))//"]"//nl)
+         else
+            call buffer%add("set "//name//"range [*:*]"//nl)
+         end if
+         call buffer%add("set format "//name//" '%g'"//nl//"set "//name//"tics autofreq"//nl)
+         return
+      end if
+
+      if (.not. ends(2) > ends(1)) then
+         call buffer%add("set logscale "//name//nl//"set "//name//"range [*:*]"//nl)
+         return
+      end if
+      ! lines do not run along the frame
+      if (name /= "x" .and. .not. axis%upper > axis%lower) &
+         & ends = ends*(ends(2)/ends(1))**[-margin, margin]
+      call buffer%add("set "//name//"range ["//number(ends(1))//":"//number(ends(2))//"]"//nl)
+      if (log10(ends(2)/ends(1)) <= few_decades) then
+         call buffer%add("set format "//name//" '%g'"//nl//"set "//name//"tics autofreq"//nl)
+         return
+      end if
+      call buffer%add("set logscale "//name//nl)
+      if (log10(ends(2)/ends(1)) >= many_decades) then
+         call buffer%add("set format "//name//" '10^{%L}'"//nl//"set "//name//"tics autofreq"//nl)
+         return
+      end if
+      ! 1, 2, 5, 10 ...: powers of ten alone would be too few
+      ticks = ""
+      do power = floor(log10(ends(1))), ceiling(log10(ends(2)))
+         do i = 1, size(steps)
+            tick = steps(i)*10.0_wp**power
+            if (tick < ends(1)*(1.0_wp - 1.0e-9_wp) .or. tick > ends(2)*(1.0_wp + 1.0e-9_wp)) cycle
+            if (ticks /= "") ticks = ticks//", "
+            ticks = ticks//number(tick)
+         end do
+      end do
+      call buffer%add("set format "//name//" '%g'"//nl//"set "//name//"tics ("//ticks//")"//nl)
+   end subroutine put_axis
+
+   !> A text as gnuplot reads it
+   pure function in_quotes(text) result(between)
+      !> Any text of one line
+      character(len=*), intent(in) :: text
+      !> The text in single quotes, in which nothing has a meaning; single quotes in double ones,
+      !> since gnuplot 5.4 stumbles over two of them doubled
+      character(len=:), allocatable :: between
+      integer :: i
+
+      between = "'"
+      do i = 1, len_trim(text)
+         if (text(i:i) == "'") then
+            between = between//"'.""'"".'"
+         else
+            between = between//text(i:i)
+         end if
+      end do
+      between = between//"'"
+   end function in_quotes
+
+   !> A number with ten digits
+   pure function number(value) result(text)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Its shortest text, `NaN` where it is not finite
+      character(len=:), allocatable :: text
+      character(len=24) :: buffer
+      real(wp) :: rounded
+
+      rounded = value
+      if (ieee_is_finite(value)) then
+         write(buffer, "(es24.9e3)") value
+         read(buffer, *) rounded
+      end if
+      text = real_text(rounded)
+   end function number
+
+end module vcor_io_gnuplot_axis

@@ -1,0 +1,271 @@
+!> What the columns of a data file hold: their names, and the units that stand beside or below them
+!>
+!> A name may bring its unit: `E [MPa]`, `E (MPa)`, `E/MPa`. A second line of units, as other
+!> fitting tools write it, and lines `# name [unit] ...` before the header, as vcor writes them, do
+!> as well.
+module vcor_io_header
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_io_columns, only : split
+   use vcor_study_keys, only : contains_word, join_words
+   use vcor_study_nearest, only : nearest_name
+   use vcor_study_text, only : lower, shortened
+   use vcor_study_units, only : frequency_units, modulus_units, time_units
+   implicit none
+   private
+
+   public :: header_t, column_name_t, read_names, read_units, note_comment, role_of, check_unit
+   public :: most_columns, longest_word
+   public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss
+
+   !> Most columns of a file
+   integer, parameter :: most_columns = 64
+   !> Letters of the longest name or unit
+   integer, parameter :: longest_word = 40
+   !> What a column holds: something else
+   integer, parameter :: role_none = 0
+   !> Times
+   integer, parameter :: role_time = 1
+   !> Frequencies, or angular frequencies
+   integer, parameter :: role_frequency = 2
+   !> Relaxation moduli
+   integer, parameter :: role_relaxation = 3
+   !> Storage moduli
+   integer, parameter :: role_storage = 4
+   !> Loss moduli
+   integer, parameter :: role_loss = 5
+
+   !> Names of columns; moduli that begin with g are shear moduli
+   character(len=*), parameter :: time_names = " t time times "
+   character(len=*), parameter :: cycle_names = " f freq "
+   character(len=*), parameter :: angular_names = " omega w angular_frequency "//char(207) &
+      //char(137)//" "
+   character(len=*), parameter :: frequency_names = cycle_names//angular_names//"frequency nu "
+   character(len=*), parameter :: relaxation_names = " e g modulus relaxation_modulus e_relax " &
+      //"g_relax e_t g_t young_modulus young's_modulus shear_modulus relaxation "
+   character(len=*), parameter :: storage_names = " e' g' e_stor g_stor e_storage g_storage " &
+      //"storage storage_modulus e_prime g_prime "
+   character(len=*), parameter :: loss_names = " e'' g'' e"" g"" e_loss g_loss loss " &
+      //"loss_modulus e_double_prime g_double_prime "
+
+   !> One column
+   type :: column_name_t
+      !> Its name, lower case, `_` for blanks
+      character(len=longest_word) :: name = ""
+      !> Its unit; blank where it is not told
+      character(len=longest_word) :: unit = ""
+      !> Line that tells the unit, or else the name
+      integer :: line = 0
+   end type column_name_t
+
+   !> What is known of the columns before the first number
+   type :: header_t
+      !> Lines of the header that were read, 0 to 2
+      integer :: lines = 0
+      !> Number of the columns
+      integer :: count = 0
+      !> The columns
+      type(column_name_t) :: columns(most_columns)
+      !> Units from comments, by name
+      type(column_name_t) :: hints(most_columns)
+      !> Number of these
+      integer :: hint_count = 0
+   end type header_t
+
+contains
+
+   !> Keep what a comment says about the unit of a column: `name [unit] ...`
+   pure subroutine note_comment(header, comment)
+      !> The header
+      type(header_t), intent(inout) :: header
+      !> The comment
+      character(len=*), intent(in) :: comment
+
+      character(len=:), allocatable :: text
+      integer :: left, right
+
+      text = adjustl(comment)
+      left = index(text, " [")
+      right = index(text, "]")
+      if (left < 2 .or. right < left + 3 .or. header%hint_count == most_columns) return
+      if (index(text(:left - 1), " ") > 0) return
+      header%hint_count = header%hint_count + 1
+      header%hints(header%hint_count) = &
+         column_name_t(lower(text(:left - 1)), text(left + 2:right - 1))
+   end subroutine note_comment
+
+   !> Read the line of the names
+   pure subroutine read_names(header, content, line)
+      !> The header
+      type(header_t), intent(inout) :: header
+      !> The line
+      character(len=*), intent(in) :: content
+      !> Its number
+      integer, intent(in) :: line
+
+      integer :: i, k, columns, from(most_columns), to(most_columns)
+      character(len=:), allocatable :: cell
+
+      call split(content, columns, from, to)
+      header%lines = 1
+      header%count = 0
+      do i = 1, min(columns, most_columns)
+         cell = unquoted(content(from(i):to(i)))
+         if (scan(content, ",;") == 0 .and. scan(cell, "[(") == 1 .and. header%count > 0) then
+            ! a unit after a blank
+            header%columns(header%count)%unit = without_brackets(cell)
+            cycle
+         end if
+         header%count = header%count + 1
+         call take_apart(cell, header%columns(header%count))
+         header%columns(header%count)%line = line
+      end do
+      do i = 1, header%count
+         do k = 1, header%hint_count
+            if (header%columns(i)%unit == "" .and. header%hints(k)%name == header%columns(i)%name) &
+               header%columns(i)%unit = header%hints(k)%unit
+         end do
+      end do
+   end subroutine read_names
+
+   !> Read the line of the units
+   pure subroutine read_units(header, content, line)
+      !> The header
+      type(header_t), intent(inout) :: header
+      !> The line
+      character(len=*), intent(in) :: content
+      !> Its number
+      integer, intent(in) :: line
+
+      integer :: i, columns, from(most_columns), to(most_columns)
+      character(len=:), allocatable :: cell
+
+      call split(content, columns, from, to)
+      header%lines = 2
+      do i = 1, min(columns, header%count)
+         cell = without_brackets(unquoted(content(from(i):to(i))))
+         if (cell == "" .or. cell == "-") cycle
+         header%columns(i)%unit = cell
+         header%columns(i)%line = line
+      end do
+   end subroutine read_units
+
+   !> A cell without quotation marks around it
+   pure function unquoted(cell) result(text)
+      !> The cell
+      character(len=*), intent(in) :: cell
+      !> What is in it
+      character(len=:), allocatable :: text
+
+      text = cell
+      if (len(cell) < 3) return
+      if (cell(1:1) == '"' .and. cell(len(cell):) == '"') &
+         text = trim(adjustl(cell(2:len(cell) - 1)))
+   end function unquoted
+
+   !> A unit without brackets around it
+   pure function without_brackets(cell) result(text)
+      !> The unit
+      character(len=*), intent(in) :: cell
+      !> The same without brackets
+      character(len=:), allocatable :: text
+
+      text = trim(adjustl(cell))
+      if (len(text) < 2) return
+      if (scan(text(1:1), "[(") > 0 .and. scan(text(len(text):), "])") > 0) &
+         text = trim(adjustl(text(2:len(text) - 1)))
+   end function without_brackets
+
+   !> Take name and unit apart
+   pure subroutine take_apart(cell, column)
+      !> The cell
+      character(len=*), intent(in) :: cell
+      !> The column
+      type(column_name_t), intent(out) :: column
+
+      character(len=:), allocatable :: name
+      integer :: i, mark
+
+      name = lower(cell)
+      ! E(t) is a name, E(Pa) is a name and a unit
+      mark = index(name, "(t)") + index(name, "(w)") + index(name, "(f)") + index(name, "(omega)")
+      if (mark > 1) then
+         i = mark + index(name(mark:), ")")
+         column%unit = adjustl(cell(i:))
+         if (column%unit(1:1) == "/") column%unit = column%unit(2:)
+         column%unit = without_brackets(column%unit)
+         name = name(:mark - 1)
+      else
+         mark = scan(name, "[(/")
+         if (mark > 1) then
+            column%unit = cell(mark:)
+            if (name(mark:mark) == "/") column%unit = cell(mark + 1:)
+            column%unit = without_brackets(column%unit)
+            name = name(:mark - 1)
+         end if
+      end if
+      name = trim(adjustl(name))
+      do i = 1, len(name)
+         if (name(i:i) == " ") name(i:i) = "_"
+      end do
+      column%name = name
+   end subroutine take_apart
+
+   !> What a column holds, by its name and else by its unit; what it is in, where that is understood
+   pure subroutine role_of(column, role, shear, unit)
+      !> The column
+      type(column_name_t), intent(in) :: column
+      !> One of the `role_*` constants
+      integer, intent(out) :: role
+      !> Whether it holds shear moduli
+      logical, intent(out) :: shear
+      !> Its unit; blank where nothing tells it
+      character(len=longest_word), intent(out) :: unit
+
+      unit = column%unit
+      role = role_none
+      if (contains_word(time_names, column%name)) role = role_time
+      if (contains_word(frequency_names, column%name)) role = role_frequency
+      if (contains_word(relaxation_names, column%name)) role = role_relaxation
+      if (contains_word(storage_names, column%name)) role = role_storage
+      if (contains_word(loss_names, column%name)) role = role_loss
+      shear = role >= role_relaxation .and. (column%name(1:1) == "g" &
+         .or. column%name == "shear_modulus")
+      if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
+      if (unit == "" .and. contains_word(angular_names, column%name)) unit = "rad/s"
+      if (role /= role_none) return
+      if (contains_word(time_units, unit)) role = role_time
+      if (contains_word(frequency_units, unit)) role = role_frequency
+   end subroutine role_of
+
+   !> Check that a unit is one of what a column holds
+   subroutine check_unit(unit, role, place, error)
+      !> The unit
+      character(len=*), intent(in) :: unit
+      !> What the column holds
+      integer, intent(in) :: role
+      !> Where the unit stands, for messages
+      character(len=*), intent(in) :: place
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: known, near, what
+
+      select case (role)
+      case (role_time)
+         known = time_units
+         what = "time"
+      case (role_frequency)
+         known = frequency_units
+         what = "frequency"
+      case default
+         known = modulus_units
+         what = "modulus"
+      end select
+      if (contains_word(known, unit)) return
+      near = nearest_name(trim(unit), known)
+      if (near /= "") near = "; did you mean '"//near//"'?"
+      call raise(error, error_input, place//": found '"//shortened(trim(unit))//"' as unit of " &
+         //"the "//what//", expected one of "//join_words(known)//near)
+   end subroutine check_unit
+
+end module vcor_io_header

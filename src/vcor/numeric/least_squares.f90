@@ -1,0 +1,192 @@
+!> Nonlinear least squares within bounds, and how well the solution is determined
+!>
+!> The iteration is MINPACK's (Levenberg and Marquardt). MINPACK knows no bounds, so it works on
+!> angles: an unknown is x = l + (u - l) (1 + sin y)/2, as in F. James and M. Roos, Comput. Phys.
+!> Commun. 10 (1975) 343. An iteration that runs into a bound can leave it again.
+module vcor_numeric_least_squares
+   use vcor_kinds, only : wp
+   use vcor_numeric_lapack, only : dgesvd
+   use vcor_numeric_minpack, only : lmder
+   implicit none
+   private
+
+   public :: least_squares_t, minimise, covariance
+
+   !> A problem
+   type, abstract :: least_squares_t
+      !> Smallest values of the unknowns, shape (n)
+      real(wp), allocatable :: lower(:)
+      !> Largest values of the unknowns, shape (n)
+      real(wp), allocatable :: upper(:)
+   contains
+      !> Residuals
+      procedure(residuals_i), deferred :: residuals
+      !> Their derivatives
+      procedure(jacobian_i), deferred :: jacobian
+   end type least_squares_t
+
+   abstract interface
+      !> Residuals
+      subroutine residuals_i(self, x, r)
+         import :: least_squares_t, wp
+         !> The problem
+         class(least_squares_t), intent(in) :: self
+         !> Unknowns within their bounds, shape (n)
+         real(wp), intent(in) :: x(:)
+         !> Residuals, shape (m)
+         real(wp), intent(out) :: r(:)
+      end subroutine residuals_i
+
+      !> Derivatives of the residuals
+      subroutine jacobian_i(self, x, j)
+         import :: least_squares_t, wp
+         !> The problem
+         class(least_squares_t), intent(in) :: self
+         !> Unknowns within their bounds, shape (n)
+         real(wp), intent(in) :: x(:)
+         !> Derivatives, shape (m, n)
+         real(wp), intent(out) :: j(:, :)
+      end subroutine jacobian_i
+   end interface
+
+   !> The problem that MINPACK works at, which hands nothing on to the function that it calls; each
+   !> thread has its own
+   class(least_squares_t), pointer :: current => null()
+!$omp threadprivate(current)
+
+contains
+
+   !> Minimise the sum of squares
+   subroutine minimise(problem, x, r, converged, tolerance, most)
+      !> The problem
+      class(least_squares_t), intent(in), target :: problem
+      !> Unknowns: on entry a guess, on return the solution within its bounds, shape (n)
+      real(wp), intent(inout) :: x(:)
+      !> Residuals there, shape (m), m >= n
+      real(wp), intent(out) :: r(:)
+      !> Whether it is a solution, and not where the iteration gave up
+      logical, intent(out) :: converged
+      !> Reduction of the sum of squares, and change of the unknowns, that counts as none; 0: as far
+      !> as rounding allows
+      real(wp), intent(in) :: tolerance
+      !> Most evaluations
+      integer, intent(in) :: most
+
+      real(wp), parameter :: first_step = 10.0_wp
+      real(wp) :: j(size(r), size(x)), tol
+      real(wp), dimension(size(x)) :: y, scales, qtf, wa1, wa2, wa3
+      real(wp) :: wa4(size(r))
+      integer :: order(size(x)), info, nfev, njev
+
+      converged = .true.
+      if (size(x) > 0) then
+         tol = max(tolerance, 4.0_wp*epsilon(1.0_wp))
+         y = angles_of(problem, x)
+         current => problem
+         call lmder(evaluate, size(r), size(x), y, r, j, size(r), tol, tol, 0.0_wp, most, scales, &
+            1, first_step, 0, info, nfev, njev, order, qtf, wa1, wa2, wa3, wa4)
+         nullify (current)
+         converged = info >= 1 .and. info /= 5
+         x = unknowns_of(problem, y)
+      end if
+      call problem%residuals(x, r)
+   end subroutine minimise
+
+   !> Unknowns of angles
+   pure function unknowns_of(problem, y) result(x)
+      !> The problem
+      class(least_squares_t), intent(in) :: problem
+      !> Angles, shape (n)
+      real(wp), intent(in) :: y(:)
+      !> Unknowns within their bounds, shape (n)
+      real(wp) :: x(size(y))
+
+      x = problem%lower + (problem%upper - problem%lower)*0.5_wp*(1.0_wp + sin(y))
+   end function unknowns_of
+
+   !> Angles of unknowns; of those at or beyond a bound, angles a little within
+   pure function angles_of(problem, x) result(y)
+      !> The problem
+      class(least_squares_t), intent(in) :: problem
+      !> Unknowns, shape (n)
+      real(wp), intent(in) :: x(:)
+      !> Angles, shape (n)
+      real(wp) :: y(size(x))
+
+      !> Largest sine: at a bound itself nothing depends on the angle
+      real(wp), parameter :: most = 0.99_wp
+
+      y = asin(max(-most, min(most, &
+         2.0_wp*(x - problem%lower)/(problem%upper - problem%lower) - 1.0_wp)))
+   end function angles_of
+
+   !> What MINPACK calls
+   subroutine evaluate(m, n, x, fvec, fjac, ldfjac, iflag)
+      !> Number of residuals
+      integer, intent(in) :: m
+      !> Number of unknowns
+      integer, intent(in) :: n
+      !> Angles
+      real(wp), intent(in) :: x(n)
+      !> Residuals
+      real(wp), intent(inout) :: fvec(m)
+      !> Leading dimension
+      integer, intent(in) :: ldfjac
+      !> Derivatives
+      real(wp), intent(inout) :: fjac(ldfjac, n)
+      !> 1: residuals, 2: derivatives
+      integer, intent(inout) :: iflag
+
+      real(wp) :: inside(n)
+      integer :: i
+
+      inside = unknowns_of(current, x)
+      if (iflag == 1) then
+         call current%residuals(inside, fvec)
+      else
+         call current%jacobian(inside, fjac(:m, :))
+         do i = 1, n
+            fjac(:m, i) = fjac(:m, i)*0.5_wp*(current%upper(i) - current%lower(i))*cos(x(i))
+         end do
+      end if
+   end subroutine evaluate
+
+   !> Inverse of J' J, by the singular values of J with its columns scaled to length 1
+   subroutine covariance(j, inverse, condition)
+      !> Derivatives of the residuals, shape (m, n), m >= n
+      real(wp), intent(in) :: j(:, :)
+      !> The inverse, shape (n, n); of no use where `condition` is infinite or beyond 1/epsilon
+      real(wp), intent(out) :: inverse(:, :)
+      !> Largest over smallest singular value; huge where there is none
+      real(wp), intent(out) :: condition
+
+      real(wp) :: scaled(size(j, 1), size(j, 2)), length(size(j, 2)), values(size(j, 2))
+      real(wp) :: rows(size(j, 2), size(j, 2)), none(1, 1)
+      real(wp) :: work(8*size(j, 1) + 8*size(j, 2))
+      integer :: i, k, n, info
+
+      n = size(j, 2)
+      inverse = 0.0_wp
+      condition = 1.0_wp
+      if (n == 0) return
+      length = norm2(j, dim=1)
+      condition = huge(condition)
+      if (.not. all(length > 0.0_wp)) return
+      do i = 1, n
+         scaled(:, i) = j(:, i)/length(i)
+      end do
+      call dgesvd('N', 'S', size(j, 1), n, scaled, size(j, 1), values, none, 1, rows, n, work, &
+         size(work), info)
+      if (info /= 0 .or. .not. values(n) > tiny(1.0_wp)) return
+      condition = values(1)/values(n)
+      do k = 1, n
+         rows(k, :) = rows(k, :)/values(k)
+      end do
+      do k = 1, n
+         do i = 1, n
+            inverse(i, k) = dot_product(rows(:, i)/length(i), rows(:, k)/length(k))
+         end do
+      end do
+   end subroutine covariance
+
+end module vcor_numeric_least_squares

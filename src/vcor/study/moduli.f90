@@ -1,0 +1,256 @@
+!> Moduli of the materials of a case over time and frequency: what Figs. 1 and 5 show
+module vcor_study_moduli
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
+      ieee_quiet_nan, ieee_value
+   use vcor_constants, only : pi
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
+   use vcor_study_build, only : build_material
+   use vcor_study_case, only : case_t
+   use vcor_study_grid, only : log_spacing, spaced
+   use vcor_study_text, only : real_text
+   implicit none
+   private
+
+   public :: moduli_t, curves_t, time_range_t, compute_moduli, sampled_times, usual_range
+   public :: loss_tangent
+
+   !> Points per decade unless a number of points is given
+   integer, parameter :: per_decade = 50
+   !> Decades before and after the contact time that are shown at least
+   integer, parameter :: least_before = 3, least_after = 1
+   !> Decades that are shown at most, to find the plateaus of the modulus
+   integer, parameter :: most_before = 10, most_after = 8
+   !> The same where there is no plateau to be found
+   integer, parameter :: singular_before = 5, fluid_after = 3
+   !> Distance from a plateau, relative to it, at which it counts as reached
+   real(wp), parameter :: near = 0.05_wp
+
+   !> Times at which a modulus is taken, equally spaced on the logarithmic scale
+   type :: time_range_t
+      !> First time [s]; 0: to be chosen
+      real(wp) :: first = 0.0_wp
+      !> Last time [s]; 0: to be chosen
+      real(wp) :: last = 0.0_wp
+      !> Number of points, >= 2; 0: 50 to the decade
+      integer :: points = 0
+   end type time_range_t
+
+   !> Moduli of one material
+   type :: curves_t
+      !> Its name
+      character(len=:), allocatable :: name
+      !> Its model
+      character(len=:), allocatable :: model
+      !> Whether it does not deform: then it has no curves
+      logical :: rigid = .false.
+      !> Mass density [kg/m3]; 0: not known
+      real(wp) :: density = 0.0_wp
+      !> Poisson's ratio [-]
+      real(wp) :: poisson_ratio = 0.0_wp
+      !> Viscosity of the dashpot in parallel [Pa s]; relaxation leaves it out
+      real(wp) :: viscosity = 0.0_wp
+      !> Glassy modulus [Pa]
+      real(wp) :: glassy = 0.0_wp
+      !> Rubbery modulus [Pa]
+      real(wp) :: rubbery = 0.0_wp
+      !> Relaxation modulus at the contact time [Pa]; this and the next two NaN where there is none
+      real(wp) :: at_contact_time = 0.0_wp
+      !> Storage modulus at the lowest frequency of interest [Pa]
+      real(wp) :: storage_at_min = 0.0_wp
+      !> Loss modulus at the lowest frequency of interest [Pa]
+      real(wp) :: loss_at_min = 0.0_wp
+      !> Relaxation modulus E(t) [Pa], shape (points)
+      real(wp), allocatable :: relaxation(:)
+      !> Storage modulus E' [Pa], shape (points)
+      real(wp), allocatable :: storage(:)
+      !> Loss modulus E'' [Pa], shape (points)
+      real(wp), allocatable :: loss(:)
+   end type curves_t
+
+   !> Moduli of all materials of a case
+   type :: moduli_t
+      !> Contact time t0 of the impact [s]; 0: it has none
+      real(wp) :: contact_time = 0.0_wp
+      !> Lowest frequency of interest 2 pi/t0 [rad/s]; 0: there is none
+      real(wp) :: min_frequency = 0.0_wp
+      !> Times [s], increasing, shape (points)
+      real(wp), allocatable :: times(:)
+      !> Angular frequencies [rad/s], the reciprocals of the times, increasing, shape (points)
+      real(wp), allocatable :: frequencies(:)
+      !> The materials, shape (materials of the case)
+      type(curves_t), allocatable :: materials(:)
+   end type moduli_t
+
+   !> A material in an array
+   type :: holder_t
+      !> The material
+      class(material_t), allocatable :: material
+   end type holder_t
+
+contains
+
+   !> Compute the moduli of all materials of a case
+   subroutine compute_moduli(self, case, contact_time, reference, range, error)
+      !> The moduli
+      type(moduli_t), intent(out) :: self
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Contact time of its impact [s]; 0: it has none
+      real(wp), intent(in) :: contact_time
+      !> Time about which the range is chosen [s], > 0: the contact time, or the time scale of a
+      !> contact that does not end
+      real(wp), intent(in) :: reference
+      !> Times to be taken
+      type(time_range_t), intent(in) :: range
+      !> Error of code `error_input`, of code `error_usage` if the range is empty; unallocated on
+      !> success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(holder_t), allocatable :: holders(:)
+      type(time_range_t) :: all, usual
+      integer :: i, n
+
+      n = case%count('material')
+      allocate (holders(n), self%materials(n))
+      all = time_range_t(huge(1.0_wp), 0.0_wp, range%points)
+      do i = 1, n
+         call build_material(case, i, holders(i)%material, error)
+         if (allocated(error)) return
+         usual = usual_range(holders(i)%material, reference)
+         if (holders(i)%material%rigid .and. n > 1) cycle
+         all%first = min(all%first, usual%first)
+         all%last = max(all%last, usual%last)
+      end do
+      if (range%first > 0.0_wp) all%first = range%first
+      if (range%last > 0.0_wp) all%last = range%last
+      if (.not. all%first < all%last) then
+         call raise(error, error_usage, 'found times from '//real_text(all%first)//' to ' &
+            //real_text(all%last)//' s, expected --from before --to')
+         return
+      end if
+
+      self%contact_time = contact_time
+      if (contact_time > 0.0_wp) self%min_frequency = 2.0_wp*pi/contact_time
+      self%times = sampled_times(all)
+      self%frequencies = sampled_times(time_range_t(1.0_wp/all%last, 1.0_wp/all%first, all%points))
+      do i = 1, n
+         self%materials(i) = curves_of(holders(i)%material, self)
+         call case%get('material', 'model', self%materials(i)%model, i)
+      end do
+   end subroutine compute_moduli
+
+   !> Curves of one material
+   pure function curves_of(material, moduli) result(curves)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> Times and frequencies
+      type(moduli_t), intent(in) :: moduli
+      !> Its curves
+      type(curves_t) :: curves
+
+      complex(wp) :: modulus(size(moduli%frequencies))
+      complex(wp) :: at_min
+
+      curves%name = material%name
+      curves%rigid = material%rigid
+      curves%density = material%density
+      curves%poisson_ratio = material%poisson_ratio
+      curves%viscosity = material%viscosity
+      curves%glassy = material%glassy()
+      curves%rubbery = material%rubbery()
+      curves%at_contact_time = curves%glassy
+      curves%storage_at_min = curves%glassy
+      if (curves%rigid) return
+      curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
+      curves%storage_at_min = curves%at_contact_time
+      curves%loss_at_min = curves%at_contact_time
+      ! gfortran 12 does not make room for the result of an elemental function of a class
+      allocate (curves%relaxation(size(moduli%times)))
+      curves%relaxation = material%relaxation(moduli%times)
+      modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
+      curves%storage = real(modulus, wp)
+      curves%loss = aimag(modulus)
+      if (.not. moduli%contact_time > 0.0_wp) return
+      at_min = material%complex_modulus(cmplx(0.0_wp, moduli%min_frequency, wp))
+      curves%at_contact_time = material%relaxation(moduli%contact_time)
+      curves%storage_at_min = real(at_min, wp)
+      curves%loss_at_min = aimag(at_min)
+   end function curves_of
+
+   !> Loss tangent E''/E'
+   elemental function loss_tangent(storage, loss) result(tangent)
+      !> Storage modulus [Pa], >= 0
+      real(wp), intent(in) :: storage
+      !> Loss modulus [Pa], >= 0
+      real(wp), intent(in) :: loss
+      !> Their ratio; infinite for a fluid without elasticity
+      real(wp) :: tangent
+
+      if (ieee_is_nan(loss)) then
+         tangent = loss
+      else if (.not. loss > 0.0_wp) then
+         tangent = 0.0_wp
+      else if (storage > loss*1.0e-300_wp) then
+         tangent = loss/storage
+      else
+         tangent = ieee_value(1.0_wp, ieee_positive_inf)
+      end if
+   end function loss_tangent
+
+   !> Whole decades from the glassy plateau of a material to the rubbery one, as far as they are
+   !> within reach of a time, and that time
+   pure function usual_range(material, reference) result(range)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> The time [s], > 0
+      real(wp), intent(in) :: reference
+      !> Range of times
+      type(time_range_t) :: range
+
+      real(wp) :: glassy, rubbery
+      integer :: first, last, least, most
+
+      glassy = material%glassy()
+      rubbery = material%rubbery()
+      least = floor(log10(reference)) - least_before
+      most = ceiling(log10(reference)) + least_after
+      first = least
+      last = most
+      if (.not. material%rigid) then
+         if (ieee_is_finite(glassy)) then
+            do while (first > least - most_before &
+               .and. material%relaxation(10.0_wp**first) < (1.0_wp - near)*glassy)
+               first = first - 1
+            end do
+         else
+            first = least - singular_before
+         end if
+         if (rubbery > 0.0_wp) then
+            do while (last < most + most_after &
+               .and. material%relaxation(10.0_wp**last) > (1.0_wp + near)*rubbery)
+               last = last + 1
+            end do
+         else
+            last = most + fluid_after
+         end if
+      end if
+      range = time_range_t(10.0_wp**first, 10.0_wp**last)
+   end function usual_range
+
+   !> Times of a range
+   pure function sampled_times(range) result(times)
+      !> The range, both ends given
+      type(time_range_t), intent(in) :: range
+      !> Times [s], equally spaced on the logarithmic scale, both ends included
+      real(wp), allocatable :: times(:)
+
+      integer :: n
+
+      n = range%points
+      if (n == 0) n = 1 + max(1, nint(per_decade*log10(range%last/range%first)))
+      times = spaced(range%first, range%last, n, log_spacing)
+   end function sampled_times
+
+end module vcor_study_moduli

@@ -1,0 +1,119 @@
+!> How much an impact leans on what a material is beyond the data that it was fitted to
+!>
+!> The keys valid_from and valid_to of a material tell the band of these data. The measure is the
+!> change of the coefficient of restitution when the modulus is held constant outside of the band,
+!> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
+!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it
+!> is; a sum of exponentials would go on growing before the band.
+module vcor_study_reliance
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
+   use vcor_solver, only : solver_t
+   use vcor_study_build, only : build_impact, build_material, build_solver
+   use vcor_study_case, only : case_t
+   use vcor_study_identified, only : put_points, put_solver
+   use vcor_study_moduli, only : sampled_times, time_range_t
+   implicit none
+   private
+
+   public :: reliance_t, find_reliance, solve_case
+
+   !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
+   real(wp), parameter :: little = 1.0e-4_wp
+   !> A contact is shorter than so many contact times, whatever the material is beyond them
+   real(wp), parameter :: ample = 10.0_wp
+
+   !> What an impact leans on
+   type :: reliance_t
+      !> Whether it leans on anything beyond the data
+      logical :: leans = .false.
+      !> Number of the material
+      integer :: item = 0
+      !> Band of its data [s]
+      real(wp) :: band(2) = 0.0_wp
+      !> Whether there is an end to the band, before and after
+      logical :: ends(2) = .false.
+      !> cor with the modulus as it is [-]
+      real(wp) :: cor = 0.0_wp
+      !> cor with the modulus held constant outside of the band [-], if that impact has a result
+      real(wp) :: held = 0.0_wp
+      !> Whether that impact has a result
+      logical :: solved = .false.
+   end type reliance_t
+
+contains
+
+   !> Find out how much an impact leans on a material beyond its data
+   subroutine find_reliance(reliance, case, item, contact_time)
+      !> What is found
+      type(reliance_t), intent(out) :: reliance
+      !> The case, with the parameters of the impact
+      type(case_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Contact time of the impact, which ends in separation [s]
+      real(wp), intent(in) :: contact_time
+
+      type(case_t) :: other
+      class(material_t), allocatable :: material
+      type(outcome_t) :: held, free
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: times(:), moduli(:)
+      real(wp) :: first, last
+
+      call case%get('material', 'valid_from', first, item)
+      call case%get('material', 'valid_to', last, item)
+      reliance%item = item
+      reliance%band = [first, last]
+      reliance%ends = .not. ieee_is_nan(reliance%band)
+      if (.not. any(reliance%ends)) return
+
+      call build_material(case, item, material, error)
+      if (allocated(error)) return
+      if (.not. reliance%ends(2)) last = ample*contact_time
+      if (.not. reliance%ends(1)) first = min(1.0e-9_wp*contact_time, 0.1_wp*last)
+      ! the contact does not see what comes after it
+      if (.not. last < ample*contact_time) &
+         last = max(ample*contact_time, 2.0_wp*first)
+      times = sampled_times(time_range_t(first, last))
+      allocate (moduli(size(times)))
+      moduli = material%relaxation(times)
+      other = case
+      call put_solver(other, accuracy=0.1_wp*little)
+      call solve_case(other, free, error)
+      if (allocated(error) .or. free%status /= contact_separated) return
+      reliance%cor = free%cor
+      call put_points(other, item, times, moduli)
+      call solve_case(other, held, error)
+      reliance%solved = .not. allocated(error)
+      if (reliance%solved) reliance%solved = held%status == contact_separated
+      reliance%held = held%cor
+      reliance%leans = .true.
+      if (reliance%solved) reliance%leans = abs(held%cor - free%cor) > little
+   end subroutine find_reliance
+
+   !> Solve the impact of a case
+   subroutine solve_case(case, outcome, error)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Its outcome
+      type(outcome_t), intent(out) :: outcome
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      class(solver_t), allocatable :: solver
+
+      call build_impact(case, impact, error)
+      if (.not. allocated(error)) call build_solver(case, impact, solver, error)
+      if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
+      if (.not. allocated(error)) outcome = evaluate(impact, trajectory)
+   end subroutine solve_case
+
+end module vcor_study_reliance

@@ -1,0 +1,430 @@
+"""vcor fit: data files of all sorts in, a &material group out."""
+
+import re
+
+import f90nml
+import numpy as np
+import pytest
+from cases import HEAD, case_text
+from program import FILE, INPUT, NUMERICAL, PAPER, ROOT, SUCCESS, USAGE
+
+POWER_LAW = PAPER / "butyl_power_law.nml"
+TIMES = np.logspace(-5, -1, 41)
+
+
+def sls(times):
+    return 15.0e6 * (0.25 + 0.75 * np.exp(-1200.0 * times))
+
+
+def sls_dynamic(frequency):
+    x = frequency / 1200.0
+    return 3.75e6 + 11.25e6 * x**2 / (1 + x**2), 11.25e6 * x / (1 + x**2)
+
+
+def columns(*numbers, head="", separator=","):
+    rows = [separator.join(f"{float(number):.17g}" for number in row) for row in zip(*numbers)]
+    return head + "\n".join(rows) + "\n"
+
+
+def group(out):
+    """The &material group of an output."""
+    return f90nml.Parser().reads(out[out.index("&material") :])["material"]
+
+
+def fitted(vcor, text, *words, model="sls"):
+    vcor.write(text, "data.csv")
+    return group(vcor.succeeds("fit", "data.csv", "--model", model, *words))
+
+
+def is_the_sls(found, rel=1e-8):
+    assert found["model"] == "sls"
+    assert found["glassy_modulus"] == pytest.approx(15.0e6, rel=rel)
+    assert found["alpha"] == pytest.approx(300.0, rel=rel)
+    assert found["beta"] == pytest.approx(1200.0, rel=rel)
+
+
+# Formats of the data
+
+FORMATS = {
+    "bare": ("", 1.0, 1.0, ","),
+    "header": ("t,E\n", 1.0, 1.0, ","),
+    "long names": ("Time;Relaxation modulus\n", 1.0, 1.0, ";"),
+    "units in brackets": ("t [ms],E [MPa]\n", 1e3, 1e-6, ","),
+    "units in parentheses": ("time (us), modulus (GPa)\n", 1e6, 1e-9, ","),
+    "units after a slash": ("t/s\tE(t)/kPa\n", 1.0, 1e-3, "\t"),
+    "units after a blank": ("t [min] E [Pa]\n", 1 / 60, 1.0, " "),
+    "two rows": ("t,E_relax\ns, MPa\n", 1.0, 1e-6, ","),
+    "comments": ("# made up\n\n# of E(t)\n", 1.0, 1.0, "  "),
+    "mark": ("\ufefft,E\r\n", 1.0, 1.0, ","),
+    "quotes": ('"t","E"\n"h","N/mm2"\n', 1 / 3600, 1e-6, ","),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_relaxation_formats(vcor, name):
+    head, time, modulus, separator = FORMATS[name]
+    text = columns(TIMES * time, sls(TIMES) * modulus, head=head, separator=separator)
+    is_the_sls(fitted(vcor, text))
+
+
+DYNAMIC = {
+    "bare": ("", 1.0, 1.0),
+    "omega": ("omega,E',E''\n", 1.0, 1.0),
+    "two rows": ("f, E_stor, E_loss\nHz, MPa, MPa\n", 1 / (2 * np.pi), 1e-6),
+    "f is in Hz": ("f,storage_modulus,loss_modulus\n", 1 / (2 * np.pi), 1.0),
+    "units in brackets": ("frequency [kHz],E' [kPa],E\" [kPa]\n", 1e-3 / (2 * np.pi), 1e-3),
+    "rad/s": ("frequency (rad/s),storage (Pa),loss (Pa)\n", 1.0, 1.0),
+}
+
+
+@pytest.mark.parametrize("name", DYNAMIC)
+def test_dynamic_formats(vcor, name):
+    head, frequency, modulus = DYNAMIC[name]
+    omega = np.logspace(1, 5, 41)
+    storage, loss = sls_dynamic(omega)
+    text = columns(omega * frequency, storage * modulus, loss * modulus, head=head)
+    is_the_sls(fitted(vcor, text))
+
+
+def test_more_columns(vcor):
+    """Columns are chosen by their names where there are others."""
+    omega = np.logspace(1, 5, 41)
+    storage, loss = sls_dynamic(omega)
+    text = columns(20 + 0 * omega, loss, omega, loss / storage, storage,
+                   head="T,E_loss,omega,tan_delta,E_stor\nC,Pa,rad/s,-,Pa\n")
+    is_the_sls(fitted(vcor, text))
+
+
+def test_units_by_option(vcor):
+    is_the_sls(fitted(vcor, columns(TIMES * 1e3, sls(TIMES) / 1e6), "--units", "ms,MPa"))
+    omega = np.logspace(1, 5, 41)
+    storage, loss = sls_dynamic(omega)
+    text = columns(omega / (2 * np.pi), storage / 1e9, loss / 1e9, head="f,E_stor,E_loss\n")
+    is_the_sls(fitted(vcor, text, "--units", "Hz,GPa"))
+
+
+@pytest.mark.parametrize("head, words", [("t,E\n", ["--shear"]), ("t,G\n", [])])
+def test_shear(vcor, head, words):
+    text = columns(TIMES, sls(TIMES) / 2.8, head=head)
+    found = fitted(vcor, text, "--poisson-ratio", "0.4", *words)
+    is_the_sls(found)
+    assert found["poisson_ratio"] == 0.4
+    vcor.refuses("fit", "data.csv", "--model", "sls", *words, code=USAGE, says="--poisson-ratio")
+
+
+def test_own_files_are_read(vcor):
+    """What vcor material writes, units in its comments."""
+    vcor.succeeds("material", PAPER / "sls.nml")
+    for kind in ("relaxation", "dynamic"):
+        is_the_sls(group(vcor.succeeds("fit", f"sls_material_{kind}.csv", "--model", "sls")))
+
+
+# What is wrong with data
+
+BAD = {
+    "text": ("t,E\n1,5\n2,abc\n", 3, "'abc'"),
+    "nan": ("1 5\n2 NaN\n", 2, "'NaN'"),
+    "infinite": ("1,5\n2,inf\n", 2, "'inf'"),
+    "negative modulus": ("t,E\n1,5\n2,-4\n", 3, "-4.0, expected a relaxation modulus > 0"),
+    "negative loss": ("1,5,1\n2,6,-1\n", 2, "-1.0, expected a loss modulus > 0"),
+    "time zero": ("t,E\n0,5\n1,4\n", 2, "0.0, expected a time > 0"),
+    "unsorted": ("1,5\n3,4\n2,3\n", 3, ["2.0 after 3.0", "line 2", "increase"]),
+    "repeated": ("1,5\n2,4\n2,3\n", 3, ["2.0 after 2.0", "line 2"]),
+    "one row": ("t,E\n1,5\n", 2, "one row"),
+    "empty": ("", 1, "no numbers"),
+    "blank": ("\n\n", 2, "no numbers"),
+    "header only": ("t,E\ns,Pa\n", 2, "no numbers"),
+    "unit of modulus": ("t,E\ns,bar\n1,5\n2,4\n", 2, ["'bar'", "Pa, kPa, MPa, GPa"]),
+    "unit in name": ("t [s],E [mPa]\n1,5\n2,4\n", 1, "'mPa'"),
+    "unit of time": ("t,E\nfortnight,Pa\n1,5\n2,4\n", 2, ["'fortnight'", "ms"]),
+    "unit of frequency": ("f,E_stor,E_loss\nrpm,Pa,Pa\n1,5,1\n2,6,1\n", 2, ["'rpm'", "Hz"]),
+    "missing number": ("1,5\n2,\n", 2, "''"),
+    "missing column": ("1,5\n2\n", 2, "1 column"),
+    "four columns": ("1,2,3,4\n2,3,4,5\n", 1, "4 columns"),
+    "header too short": ("t\n1,5\n2,4\n", 2, "header has 1"),
+    "too small": ("1e-200,5\n1,4\n", 1, "1.0e-30"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_data(vcor, name):
+    text, line, says = BAD[name]
+    vcor.write(text, "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at=f"data.csv:{line}", says=says)
+
+
+def test_unreadable(vcor):
+    vcor.refuses("fit", "none.csv", code=FILE, says="no such file")
+    vcor.refuses("fit", ".", code=FILE, says="directory")
+
+
+def test_too_few_data(vcor):
+    vcor.write(columns(TIMES[:3], sls(TIMES[:3])), "data.csv")
+    vcor.refuses("fit", "data.csv", "--model", "sls", code=INPUT, says=["3 moduli", "at least 4"])
+    vcor.refuses("fit", "data.csv", "--terms", "2", code=INPUT, says="at least 6")
+
+
+def test_nothing_relaxes(vcor):
+    vcor.write("1,5\n2,5\n3,5\n4,5\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, says="elastic")
+
+
+def test_too_many_terms(vcor):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    vcor.refuses("fit", "data.csv", "--terms", "4", code=NUMERICAL, says="--terms")
+
+
+def test_unit_of_frequency_is_asked_for(vcor):
+    vcor.write("frequency,E_stor,E_loss\n1,2,3\n2,3,4\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=USAGE, says=["'frequency'", "--units"])
+
+
+@pytest.mark.parametrize(
+    "words, says",
+    [
+        (["--model", "maxwell"], ["'maxwell'", "power_law"]),
+        (["--model", "sls", "--terms", "3"], ["--terms", "prony"]),
+        (["--terms", "0"], ["--terms", "from 1"]),
+        (["--fix", "beta"], ["KEY=VALUE"]),
+        (["--model", "cerf", "--fix", "alpha=1"], ["'alpha'", "relaxing_modulus"]),
+        (["--model", "cerf", "--fix", "beta=-1"], ["beta", "out of range"]),
+        (["--model", "cerf", "--fix", "beta=1", "--fix", "beta=2"], ["twice"]),
+        (["--units", "s,bar"], ["'s,bar'", "MPa"]),
+        (["--units", "s"], ["'s'", "s,MPa"]),
+        (["--units", "Hz,Pa"], ["columns"]),
+        (["--poisson-ratio", "0.6"], ["--poisson-ratio", "0.5"]),
+        (["--density", "0"], ["--density"]),
+        (["--dynamic"], ["--dynamic", "--from-model"]),
+        (["--points", "9"], ["--points", "--from-model"]),
+        (["--from-model", "case.nml"], ["both"]),
+        (["other.csv"], ["one data file"]),
+        (["--terns", "3"], ["'--terns'", "--terms"]),
+    ],
+)
+def test_wrong_options(vcor, words, says):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    done = vcor("fit", "data.csv", *words)
+    assert done.code in {USAGE, INPUT} and done.out == ""
+    assert done.err.startswith("vcor: error: ") and done.err.count("\n") == 1
+    for word in says:
+        assert word in done.err
+
+
+def test_no_data(vcor):
+    vcor.refuses("fit", code=USAGE, says=["one data file", "--from-model"])
+
+
+# What comes out
+
+
+def test_screen(vcor):
+    vcor.write(columns(TIMES, sls(TIMES), head="t,E\ns,Pa\n"), "rubber.csv")
+    out = vcor.succeeds("fit", "rubber.csv", "--model", "sls")
+    for word in ("41 points of time [s], relaxation modulus [Pa]", "glassy_modulus", "+- ",
+                 "rms misfit", "largest misfit", "1.0E-05 to 1.0E-01 s", "density is not known"):
+        assert word in out
+    found = group(out)
+    assert (found["valid_from"], found["valid_to"]) == pytest.approx((1e-5, 0.1))
+    assert found["name"] == "rubber" and "density" not in found
+
+
+def test_group_is_pasted(vcor):
+    """The group makes a case that runs, and the cor is that of the material."""
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    words = ["--model", "sls", "--density", "1100", "--name", "rubber", "--output", "fit.nml"]
+    vcor.succeeds("fit", "data.csv", *words)
+    text = (vcor.folder / "fit.nml").read_text()
+    assert text.startswith("! vcor ") and "rms misfit" in text
+    vcor.write(HEAD[: HEAD.rindex("&material")] + text)
+    vcor.write(case_text("sls"), "true.nml")
+    mine, true = vcor("run", "case.nml", "--print", "cor"), vcor.numbers("true.nml")
+    assert mine.code == SUCCESS
+    assert float(mine.out) == pytest.approx(float(true["cor"]), rel=1e-8)
+
+
+def test_output_into_a_directory(vcor):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    (vcor.folder / "out").mkdir()
+    out = vcor.succeeds("fit", "data.csv", "--model", "sls", "--output", "out", "--quiet")
+    assert out == ""
+    assert [path.name for path in (vcor.folder / "out").iterdir()] == ["data_fit.nml"]
+
+
+def test_output_keeps_what_was_read(vcor):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    words = ["fit", "data.csv", "--model", "sls", "--output"]
+    vcor.refuses(*words, "./data.csv", code=INPUT, says="replace")
+    vcor.write(case_text("sls"))
+    words = ["fit", "--from-model", "case.nml:rubber", "--model", "sls", "--output"]
+    vcor.refuses(*words, "case.nml", code=INPUT, says="replace")
+
+
+def test_fixed_parameter(vcor):
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", "sls", "--fix", "beta=1000")
+    assert re.search(r"beta +1000\.0000 1/s +given", out)
+    assert group(out)["beta"] == 1000.0
+
+
+# Sampled models
+
+
+def cors(out):
+    """cor of the case, and with the fit."""
+    found = re.search(r"cor of the impact +(\S+) +with the fit +(\S+)", out)
+    return float(found[1]), float(found[2])
+
+
+def misfit(out):
+    return abs(float(re.search(r"largest misfit +(\S+) %", out)[1])) / 100
+
+
+@pytest.mark.parametrize("first, most, change", [("1e-6", 12, 7e-3), ("1e-8", 16, 1e-3)])
+def test_butyl(vcor, first, most, change):
+    """A Prony series for BUTYL's power law, as short and as close as the issue asks."""
+    out = vcor.succeeds("fit", "--from-model", POWER_LAW, "--from", first, "--to", "1e-2")
+    assert len(group(out)["times"]) <= most
+    assert misfit(out) <= 1e-3
+    exact, found = cors(out)
+    assert abs(found - exact) <= change
+
+
+def test_butyl_with_few_terms(vcor):
+    """3, 5 and 8 terms: the more, the closer."""
+    words = ["--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2"]
+    off = []
+    for terms in (3, 5, 8):
+        exact, found = cors(vcor.succeeds("fit", *words, "--terms", terms))
+        off.append(abs(found - exact))
+    assert off[0] > off[1] > off[2]
+
+
+def test_the_papers_fit(vcor):
+    """Eq. (24) to Eq. (23-b): with its relaxing modulus, 676.5 MPa, over 1e-6 to 1e-2 s, its beta,
+    700 s^-1/2, comes out."""
+    words = ["--model", "cerf", "--fix", "relaxing_modulus=676.5e6"]
+    out = vcor.succeeds(
+        "fit", "--from-model", POWER_LAW, "--from", "1e-6", "--to", "1e-2", *words
+    )
+    assert group(out)["beta"] == pytest.approx(700.0, rel=0.01)
+
+
+def test_dynamic_samples(vcor):
+    words = ["--from-model", POWER_LAW, "--from", "1e-6", "--to", "1e-2", "--points", "41"]
+    out = vcor.succeeds("fit", *words, "--dynamic")
+    assert "rad/s" in out
+    exact, found = cors(out)
+    assert found == pytest.approx(exact, abs=1e-4)
+
+
+def test_material_by_name(vcor):
+    vcor.write(case_text("sls"))
+    words = ["fit", "--model", "sls", "--from-model"]
+    found = group(vcor.succeeds(*words, "case.nml:rubber"))
+    is_the_sls(found)
+    assert found["density"] == 1100.0
+    vcor.refuses(*words, "case.nml:steel", code=INPUT, says="does not relax")
+    vcor.refuses(*words, "case.nml:rubbr", code=USAGE, says="'rubbr'")
+    vcor.refuses(*words, "no.nml", code=FILE, says="no such file")
+
+
+# The band of the data
+
+
+def warning(vcor, *words, name=POWER_LAW):
+    done = vcor("run", name, "--print", "cor", *words)
+    assert done.code == SUCCESS
+    return done.err
+
+
+def change(line):
+    return abs(float(re.search(r"cor changes by (\S+),", line)[1]))
+
+
+def test_data_that_begin_too_late(vcor):
+    """Times below 1 us carry 1e-2 in the cor of BUTYL."""
+    line = warning(vcor, "--set", "butyl.valid_from=1e-6")
+    assert line.startswith("vcor: warning: ") and line.count("\n") == 1
+    assert "valid_from 1.0E-06 s" in line and "'butyl'" in line
+    assert change(line) == pytest.approx(1.1e-2, rel=0.05)
+
+
+def test_data_that_begin_early(vcor):
+    assert warning(vcor, "--set", "butyl.valid_from=1e-12") == ""
+    assert warning(vcor, "--set", "butyl.valid_to=1") == ""
+    earlier = change(warning(vcor, "--set", "butyl.valid_from=1e-8"))
+    assert earlier == pytest.approx(1.1e-3, rel=0.05)
+
+
+def test_data_that_end_too_soon(vcor):
+    line = warning(vcor, "--set", "butyl.valid_to=1e-4")
+    assert "valid_to 1.0E-04 s" in line and change(line) > 1e-2
+
+
+def test_sweep_leans(vcor):
+    """Of a sweep the worse of the shortest and the longest contact is told."""
+    done = vcor("run", PAPER.parent / "sweeps" / "butyl_power_law_velocity.nml", "--quiet",
+                "--set", "butyl.valid_from=1e-6", "--set", "sweep.count=3")
+    assert done.code == SUCCESS and done.err.count("\n") == 1
+    assert "impact.velocity = 50" in done.err
+
+
+def test_band_of_a_fit(vcor):
+    """What fit writes, run reads. Of the kernel before 1 us, which carries 1e-2, the fit makes up
+    one half."""
+    words = ["--from-model", POWER_LAW, "--from", "1e-6", "--to", "1e-2", "--output", "fit.nml"]
+    vcor.succeeds("fit", *words)
+    text = POWER_LAW.read_text()
+    text = text[: text.index("&material", text.index("&material") + 1)]
+    vcor.write(text + (vcor.folder / "fit.nml").read_text())
+    line = warning(vcor, name="case.nml")
+    assert "valid_from 1.0E-06 s, valid_to 1.0E-02 s" in line
+    assert change(line) == pytest.approx(5.1e-3, rel=0.1)
+
+
+def test_band_is_checked(vcor):
+    words = ["--set", "butyl.valid_from=1e-3", "--set", "butyl.valid_to=1e-4"]
+    vcor.refuses("run", POWER_LAW, *words, code=INPUT, says="valid_from < valid_to")
+    vcor.refuses("run", POWER_LAW, "--set", "butyl.valid_from=0", code=INPUT, says="valid_from")
+    vcor.refuses("run", POWER_LAW, "--set", "steel.valid_from=1", code=INPUT, says="rigid")
+
+
+# docs/fitting.md
+
+DOCUMENT = (ROOT / "docs" / "fitting.md").read_text()
+COMMANDS = [
+    line.split()[1:]
+    for block in re.findall(r"```sh\n(.*?)```", DOCUMENT, re.DOTALL)
+    for line in block.splitlines()
+]
+
+
+@pytest.mark.parametrize("words", COMMANDS, ids=" ".join)
+def test_commands_of_the_document(vcor, words):
+    """They run, and what the tables and the warning say is what comes out."""
+    done = vcor(*[ROOT / word if word.startswith("examples/") else word for word in words])
+    assert done.code == SUCCESS
+    if words[0] == "run":
+        assert done.err.replace(f"{ROOT}/", "").strip() in DOCUMENT
+    elif words[0] == "fit":
+        assert done.err == ""
+        assert f"| {cors(done.out)[1]:.4f} |" in DOCUMENT
+        if "prony," in done.out:
+            terms = len(np.atleast_1d(group(done.out)["times"]))
+            assert "2e-5" in words or re.search(
+                rf"\| {terms}[ (automatic)]* \|.*{cors(done.out)[1]:.4f}", DOCUMENT
+            )
+
+
+def test_the_document_has_commands():
+    assert len(COMMANDS) == 14
+
+
+def test_the_example_of_the_readme(vcor):
+    """Its numbers are those of the README, and those of the material that the data are of."""
+    words = ["--model", "mittag_leffler", "--density", "1100", "--name", "soft rubber"]
+    out = vcor.succeeds("fit", ROOT / "examples" / "soft_rubber_data.csv", *words)
+    shown = (ROOT / "README.md").read_text()
+    shown = shown[shown.index("57 points of time") : shown.index("band of the data    1.0E-07")]
+    assert shown in out
+    assert group(out)["exponent"] == pytest.approx(0.5, rel=1e-4)

@@ -1,0 +1,482 @@
+!> Fits of materials: parameters come back, standard errors are what they say, Prony series are
+!> short and positive
+program test_fit
+   use vcor_error, only : error_input, error_numerical, error_t
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, material_t, new_material
+   use vcor_material_fit, only : fit_material, fit_t, fixable_parameters, parameter_t, samples_t, &
+      state_bound, state_fixed, state_free
+   use vcor_material_fit_result, only : moduli_of
+   use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
+      suite
+   implicit none
+
+   !> What the issue asks of exact data
+   real(wp), parameter :: exact = 1.0e-8_wp
+   !> Relative noise of the data
+   real(wp), parameter :: noise = 0.01_wp
+   !> Runs with noise, and how many may miss three standard errors
+   integer, parameter :: runs = 100, most_misses = 5
+   character(len=*), parameter :: models(4) = [character(len=14) :: 'sls', 'power_law', 'cerf', &
+      'mittag_leffler']
+   type(parameter_t), parameter :: none(0) = [parameter_t ::]
+   !> State of the generator of noise
+   real(wp) :: state = 0.0_wp
+   integer :: i
+
+   call suite('fit')
+   do i = 1, size(models)
+      call exact_data(trim(models(i)), .false.)
+      call exact_data(trim(models(i)), .true.)
+      call fixed_parameters(trim(models(i)))
+      call noisy_data(trim(models(i)), .false.)
+      call noisy_data(trim(models(i)), .true.)
+   end do
+   call vanishing_modulus()
+   call exponent_of_one()
+   call runaway_time()
+   call exact_series(.false.)
+   call exact_series(.true.)
+   call butyl_series(1.0e-6_wp, 81, 12)
+   call butyl_series(1.0e-8_wp, 121, 16)
+   call butyl_dynamic()
+   call noisy_series()
+   call given_terms()
+   call refusals()
+   call finish()
+
+contains
+
+   !> A material of each model, with the numbers of the paper or close to them
+   function truth(model) result(data)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> The material
+      type(material_data_t) :: data
+
+      data%name = 'truth'
+      data%model = model
+      data%glassy_modulus = 15.0e6_wp
+      data%alpha = 300.0_wp
+      data%beta = merge(700.0_wp, 1200.0_wp, model == 'cerf')
+      data%equilibrium_modulus = 2.28e6_wp
+      data%relaxing_modulus = 676.5e6_wp
+      data%coefficient = 8.85e5_wp
+      data%exponent = merge(0.62_wp, 0.5_wp, model == 'mittag_leffler')
+      data%time = 2.0e-6_wp
+      allocate (data%moduli(3), data%rates(3))
+      data%moduli = [20.181e6_wp, 38.204e6_wp, 87.344e6_wp]
+      data%rates = [972.0_wp, 6426.0_wp, 34221.0_wp]
+   end function truth
+
+   !> Samples of a material
+   function sampled(data, first, last, n, dynamic) result(samples)
+      !> The material
+      type(material_data_t), intent(in) :: data
+      !> First time [s]
+      real(wp), intent(in) :: first
+      !> Last time [s]
+      real(wp), intent(in) :: last
+      !> Number of points
+      integer, intent(in) :: n
+      !> Whether storage and loss modulus are wanted
+      logical, intent(in) :: dynamic
+      !> The samples
+      type(samples_t) :: samples
+
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+      real(wp) :: all((1 + merge(1, 0, dynamic))*n)
+      integer :: k
+
+      call new_material(material, data, error)
+      samples%dynamic = dynamic
+      allocate (samples%at(n), samples%modulus(n), samples%loss(size(all) - n))
+      samples%at = first*(last/first)**[(real(k, wp)/real(n - 1, wp), k=0, n - 1)]
+      if (dynamic) samples%at = 1.0_wp/samples%at(n:1:-1)
+      all = moduli_of(material, samples)
+      samples%modulus = all(:n)
+      samples%loss = all(n + 1:)
+   end function sampled
+
+   !> Samples of a material of a model, over the decades in which it relaxes
+   function sampled_model(model, dynamic) result(samples)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Whether storage and loss modulus are wanted
+      logical, intent(in) :: dynamic
+      !> The samples
+      type(samples_t) :: samples
+
+      if (model == 'sls') then
+         samples = sampled(truth(model), 1.0e-5_wp, 1.0e-2_wp, 41, dynamic)
+      else
+         samples = sampled(truth(model), 1.0e-9_wp, 1.0e-1_wp, 41, dynamic)
+      end if
+   end function sampled_model
+
+   !> A parameter of a material by its name
+   function parameter_of(data, name) result(value)
+      !> The material
+      type(material_data_t), intent(in) :: data
+      !> Name of the parameter
+      character(len=*), intent(in) :: name
+      !> Its value
+      real(wp) :: value
+
+      select case (name)
+      case ('glassy_modulus')
+         value = data%glassy_modulus
+      case ('alpha')
+         value = data%alpha
+      case ('beta')
+         value = data%beta
+      case ('equilibrium_modulus')
+         value = data%equilibrium_modulus
+      case ('relaxing_modulus')
+         value = data%relaxing_modulus
+      case ('coefficient')
+         value = data%coefficient
+      case ('exponent')
+         value = data%exponent
+      case default
+         value = data%time
+      end select
+   end function parameter_of
+
+   !> Exact data give their parameters back
+   subroutine exact_data(model, dynamic)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Whether from storage and loss modulus
+      logical, intent(in) :: dynamic
+
+      type(fit_t) :: fit
+      type(error_t), allocatable :: error
+      integer :: k
+
+      call fit_material(fit, model, 0, none, sampled_model(model, dynamic), error)
+      call check(.not. allocated(error), model//' is fitted')
+      if (allocated(error)) return
+      do k = 1, size(fit%parameters)
+         call check_relative(fit%parameters(k)%value, &
+            parameter_of(truth(model), trim(fit%parameters(k)%name)), exact, &
+            model//' gives back '//trim(fit%parameters(k)%name))
+      end do
+      call check(all(fit%parameters%state == state_free), 'and all of it was free')
+      call check_close(fit%largest, 0.0_wp, exact, 'nothing is missed')
+   end subroutine exact_data
+
+   !> A parameter that is given stays, and the others come back
+   subroutine fixed_parameters(model)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+
+      type(fit_t) :: fit
+      type(parameter_t) :: fixed(1)
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: names, name
+      integer :: mark, k
+
+      names = fixable_parameters(model)//' '
+      do while (len(names) > 0)
+         mark = index(names, ' ')
+         name = names(:mark - 1)
+         names = names(mark + 1:)
+         fixed(1)%name = name
+         fixed(1)%value = parameter_of(truth(model), name)
+         call fit_material(fit, model, 0, fixed, sampled_model(model, .false.), error)
+         call check(.not. allocated(error), model//' is fitted with '//name//' given')
+         if (allocated(error)) cycle
+         do k = 1, size(fit%parameters)
+            call check_relative(fit%parameters(k)%value, &
+               parameter_of(truth(model), trim(fit%parameters(k)%name)), exact, &
+               model//' with '//name//' given gives back '//trim(fit%parameters(k)%name))
+            call check((fit%parameters(k)%state == state_fixed) &
+               .eqv. fit%parameters(k)%name == name, 'what is given is told')
+         end do
+      end do
+      ! a wrong value stays too
+      fixed(1)%value = 1.1_wp*fixed(1)%value
+      call fit_material(fit, model, 0, fixed, sampled_model(model, .true.), error)
+      call check(.not. allocated(error), 'a wrong value can be given')
+      if (allocated(error)) return
+      k = size(fit%parameters)
+      call check_close(fit%parameters(k)%value, fixed(1)%value, 0.0_wp, 'it stays what it is')
+      call check(abs(fit%largest) > 1.0e-3_wp, 'and something is missed then')
+   end subroutine fixed_parameters
+
+   !> Numbers of a normal distribution (Box and Muller), from a multiplicative generator (Lehmer)
+   subroutine draw(numbers)
+      !> The numbers
+      real(wp), intent(out) :: numbers(:)
+
+      real(wp), parameter :: two_pi = 6.283185307179586_wp
+      real(wp), parameter :: multiplier = 16807.0_wp, modulus = 2147483647.0_wp
+      real(wp) :: uniform(2)
+      integer :: k, m
+
+      do k = 1, size(numbers)
+         do m = 1, 2
+            state = mod(multiplier*state, modulus)
+            uniform(m) = state/modulus
+         end do
+         numbers(k) = sqrt(-2.0_wp*log(uniform(1)))*cos(two_pi*uniform(2))
+      end do
+   end subroutine draw
+
+   !> Put noise on samples
+   subroutine spoil(samples)
+      !> The samples
+      type(samples_t), intent(inout) :: samples
+
+      real(wp) :: numbers(size(samples%at))
+
+      call draw(numbers)
+      samples%modulus = samples%modulus*(1.0_wp + noise*numbers)
+      if (.not. samples%dynamic) return
+      call draw(numbers)
+      samples%loss = samples%loss*(1.0_wp + noise*numbers)
+   end subroutine spoil
+
+   !> With noise the true values lie within three standard errors, nearly always
+   subroutine noisy_data(model, dynamic)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Whether from storage and loss modulus
+      logical, intent(in) :: dynamic
+
+      type(fit_t) :: fit
+      type(samples_t) :: clean, samples
+      type(error_t), allocatable :: error
+      real(wp) :: distance, sum_of_squares
+      integer :: run, k, misses
+      logical :: inside
+
+      clean = sampled_model(model, dynamic)
+      misses = 0
+      sum_of_squares = 0.0_wp
+      do run = 1, runs
+         state = real(1000 + run, wp)
+         samples = clean
+         call spoil(samples)
+         call fit_material(fit, model, 0, none, samples, error)
+         inside = .not. allocated(error)
+         if (inside) then
+            do k = 1, size(fit%parameters)
+               distance = abs(fit%parameters(k)%value &
+                  - parameter_of(truth(model), trim(fit%parameters(k)%name)))
+               inside = inside .and. distance <= 3.0_wp*fit%parameters(k)%error
+               if (k == size(fit%parameters)) sum_of_squares = sum_of_squares &
+                  + (distance/max(fit%parameters(k)%error, tiny(1.0_wp)))**2
+            end do
+         end if
+         if (.not. inside) misses = misses + 1
+      end do
+      call check(misses <= most_misses, model//': the truth is within three standard errors')
+      ! and they are not just wide: the mean square is 1 +- 0.14 for 100 runs, three times that
+      call check_close(sum_of_squares/real(runs, wp), 1.0_wp, 0.42_wp, &
+         model//': the standard error of the last parameter is its spread')
+   end subroutine noisy_data
+
+   !> A material without equilibrium modulus is found to have none
+   subroutine vanishing_modulus()
+      type(fit_t) :: fit
+      type(material_data_t) :: data
+      type(error_t), allocatable :: error
+
+      data = truth('power_law')
+      data%equilibrium_modulus = 0.0_wp
+      call fit_material(fit, 'power_law', 0, none, &
+         sampled(data, 1.0e-7_wp, 1.0e-1_wp, 61, .false.), error)
+      call check(.not. allocated(error), 'a power law alone is fitted')
+      if (allocated(error)) return
+      call check_close(fit%parameters(1)%value, 0.0_wp, 0.0_wp, 'its equilibrium modulus is 0')
+      call check(fit%parameters(1)%state == state_bound, 'and at its bound')
+      call check_relative(fit%parameters(2)%value, data%coefficient, exact, 'the coefficient')
+      call check_relative(fit%parameters(3)%value, data%exponent, exact, 'the exponent')
+
+      data = truth('sls')
+      data%alpha = 0.0_wp
+      call fit_material(fit, 'sls', 0, none, &
+         sampled(data, 1.0e-5_wp, 1.0e-2_wp, 61, .false.), error)
+      call check(.not. allocated(error), 'a Maxwell fluid is fitted')
+      if (allocated(error)) return
+      call check_close(fit%parameters(2)%value, 0.0_wp, 0.0_wp, 'its alpha is 0')
+      call check_relative(fit%parameters(3)%value, data%beta, exact, 'its rate comes back')
+   end subroutine vanishing_modulus
+
+   !> A standard linear solid is a Mittag-Leffler material of exponent 1
+   subroutine exponent_of_one()
+      type(fit_t) :: fit
+      type(error_t), allocatable :: error
+
+      call fit_material(fit, 'mittag_leffler', 0, none, sampled_model('sls', .false.), error)
+      call check(.not. allocated(error), 'an SLS is fitted as Mittag-Leffler')
+      if (allocated(error)) return
+      call check_close(fit%parameters(3)%value, 1.0_wp, 0.0_wp, 'its exponent is 1')
+      call check_relative(fit%parameters(4)%value, 1.0_wp/1200.0_wp, exact, 'its time is 1/beta')
+   end subroutine exponent_of_one
+
+   !> The CERF closest to a power law has no end: it is told, and what is determined is right
+   subroutine runaway_time()
+      type(fit_t) :: fit
+      type(error_t), allocatable :: error
+
+      call fit_material(fit, 'cerf', 0, none, sampled_model('power_law', .false.), error)
+      call check(.not. allocated(error), 'CERF is fitted to a power law')
+      if (allocated(error)) return
+      call check(fit%parameters(3)%state == state_bound, 'beta is at its bound')
+      call check_relative(fit%parameters(2)%value/fit%parameters(3)%value, 8.85e5_wp, 1.0e-3_wp, &
+         'E_1/beta is the coefficient')
+   end subroutine runaway_time
+
+   !> A Prony series comes back with as many terms as it has
+   subroutine exact_series(dynamic)
+      !> Whether from storage and loss modulus
+      logical, intent(in) :: dynamic
+
+      type(fit_t) :: fit
+      type(material_data_t) :: data
+      type(error_t), allocatable :: error
+      integer :: k
+
+      data = truth('prony')
+      data%equilibrium_modulus = 10.421e6_wp
+      call fit_material(fit, 'prony', 0, none, &
+         sampled(data, 1.0e-6_wp, 1.0e-1_wp, 101, dynamic), error)
+      call check(.not. allocated(error), 'a series of three terms is fitted')
+      if (allocated(error)) return
+      call check(size(fit%data%moduli) == 3, 'with three terms')
+      if (size(fit%data%moduli) /= 3) return
+      do k = 1, 3
+         call check_relative(fit%data%moduli(k), data%moduli(4 - k), exact, 'a modulus comes back')
+         call check_relative(fit%data%rates(k), data%rates(4 - k), exact, 'a rate comes back')
+      end do
+      call check_relative(fit%data%equilibrium_modulus, 10.421e6_wp, exact, &
+         'the equilibrium modulus comes back')
+   end subroutine exact_series
+
+   !> BUTYL's power law over some decades
+   subroutine butyl_series(first, n, most)
+      !> First time [s]
+      real(wp), intent(in) :: first
+      !> Number of samples
+      integer, intent(in) :: n
+      !> Most terms
+      integer, intent(in) :: most
+
+      type(fit_t) :: fit
+      type(error_t), allocatable :: error
+
+      call fit_material(fit, 'prony', 0, none, &
+         sampled(truth('power_law'), first, 1.0e-2_wp, n, .false.), error)
+      call check(.not. allocated(error), 'BUTYL is fitted by a series')
+      if (allocated(error)) return
+      call check(size(fit%data%moduli) <= most, 'with no more terms than needed')
+      call check(abs(fit%largest) <= 1.0e-3_wp, 'to 0.1 %')
+      call check_sound(fit)
+   end subroutine butyl_series
+
+   !> A series is positive and far from ill-conditioned, its times one after the other
+   subroutine check_sound(fit)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+
+      integer :: n
+
+      n = size(fit%data%moduli)
+      call check(all(fit%data%moduli > 0.0_wp) .and. all(fit%data%rates > 0.0_wp), &
+         'moduli and rates are positive')
+      call check(all(fit%data%rates(:n - 1) > 1.2_wp*fit%data%rates(2:)), &
+         'no two times are the same')
+      call check(fit%condition < 1.0e4_wp, 'the problem is well conditioned')
+   end subroutine check_sound
+
+   !> The same from storage and loss modulus
+   subroutine butyl_dynamic()
+      type(fit_t) :: fit
+      type(error_t), allocatable :: error
+
+      call fit_material(fit, 'prony', 0, none, &
+         sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .true.), error)
+      call check(.not. allocated(error), 'BUTYL is fitted by a series from dynamic data')
+      if (allocated(error)) return
+      call check(abs(fit%largest) <= 1.0e-3_wp, 'to 0.1 %')
+      call check(all(fit%data%moduli > 0.0_wp), 'moduli are positive')
+   end subroutine butyl_dynamic
+
+   !> In noise a series does not follow the noise
+   subroutine noisy_series()
+      type(fit_t) :: fit
+      type(samples_t) :: samples
+      type(error_t), allocatable :: error
+
+      state = 4711.0_wp
+      samples = sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .false.)
+      call spoil(samples)
+      call fit_material(fit, 'prony', 0, none, samples, error)
+      call check(.not. allocated(error), 'noisy BUTYL is fitted by a series')
+      if (allocated(error)) return
+      call check(size(fit%data%moduli) >= 3 .and. size(fit%data%moduli) <= 7, &
+         'with some terms, not many')
+      call check_close(fit%rms, noise, 0.25_wp*noise, 'what it misses is the noise')
+      call check_sound(fit)
+   end subroutine noisy_series
+
+   !> A number of terms is taken as it is
+   subroutine given_terms()
+      integer, parameter :: terms(3) = [3, 5, 8]
+      type(fit_t) :: fit
+      type(parameter_t) :: fixed(1)
+      type(error_t), allocatable :: error
+      real(wp) :: before
+      integer :: k
+
+      before = 1.0_wp
+      do k = 1, size(terms)
+         call fit_material(fit, 'prony', terms(k), none, &
+            sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .false.), error)
+         call check(.not. allocated(error), 'a series of a given number of terms')
+         if (allocated(error)) cycle
+         call check(size(fit%data%moduli) == terms(k), 'it has so many')
+         call check(fit%rms < 0.3_wp*before, 'and more terms miss less')
+         before = fit%rms
+      end do
+      fixed(1)%name = 'equilibrium_modulus'
+      fixed(1)%value = 2.28e6_wp
+      call fit_material(fit, 'prony', 8, fixed, &
+         sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .false.), error)
+      call check(.not. allocated(error), 'a series with its equilibrium modulus given')
+      if (allocated(error)) return
+      call check_close(fit%data%equilibrium_modulus, 2.28e6_wp, 0.0_wp, 'it is what was given')
+   end subroutine given_terms
+
+   !> What cannot be fitted
+   subroutine refusals()
+      type(fit_t) :: fit
+      type(samples_t) :: samples
+      type(error_t), allocatable :: error
+
+      call fit_material(fit, 'mittag_leffler', 0, none, &
+         sampled(truth('mittag_leffler'), 1.0e-6_wp, 1.0e-4_wp, 4, .false.), error)
+      call check(allocated(error), 'four points do not give four parameters')
+      if (allocated(error)) call check_contains(error%message, 'expected at least 5', 'and why')
+
+      samples = sampled_model('sls', .false.)
+      samples%modulus = 1.0e6_wp
+      call fit_material(fit, 'sls', 0, none, samples, error)
+      call check(allocated(error), 'a constant modulus is not fitted')
+      if (allocated(error)) then
+         call check(error%code == error_input, 'as an error of the input')
+         call check_contains(error%message, 'elastic', 'it is elastic')
+      end if
+
+      samples = sampled_model('sls', .false.)
+      call fit_material(fit, 'prony', 4, none, samples, error)
+      call check(allocated(error), 'an SLS does not give a series of four terms')
+      if (allocated(error)) call check(error%code == error_numerical, 'as a numerical failure')
+      call check_text(fixable_parameters('prony'), 'equilibrium_modulus', 'what a series can have')
+   end subroutine refusals
+
+end program test_fit
