@@ -48,8 +48,8 @@ def test_exact_models_of_the_paper(vcor):
     assert [line for line in out.splitlines() if line.startswith("* hereditary  receding")]
 
 
-def test_table_of_the_readme(vcor):
-    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```")[1::2]
+def test_table_of_the_page(vcor):
+    blocks = (ROOT / "docs" / "impact.md").read_text(encoding="utf-8").split("```")[1::2]
     block = next(block for block in blocks if "what the choice of model is worth" in block)
     lines = [line for line in block.splitlines() if line and line != "..."]
     out = vcor.succeeds("verify", PAPER / "sls.nml").splitlines()
