@@ -1,4 +1,4 @@
-!> Maps: an outcome over two parameters, as filled contours with labelled lines
+!> Maps of an outcome over two parameters, as filled contours with labelled lines
 module vcor_figure_map
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, error_usage, raise

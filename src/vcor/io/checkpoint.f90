@@ -36,7 +36,7 @@ module vcor_io_checkpoint
 
    public :: checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
 
-   !> Columns: the quantities, steps, status and check
+   !> The columns, that is the quantities, steps, status and check
    integer, parameter :: columns = size(quantities) + 3, steps_column = size(quantities) + 1, &
       status_column = size(quantities) + 2, check_column = size(quantities) + 3
 

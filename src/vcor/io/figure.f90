@@ -1,4 +1,4 @@
-!> Figures: panels of curves with what is written beside them; `vcor_io_gnuplot` draws them
+!> Figures as panels of curves with what is written beside them; `vcor_io_gnuplot` draws them
 !>
 !>     call new_figure(figure, panels=1)
 !>     figure%panels(1)%x = figure_axis_t(label="time [ms]")

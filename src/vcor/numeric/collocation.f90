@@ -76,7 +76,7 @@ module vcor_numeric_collocation
       real(wp) :: end_weight(0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
-      !> Maps: index n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
+      !> Maps by index n >= 0, for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
       !> `closing` for one in sqrt(time left), shape (closing:)
       type(panel_map_t), allocatable :: map(:)
    contains

@@ -134,7 +134,7 @@ contains
       integer, intent(in) :: ldfjac
       !> Derivatives
       real(wp), intent(inout) :: fjac(ldfjac, n)
-      !> 1: residuals, 2: derivatives
+      !> Residuals (1) or derivatives (2)
       integer, intent(inout) :: iflag
 
       real(wp) :: inside(n)

@@ -25,7 +25,7 @@ module vcor_numeric_minpack
          integer, intent(in) :: ldfjac
          !> Derivatives, set if iflag = 2, shape (ldfjac, n)
          real(wp), intent(inout) :: fjac(ldfjac, n)
-         !> 1: residuals, 2: derivatives; negative on return ends the iteration
+         !> Residuals (1) or derivatives (2); negative on return ends the iteration
          integer, intent(inout) :: iflag
       end subroutine lmder_function_i
    end interface
@@ -59,7 +59,7 @@ module vcor_numeric_minpack
          integer, intent(in) :: maxfev
          !> Scales of the unknowns, set if mode = 1, shape (n)
          real(wp), intent(inout) :: diag(n)
-         !> 1: scales from the derivatives, 2: they are given
+         !> Scales from the derivatives (1), or given (2)
          integer, intent(in) :: mode
          !> Bound of the first step, in scaled unknowns
          real(wp), intent(in) :: factor

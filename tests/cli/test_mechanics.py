@@ -1,0 +1,99 @@
+"""Exact mechanics from outside: receding contact, hereditary plate, bodies in series."""
+
+import re
+
+import pytest
+from cases import SLS, edit
+from program import INPUT, PAPER, ROOT
+
+EXACT = ["--set", "contact.law=receding", "--set", "plate.waves=hereditary"]
+
+# Two bodies of different materials, neither of them rigid
+PAIR = """\
+&impact velocity = 10.0 /
+&sphere radius = 0.01, material = 'ball' /
+&plate half_thickness = 0.02, material = 'rubber', waves = 'hereditary' /
+&contact law = 'receding', pair = 'series' /
+&material name = 'ball', model = 'MODEL', density = 1200.0, poisson_ratio = 0.45, KEYS /
+&material
+   name = 'rubber', model = 'sls', density = 1100.0, poisson_ratio = 0.5
+   glassy_modulus = 15.0e6, alpha = 300.0, beta = 1200.0
+/
+"""
+BALLS = {
+    "sls": "glassy_modulus = 30.0e6, alpha = 500.0, beta = 900.0",
+    "elastic": "modulus = 30.0e6",
+    "prony": "equilibrium_modulus = 5.0e6, viscosity = 500.0",
+    "cerf": "equilibrium_modulus = 10.0e6, relaxing_modulus = 60.0e6, beta = 50.0",
+    "power_law": "equilibrium_modulus = 5.0e6, coefficient = 5.0e5, exponent = 0.5",
+    "mittag_leffler": "equilibrium_modulus = 5.0e6, relaxing_modulus = 40.0e6, "
+    "exponent = 0.9, time = 1.0e-3",
+}
+
+
+def models(out):
+    """The table of models: cells by plate and law."""
+    rows = re.findall(r"^[* ] (\w+) +(boltzmann|receding) +(.*)$", out, re.MULTILINE)
+    return {(waves, law): cells.split() for waves, law, cells in rows}
+
+
+def test_exact_models_of_the_paper(vcor):
+    out = vcor.succeeds("verify", PAPER / "sls.nml", *EXACT)
+    assert "verified: " in out and "TOO LOW" not in out
+    found = models(out)
+    assert len(found) == 10
+    assert float(found["hereditary", "receding"][0]) == pytest.approx(0.48758244, abs=2e-8)
+    assert float(found["relaxing", "boltzmann"][0]) == pytest.approx(0.43198690, abs=2e-8)
+    assert float(found["none", "receding"][2]) == pytest.approx(1.3913613e-3, rel=1e-7)
+    assert [line for line in out.splitlines() if line.startswith("* hereditary  receding")]
+
+
+def test_table_of_the_readme(vcor):
+    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```")[1::2]
+    block = next(block for block in blocks if "what the choice of model is worth" in block)
+    lines = [line for line in block.splitlines() if line and line != "..."]
+    out = vcor.succeeds("verify", PAPER / "sls.nml").splitlines()
+    assert [line for line in lines if line not in out] == []
+
+
+def test_table_without_a_plate(vcor):
+    """A half space has one plate model only."""
+    text = "\n".join(
+        line for line in SLS.splitlines() if "half_thickness" not in line
+    )
+    text, _ = edit(text + "\n", "plate", "waves", "'none'")
+    vcor.write(text)
+    assert set(models(vcor.succeeds("verify", "case.nml"))) == {
+        ("none", "boltzmann"),
+        ("none", "receding"),
+    }
+
+
+@pytest.mark.parametrize("model", BALLS)
+def test_series(vcor, model):
+    """Both methods agree on two bodies in series, whatever the sphere is made of."""
+    vcor.write(PAIR.replace("MODEL", model).replace("KEYS", BALLS[model]))
+    out = vcor.succeeds("verify", "case.nml")
+    assert int(re.search(r"verified: (\d+) digits", out)[1]) >= 7
+
+
+REFUSED = [
+    ("contact.law=receding", "solver.volterra_order=2", "second term"),
+    ("contact.law=receding", "solver.scheme=adams_bashforth", "all the past"),
+    ("contact.law=receding", "solver.continue_after_separation=.true.", "no meaning"),
+    ("plate.waves=hereditary", "solver.scheme=adams_bashforth", "differentiates"),
+]
+
+
+@pytest.mark.parametrize("first, second, reason", REFUSED)
+def test_refused(vcor, first, second, reason):
+    vcor.write(SLS)
+    sets = ["--set", first, "--set", second]
+    for command in ("run", "check", "verify"):
+        vcor.refuses(command, "case.nml", *sets, code=INPUT, says=[first.split("=")[1], reason])
+
+
+def test_unknown_words(vcor):
+    text, line = edit(f"&contact\n/\n{SLS}", "contact", "law", "'recedeing'")
+    vcor.write(text)
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="receding")
