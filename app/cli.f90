@@ -11,10 +11,12 @@ module vcor_app_cli
    public :: request_t, parse, commands
 
    !> Known commands
-   character(len=*), parameter :: commands = 'run check material fit plot verify help'
+   character(len=*), parameter :: commands = 'run merge check material fit plot verify help'
    !> Options of run
-   character(len=*), parameter :: run_options = '--set --output --print --threads --quiet ' &
-      //'--help --version'
+   character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
+      //'--shard --quiet --help --version'
+   !> Options of merge
+   character(len=*), parameter :: merge_options = '--output --quiet --help --version'
    !> Options of check
    character(len=*), parameter :: check_options = '--set --help --version'
    !> Options of material, and of fit beside its own
@@ -26,7 +28,7 @@ module vcor_app_cli
    !> Options of verify
    character(len=*), parameter :: verify_options = '--set --quiet --help --version'
    !> Options of help
-   character(len=*), parameter :: help_options = '--help --version'
+   character(len=*), parameter :: help_options = '--man --markdown --help --version'
 
    !> Most points of --points
    integer, parameter :: most_points = 100000
@@ -45,6 +47,12 @@ module vcor_app_cli
       character(len=:), allocatable :: directory
       !> Threads of --threads; 0 without it
       integer :: threads = 0
+      !> Whether to go on with what is there
+      logical :: resume = .false.
+      !> Number of the shard; 0 without --shard
+      integer :: shard = 0
+      !> Number of shards; 0 without --shard
+      integer :: shards = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
       !> What is to be fitted
@@ -59,6 +67,8 @@ module vcor_app_cli
       logical :: script = .false.
       !> Nothing on the screen
       logical :: quiet = .false.
+      !> Form of a page of help: empty for the screen, else --man or --markdown
+      character(len=:), allocatable :: form
    end type request_t
 
 contains
@@ -77,15 +87,18 @@ contains
       logical :: plain
 
       allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
+      request%form = ''
       if (size(words) == 0) then
-         call raise(error, error_usage, 'no command; known: run, check, material, fit, plot, ' &
-            //'verify, help (vcor help says more)')
+         call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
+            //'plot, verify, help (vcor help says more)')
          return
       end if
 
       select case (words(1)%text)
       case ('run')
          known = run_options
+      case ('merge')
+         known = merge_options
       case ('check')
          known = check_options
       case ('material')
@@ -135,6 +148,13 @@ contains
             return
          end if
          select case (name)
+         case ('--man', '--markdown')
+            if (mark > 0) then
+               call raise(error, error_usage, 'option '//name//' takes no value')
+               return
+            end if
+            request%form = name
+            cycle
          case ('--help')
             deallocate (request%files)
             allocate (request%files(0))
@@ -144,12 +164,13 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--shear', '--dynamic', '--script')
+         case ('--quiet', '--resume', '--shear', '--dynamic', '--script')
             if (mark > 0) then
                call raise(error, error_usage, 'option '//name//' takes no value')
                return
             end if
             if (name == '--quiet') request%quiet = .true.
+            if (name == '--resume') request%resume = .true.
             if (name == '--shear') request%fit%shear = .true.
             if (name == '--dynamic') request%fit%dynamic = .true.
             if (name == '--script') request%script = .true.
@@ -172,6 +193,8 @@ contains
       end do
 
       if (size(request%files) == 0) call refuse_no_case(request, error)
+      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
+         '--print is for whole sweeps, found --shard as well')
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
@@ -186,6 +209,10 @@ contains
 
       if (request%command == 'help') return
       if (request%command == 'verify' .and. size(request%settings) == 0) return
+      if (request%command == 'merge') then
+         call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
+         return
+      end if
       if (request%command == 'fit') return
       if (request%command == 'plot') then
          call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
@@ -223,6 +250,8 @@ contains
          call append_word(request%legends, value)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
+      case ('--shard')
+         call read_shard(value, request, error)
       case ('--points')
          call read_whole(option, value, 2, most_points, request%range%points, error)
       case ('--from')
@@ -235,6 +264,29 @@ contains
          call apply_fit_option(option, value, request%fit, error)
       end select
    end subroutine apply
+
+   !> Read the value of --shard, I/N
+   subroutine read_shard(value, request, error)
+      !> The value as it is written
+      character(len=*), intent(in) :: value
+      !> The request
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: most_shards = 1000000
+      integer :: mark
+
+      mark = index(value, '/')
+      if (mark == 0) then
+         call raise(error, error_usage, "--shard: found '"//printable(trim(value)) &
+            //"', expected I/N: shard I of N, as in --shard 1/4")
+         return
+      end if
+      call read_whole('--shard', value(mark + 1:), 1, most_shards, request%shards, error)
+      if (allocated(error)) return
+      call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
+   end subroutine read_shard
 
    !> Split the value of --print or --quantity
    subroutine add_names(option, list, request, error)

@@ -6,13 +6,15 @@ module vcor_app_driver
    use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_text
    use vcor_app_job, only : job_t, prepare
+   use vcor_app_merge, only : merge_shards
+   use vcor_app_manual, only : manual_text
    use vcor_app_material, only : show_materials
    use vcor_app_plot, only : plot
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
-   use vcor, only : default_accuracy, error_numerical, error_t, integer_text, real_text, version, &
-      write_stdout
+   use vcor, only : default_accuracy, error_numerical, error_t, integer_text, real_text, &
+      share_error, this_rank, version, write_stdout
    implicit none
    private
 
@@ -20,18 +22,26 @@ module vcor_app_driver
 
 contains
 
-   !> Do what is asked for
+   !> Do what is asked for. All ranks run cases; for the rest one is enough
    subroutine execute(request, error)
       !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      if (request%command == 'run') then
+         call run(request, error)
+         return
+      else if (this_rank() > 0) then
+         return
+      end if
       select case (request%command)
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
       case ('help')
-         call help(request%files, error)
+         call help(request%files, request%form, error)
+      case ('merge')
+         call merge_shards(request, error)
       case ('check')
          call check(request, error)
       case ('material')
@@ -43,31 +53,36 @@ contains
       case ('verify')
          call verify(request, error)
       case default
-         call run(request, error)
+         continue
       end select
    end subroutine execute
 
-   !> One line on stderr
+   !> One line on stderr; all ranks have the same to say
    subroutine complain(error)
       !> The error
       type(error_t), intent(in) :: error
 
+      if (this_rank() > 0) return
       write (error_unit, '(a)') 'vcor: error: '//error%message
    end subroutine complain
 
    !> Print a help page
-   subroutine help(topics, error)
+   subroutine help(topics, form, error)
       !> Topic, if any
       type(argument_t), intent(in) :: topics(:)
+      !> Empty for the screen, --man or --markdown for a page of the manual
+      character(len=*), intent(in) :: form
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: text, topic
 
-      if (size(topics) > 0) then
-         call help_text(topics(1)%text, text, error)
+      topic = ''
+      if (size(topics) > 0) topic = topics(1)%text
+      if (form == '') then
+         call help_text(topic, text, error)
       else
-         call help_text('', text, error)
+         call manual_text(topic, form == '--man', text, error)
       end if
       if (.not. allocated(error)) call write_stdout(text, error)
    end subroutine help
@@ -179,6 +194,7 @@ contains
       integer :: i
 
       call prepare(request, jobs, error)
+      call share_error(error)
       if (allocated(error)) return
       do i = 1, size(jobs)
          call run_job(request, jobs(i), trouble)

@@ -10,7 +10,8 @@ module vcor_app_help
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
    !> Known topics
-   character(len=*), parameter :: topics = 'run check material fit plot verify input output help'
+   character(len=*), parameter :: topics = &
+      'run merge check material fit plot verify input output help'
 
 contains
 
@@ -28,6 +29,8 @@ contains
          text = overview()
       case ('run')
          text = run_page()
+      case ('merge')
+         text = merge_page()
       case ('check')
          text = check_page()
       case ('material')
@@ -55,16 +58,18 @@ contains
 
       text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
          //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
+         //'       vcor merge SHARD.h5 ...            one sweep from its shards'//nl &
          //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
          //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
          //'       vcor fit DATA                      identify a material from data'//nl &
          //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, check, material, fit,'//nl &
-         //'                                          plot, verify, input, output'//nl &
+         //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
+         //'                                          fit, plot, verify, input, output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
+      text = text//nl//'pages of the manual: vcor help [input|output] --man, or --markdown'//nl
    end function overview
 
    !> Page of run
@@ -86,8 +91,32 @@ contains
          //'                          impact, and write files only if --output is given;'//nl &
          //'                          names: vcor help output, or a parameter that is swept'//nl &
          //'  --threads N             threads of a sweep; default: as many as there are cores'//nl &
-         //'  --quiet                 print nothing'//nl
+         //'  --resume                go on with a sweep that was interrupted'//nl &
+         //'  --shard I/N             solve part I of N of a sweep, to STEM_shard_I_of_N.h5;'//nl &
+         //'                          vcor merge makes one of them'//nl &
+         //'  --quiet                 print nothing'//nl//nl &
+         //'A sweep that takes more than a moment keeps what is finished in STEM.part.h5, a'//nl &
+         //'valid file at any time. SIGINT (Ctrl-C) and SIGTERM end it after the points at'//nl &
+         //'work, with exit code 130 or 143. With --resume the same command goes on, after a'//nl &
+         //'crash too, and gives the same files. A file of another case, or of another'//nl &
+         //'version, is refused.'//nl &
+         //'Results of another case are replaced, and that is said; unfinished ones are not.'//nl &
+         //'Built for MPI (cmake --preset mpi), mpirun vcor run shares a sweep among ranks.'//nl
    end function run_page
+
+   !> Page of merge
+   function merge_page() result(text)
+      !> The page
+      character(len=:), allocatable :: text
+
+      text = 'usage: vcor merge STEM_shard_*.h5 [options]'//nl//nl &
+         //'Makes STEM_summary.csv and STEM.h5 of the files that vcor run --shard I/N has'//nl &
+         //'written, the same as one run makes. All N shards are needed, each once, finished,'//nl &
+         //'of the same case and version. Exit code 5: points without result, as for run.'//nl//nl &
+         //'  --output DIR            directory of the files, made if it is not there;'//nl &
+         //'                          default: that of the case'//nl &
+         //'  --quiet                 print nothing'//nl
+   end function merge_page
 
    !> Page of check
    function check_page() result(text)

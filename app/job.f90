@@ -3,12 +3,13 @@ module vcor_app_job
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
-      join_path, method_for, new_sweep, override, printable, quantity_names, raise, read_case, &
-      read_data, same_file, single_impact, suggestion, sweep_t
+      integer_text, join_path, method_for, new_part, new_sweep, override, part_t, &
+      printable, quantity_names, raise, read_case, read_data, same_file, single_impact, &
+      suggestion, sweep_t
    implicit none
    private
 
-   public :: job_t, prepare, endings, material_endings
+   public :: job_t, prepare, endings, material_endings, shard_text
 
    !> Letters of the longest ending
    integer, parameter :: longest_ending = 24
@@ -19,6 +20,8 @@ module vcor_app_job
       type(case_t) :: case
       !> Its impacts
       type(sweep_t) :: sweep
+      !> Those of them that are to be solved
+      type(part_t) :: part
       !> Its impact where it has one only
       type(impact_t) :: impact
       !> Its method
@@ -87,6 +90,7 @@ contains
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)
             job%path = join_path(directory, stem)
+            job%part = new_part(job%sweep%grid%count(), 1, 1)
             call job%case%get('output', 'csv', csv)
             call job%case%get('output', 'hdf5', hdf5)
             call job%case%get('output', 'history', history)
@@ -104,6 +108,11 @@ contains
             if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
                job%writes = .false.
             if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
+            call take_shard(request, job, error)
+            if (allocated(error)) return
+            if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
+               '--resume: no file is written that could be resumed; --print needs --output for it')
+            if (allocated(error)) return
          end associate
          do j = 1, i
             call refuse_clash(request, jobs, i, j, error)
@@ -111,6 +120,48 @@ contains
          end do
       end do
    end subroutine prepare
+
+   !> Take the part of --shard
+   subroutine take_shard(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(inout) :: job
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: number, parts
+
+      if (request%shards == 0) return
+      number = integer_text(request%shard)
+      parts = integer_text(request%shards)
+      if (.not. job%sweep%is_grid()) then
+         call raise(error, error_usage, '--shard takes a part of a sweep, but ' &
+            //job%case%source//' has no &sweep group')
+         return
+      else if (request%shards > job%part%points) then
+         call raise(error, error_usage, '--shard: found '//number//'/'//parts//', but ' &
+            //job%case%source//' has '//integer_text(job%part%points) &
+            //' points; expected no more shards than points')
+         return
+      end if
+      job%part = new_part(job%part%points, request%shard, request%shards)
+      job%path = job%path//'_shard_'//number//'_of_'//parts
+      ! what vcor merge reads
+      job%writes = [.false., .false., .true.]
+   end subroutine take_shard
+
+   !> Which shard, for messages
+   function shard_text(part) result(text)
+      !> The part
+      type(part_t), intent(in) :: part
+      !> Words, or nothing
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (part%parts > 1) text = ' of shard '//integer_text(part%number)//' of ' &
+         //integer_text(part%parts)
+   end function shard_text
 
    !> Names of --print with a dot are parameters that the case sweeps
    subroutine check_names(request, grid, error)

@@ -5,7 +5,7 @@ program vcor_main
    use vcor_app_argument, only : argument_t, get_arguments
    use vcor_app_cli, only : parse, request_t
    use vcor_app_driver, only : complain, execute
-   use vcor, only : error_t
+   use vcor, only : error_t, join_ranks, leave_ranks, share_error
    implicit none
 
    interface
@@ -21,12 +21,18 @@ program vcor_main
    type(request_t) :: request
    type(error_t), allocatable :: error
 
+   call join_ranks()
    call get_arguments(words)
    call parse(words, request, error)
+   call share_error(error)
    if (.not. allocated(error)) call execute(request, error)
+   call share_error(error)
    if (allocated(error)) then
       call complain(error)
       flush (error_unit)
+   end if
+   call leave_ranks()
+   if (allocated(error)) then
       call c_exit(int(error%code, c_int))
    end if
 end program vcor_main

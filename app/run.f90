@@ -1,14 +1,15 @@
-!> Running a case: its impact, or the impacts of its sweep
+!> Running a case: its impact; its sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_band, only : warn_of_bands
-   use vcor_app_job, only : endings, job_t
+   use vcor_app_files, only : write_files, write_numbers
+   use vcor_app_job, only : job_t
+   use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : report, short
-   use vcor_app_sweep_screen, only : coordinates, sweep_report
-   use vcor, only : contact_lasting, contact_separated, data_file, default_threads, &
-      error_numerical, error_t, failures_t, history_table, integer_text, make_directory, &
-      new_summary, outcome_t, place_in_table, raise, solve_point, solve_points, summary_t, &
-      summary_table, table_t, trajectory_t, worker_t, wp, write_csv, write_hdf5, write_rows, &
+   use vcor_app_sweep, only : run_sweep
+   use vcor, only : contact_lasting, contact_separated, data_file, error_numerical, error_t, &
+      identity_of, identity_t, integer_text, new_summary, outcome_t, raise, share_error, &
+      solve_point, summary_t, summary_table, table_t, this_rank, trajectory_t, worker_t, wp, &
       write_stdout
    implicit none
    private
@@ -17,87 +18,89 @@ module vcor_app_run
 
 contains
 
-   !> Run a case
+   !> Run a case; all ranks call this
    subroutine run_job(request, job, error)
       !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
       !> Error of code `error_numerical` if an impact has no result, of another if there is worse;
+      !> unallocated on success. All ranks have the same
+      type(error_t), allocatable, intent(out) :: error
+
+      if (job%sweep%is_grid()) then
+         call run_sweep(request, job, error)
+      else if (this_rank() == 0) then
+         call run_impact(request, job, error)
+      end if
+      call share_error(error)
+   end subroutine run_job
+
+   !> Run a case of one impact
+   subroutine run_impact(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Error of code `error_numerical` if the impact has no result, of another if there is worse;
       !> unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(previous_t) :: previous
+      type(identity_t) :: identity
       type(summary_t) :: summary
       type(table_t) :: table
       type(worker_t) :: worker
       type(outcome_t) :: outcome
-      type(failures_t) :: failures
       type(error_t), allocatable :: trouble
-      character(len=:), allocatable :: files, text, title
-      integer :: points
+      character(len=:), allocatable :: files
+      logical :: is_finished
 
-      points = job%sweep%grid%count()
-      call new_summary(summary, points, error)
+      identity = identity_of(job%case, job%part)
+      call look_back(job, identity, previous)
+      call heed(request, previous, is_finished, error)
+      if (allocated(error) .or. is_finished) return
+
+      call new_summary(summary, 1, error)
       if (allocated(error)) return
-      if (job%sweep%is_grid()) then
-         call solve_points(job%sweep, 1, points, threads_of(request), summary, failures)
-         call end_of_sweep(job, failures, error)
-      else
-         call solve_point(job%sweep, 1, worker, outcome, error)
-         if (allocated(error)) then
-            error%message = job%case%source//': '//error%message
-            return
-         end if
-         call summary%put(1, outcome)
-         call end_of(job, outcome, worker%trajectory, error)
+      call solve_point(job%sweep, 1, worker, outcome, error)
+      if (allocated(error)) then
+         error%message = job%case%source//': '//error%message
+         return
       end if
+      call summary%put(1, outcome)
+      call end_of(job, outcome, worker%trajectory, error)
 
       call warn_of_bands(job, summary)
-      call job%case%get('case', 'title', title)
-      call summary_table(table, title, job%case%to_text(complete=.true.), job%sweep%grid, summary)
-      call write_files(request, job, table, worker%trajectory, files, trouble)
+      call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
+      call write_files(request, job, identity, table, worker%trajectory, files, trouble)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, table, trouble)
       else if (.not. request%quiet) then
-         if (job%sweep%is_grid()) then
-            text = sweep_report(job, title, table, failures, files)
-         else
-            text = report(job%case%source, title, job%method, outcome, &
-               worker%trajectory%state(1, worker%trajectory%last), &
-               kernel_of(worker%trajectory)//remarks_on(job, outcome)//files)
-         end if
-         call write_stdout(text, trouble)
+         call write_stdout(report(job%case%source, identity%title, job%method, outcome, &
+            worker%trajectory%state(1, worker%trajectory%last), &
+            kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
+            //as_line(replaced(previous))), trouble)
       end if
-      if (allocated(trouble)) call move_alloc(trouble, error)
-   end subroutine run_job
+      if (allocated(trouble)) then
+         call move_alloc(trouble, error)
+      else if (request%quiet .or. size(request%names) > 0) then
+         call remark(replaced(previous))
+      end if
+   end subroutine run_impact
 
-   !> Number of threads
-   function threads_of(request) result(threads)
-      !> The request
-      type(request_t), intent(in) :: request
-      !> Number, at least 1
-      integer :: threads
+   !> What there is to say as a line of the report
+   pure function as_line(words) result(text)
+      !> The words; nothing is fine
+      character(len=*), intent(in) :: words
+      !> A line, or nothing
+      character(len=:), allocatable :: text
 
-      threads = request%threads
-      if (threads == 0) threads = default_threads()
-   end function threads_of
-
-   !> Points without a result make an error of the whole, after all others are done
-   subroutine end_of_sweep(job, failures, error)
-      !> The case
-      type(job_t), intent(in) :: job
-      !> What has no result
-      type(failures_t), intent(in) :: failures
-      !> Error of code `error_numerical`, unallocated where all points have a result
-      type(error_t), allocatable, intent(out) :: error
-
-      if (failures%count == 0) return
-      call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
-         //' of '//integer_text(job%sweep%grid%count())//' points without result, the first at ' &
-         //coordinates(job, failures%reason(1)%first)//': '//failures%reason(1)%message)
-   end subroutine end_of_sweep
+      text = ''
+      if (len(words) > 0) text = '  '//words//new_line('a')
+   end function as_line
 
    !> What stood for a kernel that is no finite sum of exponentials
    function kernel_of(trajectory) result(text)
@@ -167,7 +170,7 @@ contains
          !> The remark
          character(len=*), intent(in) :: line
 
-         text = text//'  note: '//line//new_line('a')
+         text = text//as_line('note: '//line)
       end subroutine add
    end function remarks_on
 
@@ -197,66 +200,5 @@ contains
             //'equilibrium modulus, does not push it back')
       end if
    end subroutine end_of
-
-   !> Write the files of a case
-   subroutine write_files(request, job, summary, trajectory, files, error)
-      !> The request
-      type(request_t), intent(in) :: request
-      !> The case
-      type(job_t), intent(in) :: job
-      !> Its outcomes
-      type(table_t), intent(in) :: summary
-      !> The trajectory of a single impact
-      type(trajectory_t), intent(in) :: trajectory
-      !> Files written, one to a line
-      character(len=:), allocatable, intent(out) :: files
-      !> Unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(table_t) :: course
-      character(len=:), allocatable :: directory
-      integer :: i
-
-      files = ''
-      if (.not. any(job%writes)) return
-      if (job%history) call history_table(course, summary%title, summary%case_text, trajectory)
-
-      call job%case%get('output', 'directory', directory)
-      if (allocated(request%directory)) directory = request%directory
-      call make_directory(directory, error)
-      if (allocated(error)) return
-      if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
-      if (allocated(error)) return
-      if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
-      if (allocated(error)) return
-      if (job%writes(3)) then
-         if (job%history) then
-            call write_hdf5(job%path//trim(endings(3)), summary, course, error)
-         else
-            call write_hdf5(job%path//trim(endings(3)), summary, error=error)
-         end if
-         if (allocated(error)) return
-      end if
-      do i = 1, size(endings)
-         if (job%writes(i)) files = files//'  written '//job%path//trim(endings(i))//new_line('a')
-      end do
-   end subroutine write_files
-
-   !> Bare numbers for --print, a line per impact
-   subroutine write_numbers(request, summary, error)
-      !> The request
-      type(request_t), intent(in) :: request
-      !> Outcomes
-      type(table_t), intent(in) :: summary
-      !> Unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      integer :: places(size(request%names)), i
-
-      do i = 1, size(places)
-         places(i) = place_in_table(summary, request%names(i)%text)
-      end do
-      call write_rows(summary, places, error)
-   end subroutine write_numbers
 
 end module vcor_app_run

@@ -1,14 +1,14 @@
 !> What the screen shows of a sweep
 module vcor_app_sweep_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use vcor_app_job, only : job_t
+   use vcor_app_job, only : job_t, shard_text
    use vcor_app_screen, only : shown, significant
    use vcor, only : axis_t, failures_t, integer_text, place_in_table, quantities, table_t, &
       version, wp
    implicit none
    private
 
-   public :: sweep_report, coordinates
+   public :: sweep_report, shard_report, coordinates
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -31,6 +31,46 @@ contains
       character(len=:), allocatable :: text
 
       logical :: history
+
+      text = heading(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, ' &
+         //job%method//nl &
+         //nl//ranges(summary)
+      if (failures%count > 0) text = text//nl//reasons(job, failures)
+      call job%case%get('output', 'history', history)
+      if (history .and. any(job%writes)) text = text//nl &
+         //'  note: time histories are written of single impacts only'//nl
+      if (len(files) > 0) text = text//nl//files
+      text = text//nl
+   end function sweep_report
+
+   !> Report of a shard: what is swept, what has no result and why
+   function shard_report(job, title, failures, path) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its title
+      character(len=*), intent(in) :: title
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> File written
+      character(len=*), intent(in) :: path
+      !> Text of several lines
+      character(len=:), allocatable :: text
+
+      text = heading(job, title)//'  '//integer_text(job%part%count())//' of ' &
+         //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', '//job%method//nl
+      if (failures%count > 0) text = text//nl//reasons(job, failures)
+      text = text//nl//'  written '//path//nl//nl
+   end function shard_report
+
+   !> Program, case, title and what is swept
+   function heading(job, title) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its title
+      character(len=*), intent(in) :: title
+      !> Lines
+      character(len=:), allocatable :: text
+
       integer :: i
 
       text = 'vcor '//version//'  '//job%case%source//nl
@@ -41,15 +81,8 @@ contains
             text = text//axis_line(axes(i))
          end do
       end associate
-      text = text//nl//'  '//integer_text(job%sweep%grid%count())//' impacts, '//job%method//nl &
-         //nl//ranges(summary)
-      if (failures%count > 0) text = text//nl//reasons(job, failures)
-      call job%case%get('output', 'history', history)
-      if (history .and. any(job%writes)) text = text//nl &
-         //'  note: time histories are written of single impacts only'//nl
-      if (len(files) > 0) text = text//nl//files
       text = text//nl
-   end function sweep_report
+   end function heading
 
    !> What is swept
    function axis_line(axis) result(text)
@@ -116,8 +149,8 @@ contains
 
       integer :: i
 
-      text = '  '//integer_text(failures%count)//' of '//integer_text(job%sweep%grid%count()) &
-         //' points without result:'//nl
+      text = '  '//integer_text(failures%count)//' of '//integer_text(job%part%count()) &
+         //' points'//shard_text(job%part)//' without result:'//nl
       do i = 1, failures%reasons
          associate (reason => failures%reason(i))
             text = text//'  '//right(integer_text(reason%count), 8)//'  '//reason%message//nl &

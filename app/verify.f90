@@ -1,9 +1,9 @@
 !> The command verify: the program against laws and known numbers, or a case by several methods
 module vcor_app_verify
    use vcor_app_job, only : job_t
-   use vcor_app_verify_screen, only : comparison_text, law_text
+   use vcor_app_verify_screen, only : comparison_text, law_text, models_text
    use vcor, only : build_law, compare, comparison_t, error_numerical, error_t, integer_text, &
-      law_count, law_t, raise, verdict_t, verify_law, version, write_stdout
+      law_count, law_t, model_t, raise, solve_models, verdict_t, verify_law, version, write_stdout
    implicit none
    private
 
@@ -59,6 +59,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(comparison_t) :: comparison
+      type(model_t), allocatable :: models(:)
       character(len=:), allocatable :: title
 
       call compare(job%case, job%impact, comparison, error)
@@ -67,7 +68,11 @@ contains
          return
       end if
       call job%case%get('case', 'title', title)
-      if (.not. quiet) call write_stdout(comparison_text(job%case%source, title, comparison), error)
+      if (.not. quiet) then
+         call solve_models(job%case, models)
+         call write_stdout(comparison_text(job%case%source, title, comparison) &
+            //models_text(models), error)
+      end if
       if (allocated(comparison%objection) .and. .not. allocated(error)) &
          call raise(error, error_numerical, job%case%source//': '//comparison%objection)
    end subroutine verify_case

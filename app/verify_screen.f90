@@ -2,13 +2,13 @@
 module vcor_app_verify_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_screen, only : short, significant
-   use vcor, only : attempt_case, attempt_count, attempt_first, attempt_halved, attempt_refined, &
+   use vcor, only : contact_separated, model_t, attempt_case, attempt_count, attempt_first, attempt_halved, attempt_refined, &
       comparison_t, error_of_best, integer_text, is_honest, law_t, status_name, verdict_t, &
       version, wp
    implicit none
    private
 
-   public :: law_text, comparison_text
+   public :: law_text, comparison_text, models_text
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -82,6 +82,40 @@ contains
       end if
       text = text//nl
    end function comparison_text
+
+   !> A case with every plate model and both contact laws
+   function models_text(models) result(text)
+      !> The models
+      type(model_t), intent(in) :: models(:)
+      !> Lines
+      character(len=:), allocatable :: text
+
+      character(len=10) :: waves
+      character(len=9) :: law
+      integer :: i
+
+      waves = 'waves'
+      law = 'law'
+      text = '  what the choice of model is worth; * that of the case'//nl &
+         //'  '//waves//'  '//law//right('cor', 14)//right('cor_sphere', 14) &
+         //right('contact_time [s]', 20)//right('residual_indentation [m]', 26)//nl
+      do i = 1, size(models)
+         associate (this => models(i))
+            text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
+            if (allocated(this%failure)) then
+               text = text//right('refused', 14)//nl
+            else if (this%outcome%status /= contact_separated) then
+               text = text//right(status_name(this%outcome%status), 14)//nl
+            else
+               text = text//significant(this%outcome%cor, 8, 14) &
+                  //significant(this%outcome%cor_sphere, 8, 14) &
+                  //significant(this%outcome%contact_time, 8, 20) &
+                  //significant(this%outcome%residual_indentation, 8, 26)//nl
+            end if
+         end associate
+      end do
+      text = text//nl
+   end function models_text
 
    !> How each solution was made, and whether its error is what it says
    function attempts_text(comparison) result(text)

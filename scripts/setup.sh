@@ -42,6 +42,10 @@ have_hdf5() {
    compiles h5fc $'use hdf5, only : h5open_f\nuse h5ds, only : h5dsset_scale_f\nend'
 }
 
+have_mpi() {
+   have mpirun && compiles mpifort $'use mpi_f08, only : mpi_init_thread\nend'
+}
+
 have_venv() { have python3 && python3 -c 'import ensurepip, venv' >/dev/null 2>&1; }
 
 # need WHAT PACKAGES COMMAND [ARGUMENT ...]: if the command fails, the packages are missing
@@ -70,9 +74,14 @@ look() {
       # fpm finds HDF5 with it
       need "pkg-config" "pkg-config" have pkg-config
       need "h5dump" "hdf5-tools" have h5dump
+      need "OpenMPI with mpi_f08" "libopenmpi-dev openmpi-bin" have_mpi
       # vcor plot draws with it, where it is there
       need "gnuplot" "gnuplot-nox" have gnuplot
       need "python3 with venv" "python3 python3-venv" have_venv
+      # the pages of man are shown, and packages are made
+      need "man" "man-db" have man
+      need "dpkg-shlibdeps" "dpkg-dev" have dpkg-shlibdeps
+      need "file" "file" have file
    fi
 }
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing and runs every test: CMake release and debug, fpm, the linter.
+# Installs what is missing and runs every test: CMake release, debug and MPI, fpm, the linter.
 # Stops at the first step that fails. The last line is the sum of all tests: N passed, N failed
 set -euo pipefail
 
@@ -86,7 +86,14 @@ with_fpm() {
       passed=$((passed + tests - bad))
       failed=$((failed + bad))
    fi
-   return $code
+   [ $code -eq 0 ] || return $code
+   begin "a project that depends on vcor, with fpm"
+   rm -rf build/consumer
+   cp -r tests/consumer build/consumer
+   cp examples/paper/sls.nml build/consumer
+   "$fpm" run from_case --directory build/consumer 2>&1 | tee "$report"
+   grep -q '^COR  *0\.40729242 ' "$report"
+   passed=$((passed + 1))
 }
 
 begin "set-up"
@@ -97,6 +104,7 @@ make_venv
 
 with_cmake release
 with_cmake debug
+with_cmake mpi
 with_fpm
 
 begin "linter"

@@ -1,31 +1,38 @@
 !> The public interface of the library: everything a program needs, re-exported
 module vcor
-   use vcor_error, only : error_file, error_input, error_internal, error_numerical, error_t, &
-      error_usage, raise
+   use vcor_error, only : code_meanings, code_names, error_file, error_input, error_internal, &
+      error_numerical, error_t, error_usage, raise
    use vcor_figure_build, only : build_figure, figure_kinds => kinds, legend_t, read_result, &
       result_t, usual_kind
-   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, waves_none, &
-      waves_relaxing
-   use vcor_impact_problem, only : impact_t, new_impact
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
+      waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
-   use vcor_io_csv, only : write_csv
+   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint, &
+      read_points
+   use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : directory_exists, file_exists, join_path, make_directory, same_file, &
-      write_file, write_stdout
+   use vcor_io_file, only : directory_exists, file_exists, join_path, make_directory, &
+      plain_file_exists, quoted_path, remove_file, same_file, stderr_is_terminal, write_file, &
+      write_stdout, write_terminal
    use vcor_io_gnuplot, only : figure_formats => formats
-   use vcor_io_hdf5, only : named_table_t, write_hdf5
+   use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
+   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
+   use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
+      read_identity, remarks_of
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_real, only : read_real
-   use vcor_io_results, only : history_table, summary_table
+   use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_io_row_text, only : place_in_table, write_rows
+   use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
@@ -46,13 +53,21 @@ module vcor
       attempt_halved, attempt_refined, compared_t, comparison_t
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
+   use vcor_study_axes, only : new_grid
    use vcor_study_identified, only : material_text, put_material
-   use vcor_study_keys, only : catalogue, group_t, groups, key_t, range_text
+   use vcor_study_keys, only : catalogue, group_t, groups, key_t, kind_name, range_text, text_key
+   use vcor_study_models, only : model_t, solve_models
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, &
       sampled_times, time_range_t
+   use vcor_study_monitor, only : monitor_t
+   use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
+      share_flag, this_rank
    use vcor_study_nearest, only : suggestion
-   use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_names, &
-      quantity_t, quantity_value, status_name
+   use vcor_study_partition, only : new_part, part_t
+   use vcor_study_points, only : solve_part
+   use vcor_study_quantity, only : history_quantities, point_failed, point_invalid, &
+      point_pending, quantities, quantity_names, quantity_t, quantity_value, status_name, &
+      status_t, statuses
    use vcor_study_reliance, only : find_reliance, reliance_t, solve_case
    use vcor_study_summary, only : new_summary, summary_t
    use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
@@ -69,37 +84,49 @@ module vcor
    public :: wp, version
    public :: error_t, raise
    public :: error_internal, error_usage, error_input, error_file, error_numerical
+   public :: code_names, code_meanings
    public :: material_t, material_data_t, new_material
    public :: prony_t, power_law_t, cerf_t, mittag_leffler_t, tabulated_t
    public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
    public :: new_mittag_leffler, new_tabulated
-   public :: contact_modulus_t, new_contact_modulus
+   public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
-   public :: impact_t, new_impact
+   public :: waves_hereditary
+   public :: impact_t, new_impact, law_boltzmann, law_receding
    public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
    public :: case_t, read_case, read_case_text, override, read_data, data_file
    public :: build_impact, build_material, build_solver
-   public :: quantity_t, quantities, quantity_names, quantity_value, status_name
+   public :: quantity_t, quantities, history_quantities, quantity_names, quantity_value
+   public :: status_t, statuses, status_name
    public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
    public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
+   public :: point_pending
    public :: default_threads, most_threads
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
    public :: comparison_t, attempt_t, compared_t, compare, is_honest, error_of_best
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
-   public :: key_t, group_t, catalogue, groups, range_text
+   public :: model_t, solve_models
+   public :: key_t, group_t, catalogue, groups, range_text, kind_name, text_key
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
+   public :: place_in_table, write_rows, named_table_t
+   public :: part_t, new_part, monitor_t, solve_part, new_grid
+   public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
+   public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
+   public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
+   public :: reader_t, open_hdf5, remark_t, write_summary
+   public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound
    public :: material_text, put_material, reliance_t, find_reliance, solve_case
    public :: sampled_times, time_units, frequency_units, modulus_units
-   public :: place_in_table, write_rows, named_table_t
    public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables
    public :: result_t, legend_t, figure_t, figure_kinds, figure_formats
    public :: read_result, usual_kind, build_figure, draw
    public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
-   public :: file_exists, directory_exists
+   public :: file_exists, directory_exists, plain_file_exists, quoted_path
+   public :: remove_file, stderr_is_terminal, write_terminal
    public :: real_text, integer_text, printable, suggestion, read_real
 
 end module vcor

@@ -6,6 +6,7 @@ module vcor_error
 
    public :: error_t, raise
    public :: error_internal, error_usage, error_input, error_file, error_numerical
+   public :: code_names, code_meanings
 
    !> Exit codes of the program; 0 is success
    integer, parameter :: error_internal = 1
@@ -17,6 +18,18 @@ module vcor_error
    integer, parameter :: error_file = 4
    !> The numerical solution failed
    integer, parameter :: error_numerical = 5
+
+   !> What the program's exit codes are called, from 0 on
+   character(len=*), parameter :: code_names(0:5) = [character(len=17) :: "success", &
+      & "internal error", "usage", "input", "file", "numerical failure"]
+   !> What they mean, from 0 on
+   character(len=*), parameter :: code_meanings(0:5) = [character(len=64) :: &
+      & "what was asked for is done", &
+      & "a fault of the program, please report it", &
+      & "the command line is wrong", &
+      & "a case or a data file is wrong", &
+      & "a file cannot be read or written", &
+      & "no result to be trusted, of one impact at least"]
 
    !> One failure
    type :: error_t

@@ -1,7 +1,7 @@
 !> Solvers by the name of their method
 module vcor_solver
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : impact_t, law_receding
    use vcor_kinds, only : wp
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_marching, only : marching_t, new_marching
@@ -12,20 +12,41 @@ module vcor_solver
 
    public :: solver_t, solver_settings_t, new_solver, check_settings, method_for
    public :: default_accuracy
+   public :: receding_without_second_term, receding_without_papers_scheme, &
+      receding_without_ghost, hereditary_without_papers_scheme
+
+   !> Why the second term of the Volterra series does not go with receding contact
+   character(len=*), parameter :: receding_without_second_term = &
+      "law = 'receding' is exact for a force that is linear in u = s^1.5: the second term of the " &
+      //"Volterra series (volterra_order = 2) has no meaning in it"
+   !> Why the paper's scheme does not go with receding contact
+   character(len=*), parameter :: receding_without_papers_scheme = &
+      "scheme = 'adams_bashforth' sums the force over all the past, law = 'receding' does not: use " &
+      //"method = 'ive', or 'direct' with scheme = 'product'"
+   !> Why receding contact does not go on after the separation
+   character(len=*), parameter :: receding_without_ghost = &
+      "with law = 'receding' nothing is left of the contact at separation: " &
+      //"continue_after_separation has no meaning"
+   !> Why the paper's scheme does not go with the hereditary plate
+   character(len=*), parameter :: hereditary_without_papers_scheme = &
+      "scheme = 'adams_bashforth' differentiates U = alpha(t) I, which waves = 'hereditary' has " &
+      //"not: use method = 'ive', or 'direct' with scheme = 'product'"
 
    !> Letters of the longest name of a method
    integer, parameter :: longest_method = len('direct')
+   !> Letters of the longest name in the settings
+   integer, parameter :: longest_name = len('adams_bashforth')
 
    !> How an impact is to be solved
    type :: solver_settings_t
       !> One of auto, ive, direct
-      character(len=:), allocatable :: method
+      character(len=longest_name) :: method = 'auto'
       !> Scheme of the direct method: product or adams_bashforth
-      character(len=:), allocatable :: scheme
+      character(len=longest_name) :: scheme = 'product'
       !> adams_bashforth: form of Eq. (8), a or b
-      character(len=:), allocatable :: form
+      character(len=longest_name) :: form = 'a'
       !> adams_bashforth: sums, rectangle or trapezoid
-      character(len=:), allocatable :: quadrature
+      character(len=longest_name) :: quadrature = 'trapezoid'
       !> Time step of the direct method [s]; 0: follows from the accuracy
       real(wp) :: time_step = 0.0_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
@@ -110,7 +131,33 @@ contains
                //"without a viscosity; use waves = 'relaxing'")
          end if
       end if
+      if (.not. allocated(error)) call check_mechanics(settings, impact, error)
    end subroutine check_settings
+
+   !> Check that law and plate are those that the solver is made for
+   subroutine check_mechanics(settings, impact, error)
+      !> How the impact is to be solved
+      type(solver_settings_t), intent(in) :: settings
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: papers_scheme
+
+      papers_scheme = settings%scheme /= 'product'
+      if (impact%law == law_receding) then
+         if (abs(settings%second_coefficient) > 0.0_wp) then
+            call raise(error, error_input, receding_without_second_term)
+         else if (papers_scheme) then
+            call raise(error, error_input, receding_without_papers_scheme)
+         else if (settings%ghost) then
+            call raise(error, error_input, receding_without_ghost)
+         end if
+      else if (impact%plate%hereditary() .and. papers_scheme) then
+         call raise(error, error_input, hereditary_without_papers_scheme)
+      end if
+   end subroutine check_mechanics
 
    !> Build a solver for an impact
    subroutine new_solver_for_impact(solver, settings, impact, error)
@@ -161,15 +208,16 @@ contains
             call move_alloc(product, solver)
          case ('adams_bashforth')
             allocate (marching)
-            call new_marching(marching, settings%time_step, settings%end_time, settings%form, &
-               settings%quadrature, error, settings%second_coefficient, settings%ghost)
+            call new_marching(marching, settings%time_step, settings%end_time, &
+               trim(settings%form), trim(settings%quadrature), error, settings%second_coefficient, &
+               settings%ghost)
             if (.not. allocated(error)) call move_alloc(marching, solver)
          case default
-            call raise(error, error_input, "unknown scheme '"//settings%scheme &
+            call raise(error, error_input, "unknown scheme '"//trim(settings%scheme) &
                //"'; known: product, adams_bashforth")
          end select
       case default
-         call raise(error, error_input, "unknown method '"//settings%method &
+         call raise(error, error_input, "unknown method '"//trim(settings%method) &
             //"'; known: auto, ive, direct")
       end select
    end subroutine new_solver_for_all

@@ -427,11 +427,11 @@ def test_the_document_has_commands():
     assert len(COMMANDS) == 14
 
 
-def test_the_example_of_the_readme(vcor):
-    """Its numbers are those of the README, and those of the material that the data are of."""
+def test_the_example_of_the_page(vcor):
+    """Its numbers are those of docs/fitting.md, and those of the material that the data are of."""
     words = ["--model", "mittag_leffler", "--density", "1100", "--name", "soft rubber"]
     out = vcor.succeeds("fit", ROOT / "examples" / "soft_rubber_data.csv", *words)
-    shown = (ROOT / "README.md").read_text()
+    shown = (ROOT / "docs" / "fitting.md").read_text()
     shown = shown[shown.index("57 points of time") : shown.index("band of the data    1.0E-07")]
     assert shown in out
     assert group(out)["exponent"] == pytest.approx(0.5, rel=1e-4)

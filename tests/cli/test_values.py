@@ -226,22 +226,6 @@ def test_unknown_choice(vcor, group, key, value, known):
     spoiled(vcor, ("sls", group, key), f"'{value}'", [value.lower(), "expected", known])
 
 
-# What the catalogue knows but no solver does yet
-NOT_YET = [
-    ("plate", "waves", "'hereditary'"),
-    ("contact", "law", "'receding'"),
-    ("contact", "pair", "'series'"),
-]
-
-
-@pytest.mark.parametrize("group, key, value", NOT_YET, ids=lambda word: word.strip("'"))
-def test_not_available_yet(vcor, group, key, value):
-    text = SLS if f"&{group}\n" in SLS else f"&{group}\n/\n{SLS}"
-    text, line = edit(text, group, key, value)
-    vcor.write(text)
-    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=key)
-
-
 def test_scheme_of_another_method(vcor):
     text, _ = edit(SLS, "solver", "method", "'ive'")
     text, line = edit(text, "solver", "scheme", "'adams_bashforth'")

@@ -288,26 +288,26 @@ def test_success_is_zero(vcor):
 # ---------------------------------------------------------------------------------- documentation
 
 
-def block_of_the_readme(word):
-    """The block of the README that holds a word, without what it leaves out."""
-    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```")[1::2]
+def block_of_the_page(word):
+    """The block of docs/accuracy.md that holds a word, without what it leaves out."""
+    blocks = (ROOT / "docs" / "accuracy.md").read_text(encoding="utf-8").split("```")[1::2]
     block = next(block for block in blocks if word in block)
     return [line for line in block.splitlines() if line and line != "..."]
 
 
-def test_table_of_the_readme(table):
+def test_table_of_the_page(table):
     """Printed with rounding that another machine may do differently: the deviations are not."""
     lines = [line[:72] for line in table.splitlines()]
-    for line in block_of_the_readme("checks, 0 failed"):
+    for line in block_of_the_page("checks, 0 failed"):
         assert line[:72] in lines
 
 
-def test_case_of_the_readme(vcor):
+def test_case_of_the_page(vcor):
     """The numbers to nine digits: the last ones are within the error of either."""
     lines = vcor.succeeds("verify", PAPER / "sls.nml").splitlines()
     cells = [line.split() for line in lines if re.search(r"\d +\d+$", line)]
     values = {words[0]: words[1:4] for words in cells if words[0] in QUANTITIES}
-    header, *rows, verdict = block_of_the_readme("direct, dt -> 0")
+    header, *rows, verdict = block_of_the_page("direct, dt -> 0")
     assert header in lines
     for row in rows:
         name, *numbers = row.split()

@@ -340,7 +340,7 @@ contains
       call add_dimension(more(1)%table, 'time', [0.0_wp], 's', 'time')
       call add_column(more(1)%table, 'force', [3.0_wp], 'N', 'force')
       path = join_path(folder, 'round trip é.h5')
-      call write_hdf5(path, summary, history, error, more)
+      call write_hdf5(path, summary, history, error, more=more)
       call check(.not. allocated(error), 'the file is written')
 
       call open_input(input, path, error)

@@ -4,6 +4,7 @@ module vcor_impact_contact
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
+   use vcor_material_series, only : new_series
    use vcor_material_type, only : material_t
    use vcor_numeric_lapack, only : dgelsy
    use vcor_numeric_legendre, only : gauss_nodes
@@ -12,11 +13,17 @@ module vcor_impact_contact
    private
 
    public :: contact_modulus_t, new_contact_modulus
+   public :: pair_eq1, pair_series
+
+   !> How two viscoelastic bodies combine: their moduli at the same time, Eq. (1) of the paper
+   integer, parameter :: pair_eq1 = 0
+   !> In series, their compliances add in the Laplace domain: exact
+   integer, parameter :: pair_series = 1
 
    !> E'(t) = E'_a E'_b/(E'_a + E'_b) with E'_i = E_i/(1 - nu_i^2), in time as the paper has it.
    !> Where one body is rigid, or both are of one material or elastic, it is a multiple of one
-   !> modulus and inherits all closed forms (Cases 1 to 4 of the paper's Section III); otherwise it
-   !> is the pair
+   !> modulus and inherits all closed forms (Cases 1 to 4 of the paper's Section III); two bodies in
+   !> series are one material; otherwise it is the pair
    type :: contact_modulus_t
       private
       !> The material, or the first of the pair
@@ -51,7 +58,7 @@ module vcor_impact_contact
 contains
 
    !> Combine the materials of sphere and plate
-   pure subroutine new_contact_modulus(self, sphere, plate, same, error)
+   pure subroutine new_contact_modulus(self, sphere, plate, same, error, pair)
       !> Contact modulus
       type(contact_modulus_t), intent(out) :: self
       !> Material of the sphere
@@ -62,10 +69,15 @@ contains
       logical, intent(in) :: same
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> One of the `pair_*` constants; absent: pair_eq1
+      integer, intent(in), optional :: pair
 
       type(prony_t) :: elastic
       real(wp) :: a, b
+      logical :: series
 
+      series = .false.
+      if (present(pair)) series = pair == pair_series
       if (sphere%rigid .and. plate%rigid) then
          call raise(error, error_input, &
             'sphere and plate are both rigid: one of them must be able to deform')
@@ -84,9 +96,13 @@ contains
          call new_elastic(elastic, a*(b/(a + b)), error)
          if (allocated(error)) return
          allocate (self%first, source=elastic)
+      else if (series) then
+         call new_series(self%first, sphere, sphere%plane_strain_factor(), plate, &
+            plate%plane_strain_factor(), error)
       else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
          call raise(error, error_input, 'a material with a viscosity has no meaning in Eq. (1) ' &
-            //'beside another deformable material: make one body rigid or both of one material')
+            //'beside another deformable material: make one body rigid or both of one material, ' &
+            //"or use contact.pair = 'series'")
       else
          allocate (self%first, source=sphere)
          allocate (self%second, source=plate)
@@ -266,6 +282,7 @@ contains
       !> The sum, its `error` told
       type(exponential_sum_t), intent(out) :: terms
 
+      real(wp), parameter :: poor = 1.0e-7_wp
       type(exponential_sum_t) :: one
 
       if (allocated(self%second)) then
@@ -273,6 +290,12 @@ contains
       else
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
+         ! a spectrum with peaks that no rule resolves
+         if (terms%error > poor .and. .not. self%first%discrete) then
+            call fit_pair(self, window, one)
+            one%viscosity = self%viscosity()
+            if (one%error < terms%error) terms = one
+         end if
       end if
    end subroutine exponentials
 

@@ -1,13 +1,15 @@
 !> Plate that carries the impact's energy away in bending waves
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_memory, only : memory_t, new_memory
    use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_type, only : material_t
    implicit none
    private
 
    public :: plate_t, new_plate
-   public :: waves_none, waves_constant, waves_relaxing, waves_frozen
+   public :: waves_none, waves_constant, waves_relaxing, waves_frozen, waves_hereditary
 
    !> Plate models: the plate does not move, U = 0
    integer, parameter :: waves_none = 0
@@ -17,6 +19,8 @@ module vcor_impact_plate
    integer, parameter :: waves_relaxing = 2
    !> U' = int alpha F' dt, alpha' and alpha'' dropped from Eq. (2): behind the paper's Fig. 7
    integer, parameter :: waves_frozen = 3
+   !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a viscoelastic plate
+   integer, parameter :: waves_hereditary = 4
 
    !> Deflection U of the plate's mid-plane under the impulse I of the contact force
    type :: plate_t
@@ -29,6 +33,8 @@ module vcor_impact_plate
       real(wp) :: initial = 0.0_wp
       !> Material of a plate whose alpha varies, otherwise not allocated
       class(material_t), allocatable :: material
+      !> What a hereditary plate remembers of the force, otherwise not allocated
+      type(memory_t), allocatable :: memory
    contains
       !> Plate parameter alpha(t)
       procedure :: alpha
@@ -38,6 +44,14 @@ module vcor_impact_plate
       procedure :: alpha_and_rate
       !> Whether the plate is the frozen one and differs from the relaxing one
       procedure :: frozen
+      !> Whether the plate remembers the force
+      procedure :: hereditary
+      !> Whether its velocity is no function of force and impulse
+      procedure :: drifts
+      !> The memory as a sum of exponentials
+      procedure :: memory_exponentials
+      !> Integral of the memory
+      procedure :: memory_integral
    end type plate_t
 
 contains
@@ -60,7 +74,7 @@ contains
          call raise(error, error_input, 'a plate with waves needs a positive half_thickness')
       else if (.not. material%density > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its material')
-      else if (.not. material%glassy() > 0.0_wp) then
+      else if (.not. material%glassy() > 0.0_wp .and. waves /= waves_hereditary) then
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
             //'a dashpot: its modulus is 0 and its deflection infinite')
       end if
@@ -68,8 +82,15 @@ contains
 
       self%coefficient = sqrt(3.0_wp*material%density/material%plane_strain_factor()) &
          /(16.0_wp*material%density*half_thickness**2)
-      self%initial = self%coefficient/sqrt(material%glassy())
+      if (material%glassy() > 0.0_wp) self%initial = self%coefficient/sqrt(material%glassy())
       self%waves = waves
+      if (waves == waves_hereditary) then
+         if (material%elastic()) return
+         allocate (self%memory)
+         call new_memory(self%memory, material, self%coefficient)
+         self%initial = self%memory%viscosity
+         return
+      end if
       ! an elastic plate is a constant one
       if (waves /= waves_constant .and. material%glassy() > material%rubbery()) &
          allocate (self%material, source=material)
@@ -101,6 +122,52 @@ contains
 
       frozen = self%waves == waves_frozen .and. allocated(self%material)
    end function frozen
+
+   !> Whether the plate remembers the force: U' = alpha F + int psi(t - x) F(x) dx
+   elemental function hereditary(self)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Whether it does; an elastic plate does not
+      logical :: hereditary
+
+      hereditary = allocated(self%memory)
+   end function hereditary
+
+   !> Whether the velocity U' - alpha F is a quantity of its own, not alpha' I
+   elemental function drifts(self)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Whether it is
+      logical :: drifts
+
+      drifts = self%frozen() .or. self%hereditary()
+   end function drifts
+
+   !> The memory psi of a hereditary plate as a sum of exponentials
+   pure subroutine memory_exponentials(self, window, accuracy, terms)
+      !> The plate, a hereditary one
+      class(plate_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum, in [m/(N s2)], alpha [m/(N s)] as its viscosity
+      type(exponential_sum_t), intent(out) :: terms
+
+      call self%memory%exponentials(window, accuracy, terms)
+   end subroutine memory_exponentials
+
+   !> Integral of the memory psi of a hereditary plate from 0 to t
+   elemental function memory_integral(self, t) result(value)
+      !> The plate, a hereditary one
+      class(plate_t), intent(in) :: self
+      !> Upper limit [s], >= 0
+      real(wp), intent(in) :: t
+      !> Integral [m/(N s)]
+      real(wp) :: value
+
+      value = self%memory%integral(t)
+   end function memory_integral
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
    elemental function alpha_rate(self, t, alpha) result(value)

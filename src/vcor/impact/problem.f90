@@ -5,6 +5,11 @@
 !>
 !>     s(t) = v0 t - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^(3/2),    k(t) = (4/3) sqrt(R) E'(t)
+!>
+!> Receding contact (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845, doi:10.1115/1.3625192): once the
+!> contact shrinks, the integral ends at t1(t), when it was as large as now and growing,
+!>
+!>     F(t) = int_0^t1 k(t - x) u'(x) dx,   int_t1^t k(t - x) s'(x) dx = 0
 module vcor_impact_problem
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : contact_modulus_t
@@ -16,6 +21,13 @@ module vcor_impact_problem
 
    public :: impact_t, new_impact
    public :: hertz, hertz_contact_time
+   public :: law_boltzmann, law_receding
+
+   !> Contact laws: the force is the hereditary integral over all the past, which is exact while the
+   !> contact grows
+   integer, parameter :: law_boltzmann = 0
+   !> While the contact shrinks, over the past up to the time at which it was as small before: exact
+   integer, parameter :: law_receding = 1
 
    !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
    !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
@@ -33,6 +45,8 @@ module vcor_impact_problem
       type(contact_modulus_t) :: modulus
       !> The plate
       type(plate_t) :: plate
+      !> One of the `law_*` constants
+      integer :: law = law_boltzmann
    contains
       !> Kernel k(t)
       procedure :: kernel
@@ -72,7 +86,8 @@ contains
    end function hertz
 
    !> Build an impact
-   pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, error)
+   pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &
+                              error, law)
       !> The impact
       type(impact_t), intent(out) :: self
       !> Velocity of approach [m/s], > 0
@@ -89,6 +104,8 @@ contains
       type(plate_t), intent(in) :: plate
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> One of the `law_*` constants; absent: law_boltzmann
+      integer, intent(in), optional :: law
 
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: decades = 60.0_wp
@@ -113,6 +130,7 @@ contains
       self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
       self%modulus = modulus
       self%plate = plate
+      if (present(law)) self%law = law
    end subroutine new_impact
 
    !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)

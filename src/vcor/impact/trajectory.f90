@@ -183,7 +183,7 @@ contains
          ! the root of the quadratic map in its stable form
          offset = time - self%state(col_time, first)
          theta = 2.0_wp*offset/(self%map(1, panel) &
-            + sqrt(self%map(1, panel)**2 + 4.0_wp*self%map(2, panel)*offset))
+            + sqrt(max(0.0_wp, self%map(1, panel)**2 + 4.0_wp*self%map(2, panel)*offset)))
          c = lagrange(self%point, self%barycentric, theta)
          state(:, i) = matmul(self%state(:, first:first + self%stages), c)
          state(col_time, i) = time

@@ -19,16 +19,17 @@
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
-   use vcor_io_file, only : commit, create_file, output_file_t, put
-   use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
-      & put_real, real_text
-   use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
-      & row_count, table_t
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
+   use vcor_io_csv_rows, only : field, new_row_writer, row_writer_t
+   use vcor_io_number, only : real_text
+   use vcor_io_table, only : check_table, column_t, row_count, table_t
    implicit none
    private
 
-   public :: write_csv
+   public :: write_csv, csv_file_t, begin_csv, add_rows, end_csv, discard_csv
 
+   !> Rows that become text at once
+   integer, parameter :: rows_per_block = 256
    !> Characters that are collected before they go to the file
    integer, parameter :: buffer_length = 65536
 
@@ -40,15 +41,45 @@ module vcor_io_csv
       character(len=buffer_length) :: buffer
       !> Last character of the buffer in use
       integer :: last = 0
-      !> Powers of ten for the numbers
-      type(decimal_t) :: decimal
    end type writer_t
+
+   !> A file that grows by rows
+   type :: csv_file_t
+      !> Whether it is begun and not ended
+      logical :: is_open = .false.
+      !> The file
+      type(output_file_t), private :: file
+   end type csv_file_t
 
 contains
 
    !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
-   subroutine write_csv(filename, table, error)
+   subroutine write_csv(filename, table, error, threads)
       !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      !> Number of threads; 1 if it is not given
+      integer, intent(in), optional :: threads
+      type(csv_file_t) :: file
+      integer :: team
+
+      team = 1
+      if (present(threads)) team = threads
+      call begin_csv(file, filename, table, error)
+      if (allocated(error)) return
+      call add_rows(file, table, 1, row_count(table), team, error)
+      if (allocated(error)) return
+      call end_csv(file, error)
+   end subroutine write_csv
+
+   !> Begin a file: what describes the table. Nothing is seen under its name before its end
+   subroutine begin_csv(file, filename, table, error)
+      !> The file
+      type(csv_file_t), intent(out) :: file
+      !> Its name; replaced if it is there
       character(len=*), intent(in) :: filename
       !> Table to write
       type(table_t), intent(in) :: table
@@ -60,17 +91,68 @@ contains
       if (allocated(error)) return
       ! Not on the stack, for the sake of its buffer
       allocate(writer)
-      call new_decimal(writer%decimal)
       call create_file(writer%file, filename, error)
       if (allocated(error)) return
       call put_head(writer, table, error)
       if (allocated(error)) return
-      call put_rows(writer, table, error)
-      if (allocated(error)) return
       call flush_buffer(writer, error)
       if (allocated(error)) return
-      call commit(writer%file, error)
-   end subroutine write_csv
+      file%file = writer%file
+      file%is_open = .true.
+   end subroutine begin_csv
+
+   !> Add rows: blocks of them become text by several threads, and go to the file in order
+   subroutine add_rows(file, table, first, last, threads, error)
+      !> The file, begun; discarded on failure
+      type(csv_file_t), intent(inout) :: file
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> First row
+      integer, intent(in) :: first
+      !> Last row
+      integer, intent(in) :: last
+      !> Number of threads
+      integer, intent(in) :: threads
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      type(row_writer_t) :: rows
+      integer :: start, team
+
+      team = max(1, min(threads, (last - first)/rows_per_block + 1))
+!$omp parallel default(none) shared(file, table, error, first, last) private(rows) &
+!$omp num_threads(team)
+      call new_row_writer(rows, table)
+!$omp do schedule(dynamic) ordered
+      do start = first, last, rows_per_block
+         call rows%take(start, min(start + rows_per_block - 1, last), table)
+!$omp ordered
+         if (.not. allocated(error)) call put(file%file, rows%text(:rows%last), error)
+!$omp end ordered
+      end do
+!$omp end do
+!$omp end parallel
+      if (allocated(error)) file%is_open = .false.
+   end subroutine add_rows
+
+   !> End a file: it gets its name
+   subroutine end_csv(file, error)
+      !> The file, begun; closed afterwards
+      type(csv_file_t), intent(inout) :: file
+      !> Set if the file is not complete; then it is discarded
+      type(error_t), allocatable, intent(out) :: error
+
+      file%is_open = .false.
+      call commit(file%file, error)
+   end subroutine end_csv
+
+   !> Give a file up; none is fine
+   subroutine discard_csv(file)
+      !> The file
+      type(csv_file_t), intent(inout) :: file
+
+      if (file%is_open) call discard(file%file)
+      file%is_open = .false.
+   end subroutine discard_csv
 
    !> Write what describes the table, and the line of the names
    subroutine put_head(writer, table, error)
@@ -122,34 +204,6 @@ contains
       end do
       call put_text(writer, c_new_line, error)
    end subroutine put_head
-
-   !> Write the rows
-   subroutine put_rows(writer, table, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
-      !> Table to write
-      type(table_t), intent(in) :: table
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i, row
-      logical :: first
-
-      do row = 1, row_count(table)
-         first = .true.
-         do i = 1, table%dimension_count
-            if (table%dimensions(i)%is_index) cycle
-            call put_value(writer, table%dimensions(i)%coordinate, coordinate_row(table, i, row), &
-               & first, error)
-            if (allocated(error)) return
-         end do
-         do i = 1, table%column_count
-            call put_value(writer, table%columns(i), row, first, error)
-            if (allocated(error)) return
-         end do
-         call put_text(writer, c_new_line, error)
-         if (allocated(error)) return
-      end do
-   end subroutine put_rows
 
    !> Write one line that says what a column is
    subroutine put_description(writer, column, error)
@@ -211,41 +265,6 @@ contains
       call put_text(writer, field(name), error)
    end subroutine put_name
 
-   !> Write one value of a column
-   subroutine put_value(writer, column, row, first, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
-      !> Column
-      type(column_t), intent(in) :: column
-      !> Number of the value
-      integer, intent(in) :: row
-      !> Whether it is the first of the line; false afterwards
-      logical, intent(inout) :: first
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-
-      ! Room for the comma and any number
-      if (writer%last > buffer_length - 1 - max(longest_real, longest_integer)) then
-         call flush_buffer(writer, error)
-         if (allocated(error)) return
-      end if
-      if (.not. first) then
-         writer%last = writer%last + 1
-         writer%buffer(writer%last:writer%last) = ","
-      end if
-      first = .false.
-      select case (column%kind)
-      case (real_column)
-         call put_real(writer%decimal, column%reals(row), writer%buffer, writer%last)
-      case (integer_column)
-         call put_integer(column%integers(row), writer%buffer, writer%last)
-      case default
-         associate (width => column%width)
-            call put_text(writer, field(column%texts((row - 1)*width + 1:row*width)), error)
-         end associate
-      end select
-   end subroutine put_value
-
    !> Write text through the buffer
    subroutine put_text(writer, text, error)
       !> Open file; discarded on failure
@@ -277,29 +296,5 @@ contains
       call put(writer%file, writer%buffer(:writer%last), error)
       writer%last = 0
    end subroutine flush_buffer
-
-   !> A text as a field of a row
-   pure function field(text)
-      !> Any text; blanks at its end do not count
-      character(len=*), intent(in) :: text
-      !> The text, between quotation marks if need be
-      character(len=:), allocatable :: field
-      ! `#` begins a comment for most readers
-      character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
-      integer :: i
-
-      field = trim(text)
-      ! An empty field might make an empty line, which readers skip
-      if (len(field) > 0) then
-         if (scan(field, special) == 0 .and. field(1:1) /= " ") return
-      end if
-
-      field = '"'
-      do i = 1, len_trim(text)
-         field = field//text(i:i)
-         if (text(i:i) == '"') field = field//'"'
-      end do
-      field = field//'"'
-   end function field
 
 end module vcor_io_csv

@@ -19,15 +19,16 @@ module vcor_io_file
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : access_exists, all_permissions, c_access, c_fclose, c_fflush, &
-      & c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, c_rename, c_text, c_write, errno_exists, &
-      & errno_interrupted, is_regular, last_errno, resolved_path, standard_output, &
-      & system_reason
+      & c_fopen, c_fwrite, c_getpid, c_isatty, c_mkdir, c_remove, c_rename, c_text, c_write, &
+      & errno_exists, errno_interrupted, is_regular, last_errno, resolved_path, standard_error, &
+      & standard_output, system_reason
    implicit none
    private
 
    public :: output_file_t, create_file, put, commit, discard
-   public :: write_file, write_stdout
-   public :: file_exists, directory_exists, make_directory, join_path, quoted_path
+   public :: write_file, write_stdout, write_terminal, stderr_is_terminal, move_file, remove_file
+   public :: file_exists, plain_file_exists, directory_exists, make_directory, join_path
+   public :: quoted_path
    public :: same_file
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
@@ -57,6 +58,21 @@ contains
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
+
+      ! One thread at a time: the length of a text that a function returns is static
+!$omp critical (vcor_file)
+      call begin(file, path, error)
+!$omp end critical (vcor_file)
+   end subroutine create_file
+
+   !> Begin a file
+   subroutine begin(file, path, error)
+      !> The open file
+      type(output_file_t), intent(inout) :: file
+      !> Its real name
+      character(len=*), intent(in) :: path
+      !> Set if the file cannot be created
+      type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: temporary
       integer(c_int) :: reason
       integer :: count
@@ -76,7 +92,7 @@ contains
          if (reason /= errno_exists) exit
       end do
       call raise_system(error, "cannot write "//quoted_path(path), reason)
-   end subroutine create_file
+   end subroutine begin
 
    !> Write to a file
    subroutine put(file, text, error)
@@ -193,6 +209,47 @@ contains
       end do
    end subroutine write_stdout
 
+   !> Whether the standard error is a terminal
+   function stderr_is_terminal() result(is_one)
+      !> Whether it is
+      logical :: is_one
+
+      is_one = c_isatty(standard_error) == 1
+   end function stderr_is_terminal
+
+   !> Write to the standard error at once; whether it works is nobody's business
+   subroutine write_terminal(text)
+      !> What to write, byte by byte: nothing is added
+      character(len=*), intent(in) :: text
+      integer(c_size_t) :: ignored
+
+      ignored = c_write(standard_error, text, len(text, kind=c_size_t))
+   end subroutine write_terminal
+
+   !> Give a file another name, in place of what has that name
+   subroutine move_file(from, to, error)
+      !> Its name
+      character(len=*), intent(in) :: from
+      !> Its new name, in the same folder
+      character(len=*), intent(in) :: to
+      !> Set if that failed
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: reason
+
+      if (c_rename(c_text(from), c_text(to)) == 0) return
+      reason = last_errno()
+      call raise_system(error, "cannot write "//quoted_path(to), reason)
+   end subroutine move_file
+
+   !> Remove a file; none is fine
+   subroutine remove_file(path)
+      !> Its name
+      character(len=*), intent(in) :: path
+      integer(c_int) :: ignored
+
+      ignored = c_remove(c_text(path))
+   end subroutine remove_file
+
    !> Whether there is a file, a device or a pipe of that name, a directory excepted; a link counts
    !> as what it points at
    function file_exists(path) result(exists)
@@ -204,6 +261,17 @@ contains
       exists = c_access(c_text(trim(path)), access_exists) == 0
       if (exists) exists = .not. directory_exists(path)
    end function file_exists
+
+   !> Whether there is a file of that name that can be looked into without consequences
+   function plain_file_exists(path) result(exists)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> True if there is one; a link counts as what it points at
+      logical :: exists
+
+      exists = file_exists(path)
+      if (exists) exists = is_regular(trim(path))
+   end function plain_file_exists
 
    !> Whether there is a directory of that name; a link counts as what it points at
    function directory_exists(path) result(exists)
@@ -386,8 +454,10 @@ contains
       !> Set to the reason
       type(error_t), allocatable, intent(inout) :: error
 
+!$omp critical (vcor_file)
       call discard(file)
       call raise_system(error, "cannot write "//quoted_path(file%path), reason)
+!$omp end critical (vcor_file)
    end subroutine fail
 
    !> Set an error with the reason of the system

@@ -1,4 +1,4 @@
-!> Namelists: groups and their statements, with line numbers
+!> Namelists as groups and their statements, with line numbers
 !>
 !> A text is split into groups `&name ... /` and their statements `key = values`, one group after
 !> the other. The

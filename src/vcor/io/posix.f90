@@ -7,19 +7,27 @@
 !> does not know the system it runs on, so another system takes an edit of this file.
 module vcor_io_posix
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int16_t, &
-      & c_null_char, c_ptr, c_size_t
+      & c_int64_t, c_null_char, c_ptr, c_size_t
    implicit none
    private
 
    public :: c_access, c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, &
       & c_rename, c_write
+   public :: c_fileno, c_fsync, c_isatty, c_lockf, c_pwrite
    public :: c_text, is_regular, last_errno, resolved_path, system_reason
-   public :: access_exists, all_permissions, errno_exists, errno_interrupted, standard_output
+   public :: access_exists, all_permissions, errno_exists, errno_interrupted, errno_locked, &
+      & lock_alone, standard_error, standard_output
 
    !> Mode of `c_access`: does something of that name exist (F_OK)
    integer(c_int), parameter :: access_exists = 0
    !> `errno`: interrupted by a signal (EINTR)
    integer(c_int), parameter :: errno_interrupted = 4
+   !> `errno`: another process has the lock (EAGAIN)
+   integer(c_int), parameter :: errno_locked = 11
+   !> Operation of `c_lockf`: for this process alone, without waiting (F_TLOCK)
+   integer(c_int), parameter :: lock_alone = 2
+   !> File descriptor of the standard error
+   integer(c_int), parameter :: standard_error = 2
    !> `errno`: there is something of that name (EEXIST)
    integer(c_int), parameter :: errno_exists = 17
    !> Permissions rwxrwxrwx, of which the user's umask takes its part away
@@ -84,6 +92,61 @@ module vcor_io_posix
          !> Number of bytes written, may be fewer than `count`; -1 if it failed
          integer(c_size_t) :: written
       end function c_write
+
+      !> File descriptor of a stream
+      function c_fileno(stream) result(descriptor) bind(c, name="fileno")
+         import :: c_int, c_ptr
+         !> Open stream
+         type(c_ptr), intent(in), value :: stream
+         !> Its descriptor
+         integer(c_int) :: descriptor
+      end function c_fileno
+
+      !> Write to a place of a file
+      function c_pwrite(descriptor, bytes, count, offset) result(written) bind(c, name="pwrite")
+         import :: c_int, c_int64_t, c_ptr, c_size_t
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> Address of what to write
+         type(c_ptr), intent(in), value :: bytes
+         !> Number of bytes
+         integer(c_size_t), intent(in), value :: count
+         !> Bytes of the file before the place
+         integer(c_int64_t), intent(in), value :: offset
+         !> Number of bytes written, may be fewer than `count`; -1 if it failed
+         integer(c_size_t) :: written
+      end function c_pwrite
+
+      !> Hand what was written to a file to the disk
+      function c_fsync(descriptor) result(status) bind(c, name="fsync")
+         import :: c_int
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_fsync
+
+      !> Lock a file from where it is read or written next, as long as the process has it open
+      function c_lockf(descriptor, operation, length) result(status) bind(c, name="lockf")
+         import :: c_int, c_int64_t
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> What to do
+         integer(c_int), intent(in), value :: operation
+         !> Number of bytes, 0: all
+         integer(c_int64_t), intent(in), value :: length
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_lockf
+
+      !> Whether a file descriptor is a terminal
+      function c_isatty(descriptor) result(is_one) bind(c, name="isatty")
+         import :: c_int
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> 1 if it is one
+         integer(c_int) :: is_one
+      end function c_isatty
 
       !> Give a file another name, in place of what has that name
       function c_rename(old, new) result(status) bind(c, name="rename")

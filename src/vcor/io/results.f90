@@ -10,7 +10,7 @@ module vcor_io_results
    implicit none
    private
 
-   public :: summary_table, history_table
+   public :: summary_table, lend_rows, take_back, history_table, unit_of
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500
@@ -52,6 +52,47 @@ contains
       end do
       call add_column(table, 'status', status, '', 'how the contact ended')
    end subroutine summary_table
+
+   !> Move outcomes to their table once more, to write some of its rows
+   subroutine lend_rows(table, summary, first, last)
+      !> The table, from which they were taken back
+      type(table_t), intent(inout) :: table
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> First row
+      integer, intent(in) :: first
+      !> Last row
+      integer, intent(in) :: last
+
+      character(len=longest_status) :: status
+      integer :: i
+
+      do i = 1, size(quantities)
+         call move_alloc(summary%values(i)%at, table%columns(i)%reals)
+      end do
+      call move_alloc(summary%steps, table%columns(size(quantities) + 1)%integers)
+      associate (column => table%columns(size(quantities) + 2))
+         do i = first, last
+            status = status_name(summary%status(i))
+            column%texts((i - 1)*column%width + 1:i*column%width) = status
+         end do
+      end associate
+   end subroutine lend_rows
+
+   !> Move outcomes from their table back
+   pure subroutine take_back(table, summary)
+      !> The table, as `summary_table` or `lend_rows` left it
+      type(table_t), intent(inout) :: table
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+
+      integer :: i
+
+      do i = 1, size(quantities)
+         call move_alloc(table%columns(i)%reals, summary%values(i)%at)
+      end do
+      call move_alloc(table%columns(size(quantities) + 1)%integers, summary%steps)
+   end subroutine take_back
 
    !> Unit as tables have it
    pure function unit_of(unit) result(name)

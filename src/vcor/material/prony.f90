@@ -64,6 +64,7 @@ contains
       allocate (self%moduli, source=moduli)
       allocate (self%rates, source=rates)
       self%viscosity = viscosity
+      self%discrete = .true.
    end subroutine new_prony
 
    !> Build the standard linear solid of Eq. (13): E_g (a/b + (1 - a/b) exp(-b t)). With b = 0 it

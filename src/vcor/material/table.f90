@@ -103,6 +103,7 @@ contains
       end do
       call set_panels(self, log(times/times(1)), log(falling/moduli(1)))
       call set_terms(self)
+      self%discrete = .true.
    end subroutine new_tabulated
 
    !> Cut the intervals between the points into panels, and integrate over them

@@ -17,6 +17,9 @@ module vcor_material_type
       real(wp) :: poisson_ratio = 0.5_wp
       !> Does not deform at all: the modulus is infinite
       logical :: rigid = .false.
+      !> Whether the modulus is a finite sum of exponentials, or is represented by one whatever the
+      !> window and the accuracy
+      logical :: discrete = .false.
       !> Viscosity of a dashpot in parallel: E(t) has a term viscosity*delta(t) [Pa s], >= 0,
       !> which `relaxation` and `integral` leave out
       real(wp) :: viscosity = 0.0_wp

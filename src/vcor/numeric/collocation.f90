@@ -21,7 +21,7 @@ module vcor_numeric_collocation
    private
 
    public :: collocation_t, panel_map_t, new_collocation
-   public :: linear, width, pairs
+   public :: closing, linear, width, pairs
 
    !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
    !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
@@ -31,6 +31,8 @@ module vcor_numeric_collocation
    integer, parameter :: pairs = width/2
    !> Index of the map of a step in t
    integer, parameter :: linear = -1
+   !> Index of the map of a step in the square root of the time that is left at its end
+   integer, parameter :: closing = linear - 1
 
    !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
    !>
@@ -70,10 +72,12 @@ module vcor_numeric_collocation
       real(wp) :: point(0:width) = 0.0_wp
       !> Barycentric weights of `point`
       real(wp) :: barycentric(0:width) = 0.0_wp
+      !> Extrapolation from the points before the last one to the end
+      real(wp) :: end_weight(0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
       !> Maps: index n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
-      !> shape (linear:)
+      !> `closing` for one in sqrt(time left), shape (closing:)
       type(panel_map_t), allocatable :: map(:)
    contains
       !> Value of a polynomial given at the points
@@ -108,11 +112,16 @@ contains
       self%barycentric(0:stages) = barycentric_weights(self%point(0:stages))
       self%derivative(0:stages, 0:stages) = &
          differentiation_matrix(self%point(0:stages), self%barycentric(0:stages))
+      self%end_weight(0:stages - 1) = barycentric_weights(self%point(0:stages - 1)) &
+         /(1.0_wp - self%point(0:stages - 1))
+      self%end_weight = self%end_weight/sum(self%end_weight)
       call integration_matrix(self%node(1:stages), matrix, error)
       if (allocated(error)) return
       self%weight(1:stages) = matrix(stages, :)
 
-      allocate (self%map(linear:steps))
+      allocate (self%map(closing:steps))
+      call diagonalise(matrix, self%node(1:stages), 2.0_wp, -1.0_wp, self%map(closing), error)
+      if (allocated(error)) return
       call diagonalise(matrix, self%node(1:stages), 1.0_wp, 0.0_wp, self%map(linear), error)
       if (allocated(error)) return
       do n = 0, steps

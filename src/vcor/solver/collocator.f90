@@ -2,7 +2,7 @@
 !> accompanied
 module vcor_solver_collocator
    use vcor_error, only : error_t
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, new_collocation, width
@@ -16,7 +16,8 @@ module vcor_solver_collocator
    private
 
    public :: collocator_t, new_collocator
-   public :: guess, solve_step, solve_near_step, improve, accompany, advance, plate_velocity
+   public :: guess, solve_step, solve_near_step, improve, accompany, advance, plate_velocity, &
+      relative_velocity
    public :: most_steps
 
    !> Stages of the solution: enough that three panels make an impact, few enough that the
@@ -272,9 +273,19 @@ contains
       !> State at the start of the panel, on return that at its end
       type(start_t), intent(inout) :: start
 
+      real(wp) :: increment(width)
+
       associate (n => rule%stages)
          call advance_modes(rule, rule%map(step%index), step%map_scale(), kernel, &
-            panel%indentation(1:), start%q)
+            hertz(panel%indentation(1:)), start%q)
+         if (size(start%p) > 0) then
+            ! P = (1 + l H)^-1 (P_n + H F), the lag of H F behind its own modes
+            increment = panel%impulse(1:) - start%impulse
+            start%p = -start%p
+            call advance_modes(rule, rule%map(step%index), step%map_scale(), start%plate, &
+               increment, start%p)
+            start%p = increment(n) - start%p
+         end if
          start%time = panel%time(n)
          start%indentation = panel%indentation(n)
          start%force = panel%force(n)
@@ -286,7 +297,7 @@ contains
    end subroutine advance
 
    !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
-   !> drift of a frozen plate
+   !> drift of a frozen or hereditary plate
    pure function plate_velocity(impact, panel, j) result(velocity)
       !> The impact
       type(impact_t), intent(in) :: impact
@@ -298,12 +309,26 @@ contains
       real(wp) :: velocity
 
       velocity = panel%alpha(j)*panel%force(j)
-      if (impact%plate%frozen()) then
+      if (impact%plate%drifts()) then
          velocity = velocity - panel%drift(j)
       else
          velocity = velocity + panel%impulse(j) &
             *impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
       end if
    end function plate_velocity
+
+   !> Rate of the indentation at a stage of a panel: s' = v0 - I/m - U'
+   pure function relative_velocity(impact, panel, j) result(velocity)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = impact%velocity - panel%impulse(j)/impact%mass - plate_velocity(impact, panel, j)
+   end function relative_velocity
 
 end module vcor_solver_collocator

@@ -17,13 +17,13 @@ module vcor_solver_general_panel
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_numeric_pairs, only : constant, ratio, times
-   use vcor_solver_modes, only : resolve_modes, start_t
+   use vcor_solver_modes, only : resolve_modes, resolve_plate, start_t
    use vcor_solver_newton, only : most_iterations, newton_t
    use vcor_solver_panel, only : panel_t
    implicit none
    private
 
-   public :: solve_general_panel
+   public :: solve_general_panel, function_of_h
 
 contains
 
@@ -51,22 +51,24 @@ contains
 
       real(wp), dimension(width) :: lambda, stiffness, memory
       real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
-      real(wp), dimension(width) :: impulse, drift
-      real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian
+      real(wp), dimension(width) :: impulse, drift, share, past
+      real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian, plate
       real(wp) :: lag(width, width, size(kernel%rates))
       integer :: n, iteration, j, k
       type(newton_t) :: newton
       type(factors_t) :: factors
-      logical :: frozen
+      logical :: frozen, remembers
 
       n = rule%stages
       frozen = impact%plate%frozen()
+      remembers = size(start%p) > 0
       panel%stages = n
       panel%map = scale*[map%slope, map%bend]
       elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
       time = start%time + elapsed
       alpha = 0.0_wp
       alpha(1:n) = impact%plate%alpha(time(1:n))
+      if (remembers) alpha(1:n) = start%plate%viscosity
       alpha_rate = 0.0_wp
       if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(time(1:n))
 
@@ -96,6 +98,14 @@ contains
          do j = 1, width
             response(:, j) = response(:, j)/impact%mass + alpha*h(:, j)
          end do
+         if (remembers) then
+            ! U has V with V' = R H F + c beside alpha I
+            call resolve_plate(start, map, lambda, share, memory)
+            past = apply(map%right, memory)
+            plate = matmul(function_of_h(map, share), h)
+            response = response + matmul(h, plate)
+            right = right - start%deflection - apply(h, past)
+         end if
       end if
 
       s = 0.0_wp
@@ -127,6 +137,7 @@ contains
       call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
       impulse = start%impulse + matmul(h, force)
       drift = start%drift + matmul(h, alpha_rate*force)
+      if (remembers) drift = -past - apply(plate, force)
       panel%time(0) = start%time
       panel%time(1:) = time
       panel%indentation(0) = start%indentation
@@ -140,7 +151,11 @@ contains
       panel%drift(0) = start%drift
       panel%drift(1:) = drift
       panel%deflection(0) = start%deflection
-      panel%deflection(1:) = start%deflection + matmul(h, alpha*force - drift)
+      if (remembers) then
+         panel%deflection(1:) = start%deflection - matmul(h, drift)
+      else
+         panel%deflection(1:) = start%deflection + matmul(h, alpha*force - drift)
+      end if
       panel%alpha(1:) = alpha
    end subroutine solve_general_panel
 

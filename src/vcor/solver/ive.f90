@@ -14,17 +14,21 @@
 !> u = s^1.5 loses its derivatives, the panels shrink geometrically.
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz_contact_time, impact_t
-   use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
+   use vcor_impact_problem, only : hertz_contact_time, impact_t, law_receding
+   use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
+      trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear
-   use vcor_numeric_linear, only : factors_t
+   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
-      new_collocator, plate_velocity, solve_step
-   use vcor_solver_landing, only : first_without_force, land
+      new_collocator, plate_velocity, relative_velocity, solve_step
+   use vcor_solver_landing, only : first_without_force, land, land_on_largest
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
+   use vcor_solver_rebound, only : follow_rebound
+   use vcor_solver_rebound_panel, only : rebound_start_t, turn_round
    use vcor_solver_recording, only : append, begin
    use vcor_solver_step, only : step_t, step_to
    use vcor_solver_type, only : solver_t
@@ -41,6 +45,13 @@ module vcor_solver_ive
    real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.05_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
+
+   !> First step over the usual one where the contact recedes: the rebound needs the approach between
+   !> the ends of its panels, too
+   real(wp), parameter :: receding_reach = 0.8_wp
+   !> What the rebound feels of the difference of the two solutions between the ends of the panels,
+   !> measured
+   real(wp), parameter :: share_of_inner = 5.0e-3_wp
 
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
@@ -96,7 +107,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
-      type(exponential_sum_t) :: kernel
+      type(exponential_sum_t) :: kernel, memory
       real(wp) :: share, end_time, window, time_scale
       logical :: complete
 
@@ -107,28 +118,43 @@ contains
       window = margin*hertz_contact_time*time_scale
       do
          call impact%kernel_exponentials(window, share*self%accuracy, kernel)
+         if (impact%plate%hereditary()) then
+            call impact%plate%memory_exponentials(window, share*self%accuracy, memory)
+         else
+            memory = no_memory()
+         end if
          ! a sum that is the kernel itself holds for ever, ghost lines beyond the end included
-         if (.not. kernel%error > 0.0_wp) window = huge(1.0_wp)
-         call follow(self, impact, kernel, time_scale, end_time, window, trajectory, complete, &
-            error)
+         if (.not. (kernel%error > 0.0_wp .or. impact%plate%hereditary())) window = huge(1.0_wp)
+         call follow(self, impact, kernel, memory, time_scale, end_time, window, trajectory, &
+            complete, error)
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
       if (trajectory%status == contact_separated) &
-         trajectory%cor_error = trajectory%cor_error + sensitivity*kernel%error
+         trajectory%cor_error = trajectory%cor_error + sensitivity*(kernel%error + memory%error)
       if (kernel%error > 0.0_wp) trajectory%kernel_terms = size(kernel%rates)
       trajectory%kernel_error = kernel%error
    end subroutine solve
 
+   !> A memory without terms
+   pure function no_memory() result(memory)
+      !> The memory
+      type(exponential_sum_t) :: memory
+
+      allocate (memory%moduli(0), memory%rates(0))
+   end function no_memory
+
    !> Follow the contact with the kernel as a sum of exponentials
-   subroutine follow(self, impact, kernel, time_scale, patience, window, trajectory, complete, &
-                     error)
+   subroutine follow(self, impact, kernel, memory, time_scale, patience, window, trajectory, &
+                     complete, error)
       !> The solver
       class(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
+      !> Memory of a hereditary plate
+      type(exponential_sum_t), intent(in) :: memory
       !> Time scale of the contact [s]
       real(wp), intent(in) :: time_scale
       !> End of the computation if the contact lasts [s]
@@ -159,11 +185,13 @@ contains
       type(start_t) :: start, coarse_start
       type(step_t) :: step
       type(panel_t) :: panel, previous, coarse, recorded
+      type(approach_t) :: stretches
+      type(rebound_start_t) :: rebound
       type(factors_t) :: factors
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
-      real(wp) :: excess, refused, force_error
+      real(wp) :: excess, refused, force_error, inner, velocity
       integer :: trial, n
-      logical :: ends, last, inherited, shallow, elastic
+      logical :: ends, last, inherited, shallow, elastic, recedes, turns
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -173,9 +201,15 @@ contains
       end_time = patience
       allocate (start%q(size(kernel%rates)))
       start%q = 0.0_wp
+      allocate (start%p(size(memory%rates)))
+      start%p = 0.0_wp
+      start%plate = memory
       coarse_start = start
+      recedes = impact%law == law_receding
+      inner = 0.0_wp
       step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
          *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
+      if (recedes) step%reach = receding_reach*step%reach
       step%length = step%reach
       if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%rule, impact, trajectory)
@@ -194,8 +228,15 @@ contains
          if (last) step = step_to(start%time, end_time - start%time)
          call guess(self%collocator%rule, impact, previous, start, step, panel)
          call solve_step(self%collocator, step, impact, kernel, start, panel, factors)
+         turns = .false.
+         if (panel%converged .and. recedes) then
+            velocity = trajectory%state(col_velocity, trajectory%final)
+            turns = is_turning(impact, panel)
+            if (turns) call land_on_largest(self%collocator, impact, kernel, start, velocity, step, &
+               panel, factors)
+         end if
          ends = .false.
-         if (panel%converged .and. trajectory%status /= contact_separated) &
+         if (panel%converged .and. trajectory%status /= contact_separated .and. .not. recedes) &
             ends = first_without_force(panel) > 0
          if (ends) call land(self%collocator, impact, kernel, start, accuracy, step, panel, &
             factors)
@@ -247,6 +288,12 @@ contains
          call append(self%collocator, impact, kernel, start, recorded, accuracy, trajectory)
          complete = .not. panel%time(n) > window
          if (.not. complete) return
+         if (recedes) then
+            inner = max(inner, difference_inside(self%collocator, panel, coarse))
+            call stretches%add(self%collocator%rule, self%collocator%rule%map(step%index), &
+               step%map_scale(), kernel, start%q, panel, velocity, &
+               trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
+         end if
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
@@ -263,6 +310,17 @@ contains
          end if
 
          call advance(self%collocator%rule, step, kernel, panel, start)
+         if (turns) then
+            call turn_round(kernel, start, stretches, rebound)
+            call follow_rebound([self%collocator%rule, self%collocator%coarse], impact, kernel, &
+               memory, stretches, rebound, accuracy, self%collocator%coarse_tolerance, end_time, &
+               trajectory, error)
+            complete = .not. trajectory%state(col_time, trajectory%final) > window
+            trajectory%cor_error = trajectory%cor_error + share_of_inner*inner &
+               /(impact%velocity*time_scale) + (abs(panel%impulse(n) - coarse%impulse(n - 1)) &
+               /impact%mass + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
+            return
+         end if
          call advance(self%collocator%coarse, step, kernel, coarse, coarse_start)
          call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp))), &
             most_steps)
@@ -284,6 +342,39 @@ contains
          difference = abs((one(n) - other(n - 1)) - (one(0) - other(0)))
       end function growth_of
    end subroutine follow
+
+   !> Whether the indentation has begun to fall
+   pure function is_turning(impact, panel)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Whether it has
+      logical :: is_turning
+
+      integer :: j
+
+      is_turning = .false.
+      do j = 1, panel%stages
+         is_turning = relative_velocity(impact, panel, j) < 0.0_wp
+         if (is_turning) return
+      end do
+   end function is_turning
+
+   !> Largest difference of the two solutions between the ends of a panel [m]
+   pure function difference_inside(collocator, panel, coarse) result(difference)
+      !> The collocation
+      type(collocator_t), intent(in) :: collocator
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Its companion
+      type(panel_t), intent(in) :: coarse
+      !> Difference
+      real(wp) :: difference
+
+      difference = maxval(abs(collocator%to_coarse(:, 0)*panel%indentation(0) &
+         + apply(collocator%to_coarse(:, 1:), panel%indentation(1:)) - coarse%indentation(1:)))
+   end function difference_inside
 
    !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
    !> collocation does not resolve the internal variables that settle within the step
@@ -317,7 +408,8 @@ contains
             panel%second_impulse(n) = panel%second_impulse(n) + time*panel%impulse(n)
             panel%indentation(n) = panel%indentation(n) + time*(impact%velocity &
                - panel%impulse(n)/impact%mass - plate_velocity(impact, panel, n))
-            panel%alpha(n) = impact%plate%alpha(panel%time(n))
+            if (.not. impact%plate%hereditary()) &
+               panel%alpha(n) = impact%plate%alpha(panel%time(n))
          end if
          panel%force(n) = 0.0_wp
       end associate

@@ -5,14 +5,15 @@ module vcor_solver_landing
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : width
    use vcor_numeric_linear, only : factors_t
-   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_near_step
+   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, relative_velocity, &
+      solve_near_step
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private
 
-   public :: first_without_force, land
+   public :: first_without_force, land, land_on_largest
 
 contains
 
@@ -32,6 +33,46 @@ contains
       end do
       stage = 0
    end function first_without_force
+
+   !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by the
+   !> polynomial of the panel is good enough: the two laws of the force part with the fourth power
+   !> of the time since the maximum
+   subroutine land_on_largest(self, impact, kernel, start, start_velocity, step, panel, factors)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Rate of the indentation there [m/s]
+      real(wp), intent(in) :: start_velocity
+      !> The step, on return the one that ends at the maximum
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the maximum; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Factors of its Jacobian
+      type(factors_t), intent(inout) :: factors
+
+      real(wp), parameter :: closest = 1.0e-8_wp
+      type(panel_t) :: longer
+      real(wp) :: velocity(0:panel%stages), theta
+      integer :: j
+
+      longer = panel
+      velocity(0) = start_velocity
+      do j = 1, panel%stages
+         velocity(j) = relative_velocity(impact, panel, j)
+      end do
+      do j = 1, panel%stages - 1
+         if (velocity(j) < 0.0_wp) exit
+      end do
+      theta = self%rule%crossing(velocity, self%rule%point(j - 1), self%rule%point(j), closest)
+      step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
+      call guess(self%rule, impact, longer, start, step, panel)
+      call solve_near_step(self, step, impact, kernel, start, self%tolerance, panel, factors)
+   end subroutine land_on_largest
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
    subroutine land(self, impact, kernel, start, accuracy, step, panel, factors)

@@ -18,7 +18,7 @@ module vcor_solver_panel
    use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_numeric_pairs, only : times
-   use vcor_solver_modes, only : resolve_modes, start_t
+   use vcor_solver_modes, only : resolve_modes, resolve_plate, start_t
    use vcor_solver_newton, only : largest, most_iterations, newton_t
    implicit none
    private
@@ -44,9 +44,9 @@ module vcor_solver_panel
       real(wp) :: second_impulse(0:width) = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(0:width) = 0.0_wp
-      !> Deflection U of a frozen plate [m]
+      !> Deflection U of a frozen plate, or the part of it that a hereditary plate's memory makes [m]
       real(wp) :: deflection(0:width) = 0.0_wp
-      !> What the velocity of a frozen plate falls behind alpha F [m/s]
+      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift(0:width) = 0.0_wp
       !> Whether Newton's iteration converged
       logical :: converged = .false.
@@ -67,6 +67,12 @@ module vcor_solver_panel
       real(wp) :: impulsive(width)
       !> H^2 S/m [m^-0.5]
       real(wp) :: inertial(width)
+      !> Whether the plate remembers the force
+      logical :: remembers
+      !> Velocity of that plate per impulse in the panel, R of `vcor_solver_modes` [m/(N s2)]
+      real(wp) :: plate(width)
+      !> Velocity of the plate by what it remembers of earlier panels [m/s]
+      real(wp) :: past(width)
       !> Impulse without a force in the panel [N s]
       real(wp) :: free_impulse
       !> Its integral [N s2]
@@ -87,7 +93,8 @@ contains
       real(wp) :: theta(width)
 
       theta = max(time - self%time(0), 0.0_wp)
-      theta = 2.0_wp*theta/(self%map(1) + sqrt(self%map(1)**2 + 4.0_wp*self%map(2)*theta))
+      theta = 2.0_wp*theta/(self%map(1) &
+         + sqrt(max(self%map(1)**2 + 4.0_wp*self%map(2)*theta, 0.0_wp)))
    end function theta
 
    !> Set up the equations of a panel
@@ -109,7 +116,7 @@ contains
       !> The panel: its times and plate parameters are set, and all values at its start
       type(panel_t), intent(inout) :: panel
 
-      real(wp) :: elapsed(width), impulse(width), inverse_mass
+      real(wp) :: elapsed(width), impulse(width), yield(width), inverse_mass
       integer :: i, n
 
       n = rule%stages
@@ -122,6 +129,8 @@ contains
       do i = 1, n
          panel%alpha(i) = impact%plate%alpha(panel%time(i))
       end do
+      ! what settles at once in a hereditary plate counts as alpha
+      if (size(start%p) > 0) panel%alpha(1:n) = start%plate%viscosity
       panel%indentation(0) = start%indentation
       panel%force(0) = start%force
       panel%impulse(0) = start%impulse
@@ -140,6 +149,17 @@ contains
          e%right = impact%velocity*panel%time(1:) - (e%free_second_impulse &
             - apply(map%right, times(map%square, e%lambda, impulse)))*inverse_mass &
             - panel%alpha(1:)*(start%impulse - apply(map%right, impulse))
+         e%remembers = size(start%p) > 0
+         if (e%remembers) then
+            ! U has V with V' = R H F + c beside alpha I
+            panel%deflection(0) = start%deflection
+            panel%drift(0) = start%drift
+            call resolve_plate(start, map, e%lambda, e%plate, e%past)
+            yield = times(map%square, e%lambda, e%plate)
+            e%inertial = e%inertial + times(map%square, yield, e%impulsive)
+            e%right = e%right - start%deflection + apply(map%right, &
+               times(map%square, yield, impulse) - times(map%square, e%lambda, e%past))
+         end if
          e%right(n + 1:) = 0.0_wp
       end associate
    end subroutine set_up
@@ -256,13 +276,16 @@ contains
       end do
       if (.not. panel%converged) return
       panel%indentation(1:) = s
-      if (present(to)) then
+      if (present(to) .and. .not. equations%remembers) then
          call integrate_to_end(map, equations, hertz(s), panel)
       else
          call integrate(map, equations, hertz(s), panel)
          ! what is left of the error goes to the force, so that the motion is that of the impulse
          panel%indentation(1:) = impact%velocity*panel%time(1:) &
             - panel%second_impulse(1:)*(1.0_wp/impact%mass) - panel%alpha(1:)*panel%impulse(1:)
+         if (equations%remembers) &
+            panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
+         panel%indentation(rule%stages + 1:) = 0.0_wp
       end if
    end subroutine solve_near_panel
 
@@ -356,12 +379,18 @@ contains
       !> The panel
       type(panel_t), intent(inout) :: panel
 
-      real(wp) :: x(width)
+      real(wp) :: x(width), y(width)
 
       x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
       panel%force(1:) = apply(map%right, x)
       x = times(map%square, equations%lambda, x)
       panel%impulse(1:) = equations%free_impulse + apply(map%right, x)
+      if (equations%remembers) then
+         y = times(map%square, equations%plate, x) + equations%past
+         panel%drift(1:) = -apply(map%right, y)
+         panel%deflection(1:) = panel%deflection(0) &
+            + apply(map%right, times(map%square, equations%lambda, y))
+      end if
       x = times(map%square, equations%lambda, x)
       panel%second_impulse(1:) = equations%free_second_impulse + apply(map%right, x)
    end subroutine integrate

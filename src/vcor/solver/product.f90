@@ -17,15 +17,18 @@
 !> contiguous arrays.
 module vcor_solver_product
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_problem, only : hertz, hertz_contact_time, impact_t, law_receding
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_dot, only : dot
-   use vcor_solver_history, only : history_weights
+   use vcor_solver_history, only : history_rule
+   use vcor_solver_plate_sums, only : plate_sums_t
+   use vcor_solver_receding, only : receding_t
    use vcor_solver_second_term, only : second_term_t
-   use vcor_solver_series, only : end_of_contact, find_series_peaks, set_series_weights
+   use vcor_solver_series, only : end_of_contact, end_of_receding_contact, find_series_peaks, &
+      set_series_weights
    use vcor_solver_type, only : solver_t
    implicit none
    private
@@ -162,21 +165,26 @@ contains
       ! Adams and Moulton's rule is stable up to 6 for a decay rate times the step
       real(wp), parameter :: stiff = 2.0_wp
       ! weights(room - i) = W_i: reversed, so that the history sum runs forward through both arrays
-      real(wp), allocatable :: weights(:), du(:)
+      real(wp), allocatable :: weights(:), moments(:), du(:)
       type(second_term_t) :: second
+      type(plate_sums_t) :: memory
+      type(receding_t) :: contact
       ! integrals over time: value, and integrand at the last node and the one before, of the force
       ! without a dashpot's, of the whole impulse, and for a frozen plate of alpha F, alpha' F and
       ! the drift, the integral of alpha' F
       real(wp), dimension(3) :: impulse, second_impulse, push, drift, lag
-      real(wp) :: rule(3), weight, t, s, u, velocity, force, whole_impulse, plate, plate_velocity
-      real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, per_force
-      real(wp) :: right, end_time, node(columns)
+      ! s and s' at the node without its force, and what they lose per force
+      real(wp), dimension(2) :: indentation, velocity
+      real(wp) :: rule(3), weight, t, s, u, last_u, speed, last_speed, force, dashpot, held
+      real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, whole_impulse
+      real(wp) :: end_time, node(columns)
       integer :: n, room
-      logical :: frozen, two_terms
+      logical :: frozen, two_terms, receding
 
       viscosity = impact%kernel_viscosity()
       frozen = impact%plate%frozen()
       two_terms = abs(self%second_coefficient) > 0.0_wp
+      receding = impact%law == law_receding
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
       room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1
@@ -188,12 +196,15 @@ contains
 
       s = 0.0_wp
       u = 0.0_wp
-      velocity = impact%velocity
+      speed = impact%velocity
       impulse = 0.0_wp
       second_impulse = 0.0_wp
       push = 0.0_wp
       drift = 0.0_wp
       lag = 0.0_wp
+      force = 0.0_wp
+      dashpot = 0.0_wp
+      held = 0.0_wp
       n = 0
       do
          n = n + 1
@@ -205,65 +216,83 @@ contains
          t = dt*real(n, wp)
          call impact%plate%alpha_and_rate(t, alpha, alpha_rate)
          rule = dt*adams_moulton
-         if (n == 1 .or. 1.5_wp*sqrt(abs(s))*dt*(alpha*stiffness + viscosity/impact%mass) > stiff) &
-            rule = dt*trapezoid
+         if (n == 1 .or. 1.5_wp*sqrt(abs(s))*dt*((alpha + dt*memory%newest)*stiffness &
+             + viscosity/impact%mass) > stiff) rule = dt*trapezoid
          weight = rule(1)
 
-         ! F = known + linear*u + quadratic*u^2, and the dashpot's viscosity*u'
-         known = dot(weights(room - n + 1:room - 1), du(1:n - 1)) - stiffness*u
-         linear = stiffness
-         quadratic = 0.0_wp
-         if (two_terms) call second%add(n, du, u, known, linear, quadratic)
-
-         ! integrals without the share of this node's force, then s + c u + d u^2 = right for u
+         ! what is known before this node's force
+         call memory%sum_up(n)
          impulse(1) = so_far(impulse)
          second_impulse(1) = so_far(second_impulse)
-         right = impact%velocity*t - (second_impulse(1) + weight*impulse(1))/impact%mass
          if (frozen) then
             push(1) = so_far(push)
             drift(1) = so_far(drift)
             lag(1) = so_far(lag)
-            right = right - (push(1) - lag(1) - weight*drift(1))
-            per_force = weight*(weight/impact%mass + alpha - weight*alpha_rate)
-         else
-            right = right - alpha*impulse(1)
-            per_force = weight*(weight/impact%mass + alpha)
          end if
-         right = right - per_force*known
-         du(n) = -u
-         call solve_step(per_force*linear + (weight/impact%mass + alpha)*viscosity, &
-            per_force*quadratic, right, s + dt*velocity, s, u)
-         du(n) = du(n) + u
-         if (two_terms) call second%accept(n, du)
 
-         force = known + (linear + quadratic*u)*u
+         if (.not. contact%shrinks) then
+            call set_motion(0.0_wp)
+            ! F = known + linear*u + quadratic*u^2, and the dashpot's viscosity*u', makes
+            ! s + c u + d u^2 = right
+            known = dot(weights(room - n + 1:room - 1), du(1:n - 1)) - stiffness*u
+            linear = stiffness
+            quadratic = 0.0_wp
+            if (two_terms) call second%add(n, du, u, known, linear, quadratic)
+            last_u = u
+            last_speed = speed
+            call solve_step(indentation(2)*linear + indentation(2)/weight*viscosity, &
+               indentation(2)*quadratic, indentation(1) - indentation(2)*known, s + dt*speed, s, u)
+            du(n) = u - last_u
+            force = known + (linear + quadratic*u)*u
+            dashpot = viscosity*u
+            ! with alpha F in U' and the dashpot's force in F
+            speed = (velocity(1) - velocity(2)*force - (velocity(2) - alpha)/weight*dashpot) &
+               /(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
+            if (two_terms) call second%accept(n, du)
+            if (receding .and. speed < 0.0_wp) then
+               ! a dashpot's impulse stays what it is at the largest indentation
+               held = viscosity*hertz(trajectory%state(col_indentation, n - 1) &
+                  + 0.5_wp*dt*last_speed**2/(last_speed - speed))
+               call set_motion(held)
+               call contact%find_force(impact, n, du, indentation, velocity, viscosity)
+            end if
+         else
+            call set_motion(held)
+            call contact%find_force(impact, n, du, indentation, velocity, viscosity)
+         end if
+         if (contact%regrows) then
+            call raise(error, error_numerical, "the contact grows again before it has ended, " &
+               //"which law = 'receding' does not cover: use law = 'boltzmann'")
+            return
+         end if
+         if (contact%shrinks) then
+            force = contact%force
+            dashpot = held
+            s = indentation(1) - indentation(2)*force
+            speed = velocity(1) - velocity(2)*force
+         end if
+
          call take(impulse, force, weight*force)
-         whole_impulse = impulse(1) + viscosity*u
+         whole_impulse = impulse(1) + dashpot
          call take(second_impulse, whole_impulse, weight*whole_impulse)
+         call memory%accept(n, whole_impulse, second_impulse(1))
+         call contact%accept(n, s)
          if (frozen) then
             call take(push, alpha*force, weight*alpha*force)
             call take(drift, alpha_rate*force, weight*alpha_rate*force)
             call take(lag, drift(1), weight*drift(1))
-            plate = push(1) - lag(1)
-            plate_velocity = -drift(1)
-         else
-            plate = alpha*whole_impulse
-            plate_velocity = alpha_rate*whole_impulse
          end if
-         ! s' = v0 - I/m - U' with alpha F in U' and the dashpot's force in F
-         velocity = (impact%velocity - whole_impulse/impact%mass - plate_velocity - alpha*force) &
-            /(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
-         force = force + 1.5_wp*viscosity*sqrt(abs(s))*velocity
+         if (.not. contact%shrinks) force = force + 1.5_wp*viscosity*sqrt(abs(s))*speed
 
          node(col_time) = t
          node(col_indentation) = s
-         node(col_velocity) = velocity
+         node(col_velocity) = speed
          node(col_force) = force
          node(col_impulse) = whole_impulse
          node(col_sphere) = impact%velocity*t - second_impulse(1)/impact%mass
          node(col_sphere_velocity) = impact%velocity - whole_impulse/impact%mass
-         node(col_plate) = plate
-         node(col_plate_velocity) = plate_velocity + alpha*force
+         node(col_plate) = node(col_sphere) - s
+         node(col_plate_velocity) = node(col_sphere_velocity) - speed
          trajectory%final = trajectory%final + 1
          trajectory%state(:, trajectory%final) = node
          if (trajectory%status == contact_separated) then
@@ -274,14 +303,22 @@ contains
          trajectory%last = n
          trajectory%steps = n
          ! while the indentation grows the force is positive: what is not is rounding
-         if (force <= 0.0_wp .and. velocity < 0.0_wp) then
+         if (contact%shrinks) then
+            if (contact%t1(3) <= 0.0_wp) then
+               trajectory%state(:, n) = end_of_receding_contact(impact, contact%t1, trajectory, n)
+               trajectory%status = contact_separated
+               exit
+            end if
+         else if (force <= 0.0_wp .and. speed < 0.0_wp) then
             trajectory%state(:, n) = end_of_contact(impact, stiffness, trajectory, n)
             trajectory%status = contact_separated
             if (.not. self%ghost) exit
             trajectory%final = n + 1
             trajectory%state(:, n + 1) = node
             if (.not. self%end_time > 0.0_wp) end_time = 2.0_wp*t
-         else if (t + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
+            cycle
+         end if
+         if (t + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
             exit
          else if (trajectory%is_stuck(impact%mass)) then
             trajectory%status = contact_sticking
@@ -303,10 +340,41 @@ contains
          if (allocated(du)) longer(:size(du)) = du
          call move_alloc(longer, du)
          allocate (longer(room))
-         longer(room:1:-1) = history_weights(impact, dt, room)
+         if (allocated(moments)) deallocate (moments)
+         allocate (moments(0:room - 1))
+         call history_rule(impact, dt, room, longer, moments)
+         longer = longer(room:1:-1)
          call move_alloc(longer, weights)
+         if (receding) call contact%prepare(dt, weights, moments)
+         if (impact%plate%hereditary()) call memory%prepare(impact%plate, dt, room)
          if (two_terms) call second%prepare(impact, self%second_coefficient, dt, room)
       end subroutine make_room
+
+      !> s and s' at this node without its force, and what they lose per force
+      subroutine set_motion(held)
+         !> Impulse of a dashpot [N s]
+         real(wp), intent(in) :: held
+
+         real(wp) :: i, j, rate
+
+         ! I and J without this node's force, and the rate of U' per impulse
+         i = impulse(1) + held
+         j = second_impulse(1) + weight*i
+         rate = alpha_rate + memory%newest
+         indentation(1) = impact%velocity*t - j/impact%mass
+         velocity(1) = impact%velocity - i/impact%mass
+         if (frozen) then
+            indentation(1) = indentation(1) - (push(1) - lag(1) - weight*drift(1))
+            velocity(1) = velocity(1) + drift(1)
+            indentation(2) = weight*(weight/impact%mass + alpha - weight*alpha_rate)
+            velocity(2) = weight/impact%mass + alpha - weight*alpha_rate
+         else
+            indentation(1) = indentation(1) - alpha*i - memory%deflection - memory%newest*j
+            velocity(1) = velocity(1) - rate*i - memory%velocity
+            indentation(2) = weight*(weight/impact%mass + alpha + weight*memory%newest)
+            velocity(2) = weight/impact%mass + alpha + weight*rate
+         end if
+      end subroutine set_motion
 
       !> An integral up to this node without the share of the node itself
       pure function so_far(integral) result(value)

@@ -14,7 +14,7 @@ module vcor_solver_recording
    implicit none
    private
 
-   public :: begin, append
+   public :: begin, append, record
 
 contains
 
@@ -56,6 +56,23 @@ contains
       !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
+      call record(self%rule, impact, panel, trajectory)
+      if (trajectory%status == contact_separated) return
+      trajectory%last = trajectory%final
+      call find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
+   end subroutine append
+
+   !> Add the nodes of a panel to the trajectory
+   subroutine record(rule, impact, panel, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
       integer :: n, first, j
 
       n = panel%stages
@@ -64,8 +81,8 @@ contains
       first = trajectory%final + 1
       trajectory%final = trajectory%final + n
       trajectory%steps = trajectory%steps + 1
-      trajectory%weight(first:trajectory%final) = self%rule%weight(1:n) &
-         *(panel%map(1) + 2.0_wp*panel%map(2)*self%rule%node(1:n))
+      trajectory%weight(first:trajectory%final) = rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
       ! what an end was moved by to its zero goes to the node there
       trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
          + (panel%time(n) - panel%time(0) - sum(panel%map))
@@ -83,10 +100,7 @@ contains
             state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
          end associate
       end do
-      if (trajectory%status == contact_separated) return
-      trajectory%last = trajectory%final
-      call find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
-   end subroutine append
+   end subroutine record
 
    !> Largest indentation and force so far
    subroutine find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)

@@ -8,7 +8,7 @@ module vcor_solver_series
    implicit none
    private
 
-   public :: end_of_contact, set_series_weights, find_series_peaks
+   public :: end_of_contact, end_of_receding_contact, set_series_weights, find_series_peaks
 
 contains
 
@@ -69,7 +69,7 @@ contains
       node(col_impulse) = hermite(a, b, dt, col_impulse, col_force, theta)
       node(col_sphere) = hermite(a, b, dt, col_sphere, col_sphere_velocity, theta)
       node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
-      if (impact%plate%frozen()) then
+      if (impact%plate%drifts()) then
          node(col_plate) = hermite(a, b, dt, col_plate, col_plate_velocity, theta)
          node(col_plate_velocity) = -parabola(drift, theta)
       else
@@ -79,6 +79,62 @@ contains
       node(col_indentation) = node(col_sphere) - node(col_plate)
       node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
    end function end_of_contact
+
+   !> State where a receding contact ends in the step before node n, as t1 gets to 0: it is a smooth
+   !> function of time, and the force goes to zero as t1^1.5
+   pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> t1 at nodes n - 2, n - 1 and n in any unit, the last one negative
+      real(wp), intent(in) :: t1(-1:1)
+      !> The trajectory, node n without a force
+      type(trajectory_t), intent(in) :: trajectory
+      !> Node
+      integer, intent(in) :: n
+      !> State
+      real(wp) :: node(columns)
+
+      ! integrals of (1 - x)^1.5 from 0 to 1, once and twice
+      real(wp), parameter :: once = 2.0_wp/5.0_wp, twice = 2.0_wp/7.0_wp
+      real(wp) :: a(columns), b(columns), drift(-1:1), theta, lower, upper, tau, dt
+      integer :: j, iteration
+
+      b = trajectory%state(:, n)
+      a = trajectory%state(:, n - 1)
+      dt = b(col_time) - a(col_time)
+      lower = 0.0_wp
+      upper = 1.0_wp
+      do iteration = 1, digits(1.0_wp)
+         theta = 0.5_wp*(lower + upper)
+         if (parabola(t1, theta) > 0.0_wp) then
+            lower = theta
+         else
+            upper = theta
+         end if
+      end do
+      do j = -1, 1
+         associate (near => trajectory%state(:, max(n - 1 + j, 0)))
+            drift(j) = impact%plate%alpha(near(col_time))*near(col_force) - near(col_plate_velocity)
+         end associate
+      end do
+
+      tau = theta*dt
+      node(col_time) = a(col_time) + tau
+      node(col_force) = 0.0_wp
+      node(col_impulse) = a(col_impulse) + once*tau*a(col_force)
+      node(col_sphere) = a(col_sphere) + tau*(a(col_sphere_velocity) &
+         - twice*tau*a(col_force)/impact%mass)
+      node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
+      if (impact%plate%drifts()) then
+         node(col_plate) = hermite(a, b, dt, col_plate, col_plate_velocity, theta)
+         node(col_plate_velocity) = -parabola(drift, theta)
+      else
+         node(col_plate) = impact%plate%alpha(node(col_time))*node(col_impulse)
+         node(col_plate_velocity) = impact%plate%alpha_rate(node(col_time))*node(col_impulse)
+      end if
+      node(col_indentation) = node(col_sphere) - node(col_plate)
+      node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
+   end function end_of_receding_contact
 
    !> Cubic through values and slopes at both ends of a step
    pure function hermite(a, b, dt, value, slope, x) result(y)

@@ -3,10 +3,10 @@
 module vcor_study_blueprint
    use vcor_constants, only : pi
    use vcor_error, only : error_t
-   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
-      waves_none, waves_relaxing
-   use vcor_impact_problem, only : impact_t, new_impact
+      waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding, new_impact
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : solver_settings_t
@@ -55,6 +55,10 @@ module vcor_study_blueprint
       real(wp) :: half_thickness = 0.0_wp
       !> One of the `waves_*` constants
       integer :: waves = waves_relaxing
+      !> One of the `law_*` constants
+      integer :: law = law_boltzmann
+      !> One of the `pair_*` constants
+      integer :: pair = pair_eq1
       !> The sphere
       type(body_t) :: sphere
       !> The plate
@@ -85,7 +89,7 @@ contains
       !> What in the case the error is about
       type(place_t), intent(out) :: cause
 
-      character(len=:), allocatable :: waves
+      character(len=:), allocatable :: waves, law, pair
       integer :: order
 
       self%velocity = number(case, 'impact', 'velocity')
@@ -101,9 +105,16 @@ contains
          self%waves = waves_constant
       case ('frozen')
          self%waves = waves_frozen
+      case ('hereditary')
+         self%waves = waves_hereditary
       case default
          self%waves = waves_relaxing
       end select
+
+      call case%get('contact', 'law', law)
+      if (law == 'receding') self%law = law_receding
+      call case%get('contact', 'pair', pair)
+      if (pair == 'series') self%pair = pair_series
 
       call describe_solver(case, self%settings)
       call case%get('solver', 'volterra_order', order)
@@ -220,7 +231,7 @@ contains
       call build_materials(self, error, cause)
       if (allocated(error)) return
       call new_contact_modulus(modulus, self%sphere%material, self%plate%material, &
-         self%sphere%item == self%plate%item, error)
+         self%sphere%item == self%plate%item, error, self%pair)
       if (allocated(error)) then
          cause = place_t('plate', 'material')
          return
@@ -234,7 +245,7 @@ contains
       if (.not. mass > 0.0_wp) &
          mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density
       call new_impact(impact, self%velocity, mass, self%radius, self%surface_radius, modulus, &
-         plate, error)
+         plate, error, self%law)
       if (allocated(error)) cause = place_t('sphere', 'radius')
    end subroutine build
 

@@ -3,6 +3,8 @@
 module vcor_study_consistency
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
+   use vcor_solver, only : hereditary_without_papers_scheme, receding_without_ghost, &
+      & receding_without_papers_scheme, receding_without_second_term
    use vcor_study_entries, only : entries_t
    use vcor_study_keys, only : catalogue, find_key, key_t, wanted
    use vcor_study_nearest, only : suggestion
@@ -35,6 +37,8 @@ contains
       call check_times(self, swept, error)
       if (allocated(error)) return
       call check_choices(self, error)
+      if (allocated(error)) return
+      call check_mechanics(self, error)
    end subroutine check_consistency
 
    !> Check the scheme against the method, and the name of the files
@@ -56,6 +60,38 @@ contains
             & //shortened(stem)//"', expected a name without a folder (that is output.directory)")
       end if
    end subroutine check_choices
+
+   !> Check contact law and plate model against the solver
+   subroutine check_mechanics(self, error)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: law, waves, scheme, message
+      integer :: order
+      logical :: ghost
+
+      call self%get("contact", "law", law)
+      call self%get("plate", "waves", waves)
+      call self%get("solver", "scheme", scheme)
+      call self%get("solver", "volterra_order", order)
+      call self%get("solver", "continue_after_separation", ghost)
+      if (law == "receding") then
+         message = ""
+         if (order == 2) then
+            message = receding_without_second_term
+         else if (scheme /= "product") then
+            message = receding_without_papers_scheme
+         else if (ghost) then
+            message = receding_without_ghost
+         end if
+         if (len(message) > 0) call raise(error, error_input, self%location("contact", "law") &
+            & //": "//message)
+      else if (waves == "hereditary" .and. scheme /= "product") then
+         call raise(error, error_input, self%location("plate", "waves")//": " &
+            & //hereditary_without_papers_scheme)
+      end if
+   end subroutine check_mechanics
 
    !> Whether a sweep varies a key
    pure function is_swept(self, swept, group, key, item) result(yes)

@@ -49,12 +49,17 @@ contains
       !> The settings
       type(solver_settings_t), intent(out) :: settings
 
+      character(len=:), allocatable :: name
       integer :: order
 
-      call case%get('solver', 'method', settings%method)
-      call case%get('solver', 'scheme', settings%scheme)
-      call case%get('solver', 'form', settings%form)
-      call case%get('solver', 'quadrature', settings%quadrature)
+      call case%get('solver', 'method', name)
+      settings%method = name
+      call case%get('solver', 'scheme', name)
+      settings%scheme = name
+      call case%get('solver', 'form', name)
+      settings%form = name
+      call case%get('solver', 'quadrature', name)
+      settings%quadrature = name
       settings%time_step = number(case, 'solver', 'time_step')
       settings%end_time = number(case, 'solver', 'end_time')
       settings%accuracy = number(case, 'solver', 'accuracy')

@@ -1,5 +1,6 @@
 !> Points without a result, grouped by the reason
 module vcor_study_failures
+   use vcor_kinds, only : wp
    implicit none
    private
 
@@ -31,6 +32,10 @@ module vcor_study_failures
       procedure :: note
       !> Order the reasons by their first point
       procedure :: sort
+      !> All reasons as numbers
+      procedure :: pack => pack_reasons
+      !> Add reasons from numbers
+      procedure :: add_packed
    end type failures_t
 
 contains
@@ -45,22 +50,87 @@ contains
       !> What is wrong; what differs in its numbers only is the same reason
       character(len=*), intent(in) :: message
 
+      call note_points(self, 1, point, message)
+   end subroutine note
+
+   !> Note points without a result, for one reason
+   pure subroutine note_points(self, count, point, message)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+      !> Number of points
+      integer, intent(in) :: count
+      !> First of them
+      integer, intent(in) :: point
+      !> What is wrong
+      character(len=*), intent(in) :: message
+
       integer :: i
 
-      self%count = self%count + 1
+      self%count = self%count + count
       do i = 1, self%reasons
          if (words_of(self%reason(i)%message) == words_of(message)) exit
       end do
       i = min(i, most_reasons)
       self%reasons = max(self%reasons, i)
       associate (reason => self%reason(i))
-         reason%count = reason%count + 1
-         if (reason%count == 1 .or. point < reason%first) then
+         if (reason%count == 0 .or. point < reason%first) then
             reason%first = point
             reason%message = message
          end if
+         reason%count = reason%count + count
       end associate
-   end subroutine note
+   end subroutine note_points
+
+   !> All reasons as numbers: their number, then for each count, first point, letters, text
+   pure function pack_reasons(self) result(numbers)
+      !> The reasons
+      class(failures_t), intent(in) :: self
+      !> Numbers, shape (n)
+      real(wp), allocatable :: numbers(:)
+
+      integer :: i
+
+      numbers = [real(self%reasons, wp)]
+      do i = 1, self%reasons
+         associate (reason => self%reason(i))
+            numbers = [numbers, real(reason%count, wp), real(reason%first, wp), &
+               real(len(reason%message), wp), &
+               transfer(reason%message//repeat(' ', padding(len(reason%message))), [0.0_wp])]
+         end associate
+      end do
+   end function pack_reasons
+
+   !> Blanks that make a text fill whole numbers
+   pure function padding(length) result(blanks)
+      !> Letters of the text
+      integer, intent(in) :: length
+      !> Number of blanks
+      integer :: blanks
+
+      integer, parameter :: bytes = storage_size(1.0_wp)/8
+
+      blanks = modulo(-length, bytes)
+   end function padding
+
+   !> Add reasons from numbers
+   pure subroutine add_packed(self, numbers)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+      !> Numbers, as `pack` made them, shape (n)
+      real(wp), intent(in) :: numbers(:)
+
+      character(len=:), allocatable :: message
+      integer :: i, at, length
+
+      at = 1
+      do i = 1, nint(numbers(1))
+         length = nint(numbers(at + 3))
+         message = repeat(' ', length)
+         message = transfer(numbers(at + 4:), message)
+         call note_points(self, nint(numbers(at + 1)), nint(numbers(at + 2)), message)
+         at = at + 3 + (length + padding(length))*8/storage_size(1.0_wp)
+      end do
+   end subroutine add_packed
 
    !> Order the reasons by their first point
    pure subroutine sort(self)

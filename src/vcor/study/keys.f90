@@ -106,24 +106,26 @@ module vcor_study_keys
       & key_t("sphere", "mass", real_key, "Mass; from radius and density when not given", "kg", &
       &    positive), &
       !
-      & key_t("plate", "half_thickness", real_key, "Half of the thickness", "m", positive), &
+      & key_t("plate", "half_thickness", real_key, &
+      &    "Half of the thickness; not needed without waves", "m", positive), &
       & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
       & key_t("plate", "waves", text_key, "Model of the flexural waves in the plate", &
-      &    choices="none constant relaxing frozen", default="relaxing"), &
+      &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
       & key_t("plate", "surface_radius", real_key, &
       &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       !
-      & key_t("contact", "law", text_key, "Contact law", choices="boltzmann", &
-      &    default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", choices="eq1", &
-      &    default="eq1"), &
+      & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
+      &    choices="boltzmann receding", default="boltzmann"), &
+      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", &
+      &    choices="eq1 series", default="eq1"), &
       !
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
       &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", &
       &    required=.true.), &
-      & key_t("material", "density", real_key, "Density", "kg/m3", positive), &
+      & key_t("material", "density", real_key, &
+      &    "Density; of a sphere without mass, of a plate with waves", "kg/m3", positive), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
       &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
       & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &

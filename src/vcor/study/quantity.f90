@@ -10,15 +10,43 @@ module vcor_study_quantity
 
    public :: quantity_t, quantities, history_quantities
    public :: quantity_value, quantity_values, quantity_names, status_name
-   public :: point_invalid, point_failed, longest_status
+   public :: status_t, statuses, point_pending, point_invalid, point_failed, longest_status
 
-   !> Status of a point of a sweep beside the `contact_*` constants: its parameters describe no
-   !> impact
+   !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
+   integer, parameter :: point_pending = -1
+   !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
    !> The numerical solution failed
    integer, parameter :: point_failed = 4
    !> Letters of the longest name of a status
    integer, parameter :: longest_status = len('no_separation')
+
+   !> One status
+   type :: status_t
+      !> One of the `contact_*` and `point_*` constants
+      integer :: code
+      !> Its name in the column `status`
+      character(len=longest_status) :: name
+      !> What it says, one line
+      character(len=64) :: meaning
+      !> What to do about it, one line
+      character(len=96) :: advice
+   end type status_t
+
+   !> All that a contact, or a point of a sweep, may come to
+   type(status_t), parameter :: statuses(*) = [ &
+      status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
+      status_t(contact_lasting, 'no_separation', &
+      'end_time came before the force returned to zero', 'a larger solver.end_time'), &
+      status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
+      //'is too light for it (inelasticity above about 5), or the material flows'), &
+      status_t(point_invalid, 'invalid', &
+      'in a sweep: the values of the point make no impact', &
+      'the message says which one is out of range, or contradicts others'), &
+      status_t(point_failed, 'failed', 'in a sweep: the numerical solution failed', &
+      'the message says why; the other method, by solver.method, may succeed'), &
+      status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
+      'the same command with --resume')]
 
    !> One quantity
    type :: quantity_t
@@ -116,21 +144,15 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, invalid or failed
+      !> separated, no_separation, sticks, invalid, failed or pending
       character(len=:), allocatable :: name
 
-      select case (status)
-      case (contact_separated)
-         name = 'separated'
-      case (contact_lasting)
-         name = 'no_separation'
-      case (contact_sticking)
-         name = 'sticks'
-      case (point_invalid)
-         name = 'invalid'
-      case default
-         name = 'failed'
-      end select
+      integer :: i
+
+      name = 'failed'
+      do i = 1, size(statuses)
+         if (statuses(i)%code == status) name = trim(statuses(i)%name)
+      end do
    end function status_name
 
 end module vcor_study_quantity

@@ -1,4 +1,4 @@
-!> Sweeps: the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
+!> Sweeps, the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
 !> one point
 !>
 !> A point is the blueprint of the case with some numbers set, so nothing is read, looked up or
@@ -25,12 +25,14 @@ module vcor_study_sweep
    use vcor_study_grid, only : grid_t
    use vcor_study_interval, only : contains_number, interval_t
    use vcor_study_keys, only : catalogue, row_for_model, wanted
+   use vcor_study_partition, only : new_part, part_t
    use vcor_study_quantity, only : point_failed, point_invalid
    use vcor_study_summary, only : summary_t
    implicit none
    private
 
-   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
+   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points, &
+      lacking
 
    !> Most points that a thread takes at a time
    integer, parameter :: longest_chunk = 64
@@ -226,36 +228,44 @@ contains
    end subroutine prepare_solver
 
    !> Solve points of a sweep, by several threads
-   subroutine solve_points(self, first, last, threads, summary, failures)
+   subroutine solve_points(self, first, last, threads, summary, failures, part)
       !> The sweep
       type(sweep_t), intent(in) :: self
-      !> First point
+      !> First point; with `part`, first place in it
       integer, intent(in) :: first
-      !> Last point
+      !> Last point; with `part`, last place in it
       integer, intent(in) :: last
       !> Number of threads, > 0; without OpenMP there is one
       integer, intent(in) :: threads
-      !> Outcomes of all points of the sweep
+      !> Outcomes of the points of the sweep or its part, or of some places that include these
       type(summary_t), intent(inout) :: summary
       !> What points have no result, and why
       type(failures_t), intent(inout) :: failures
+      !> Part of the sweep; all of it where there is none
+      type(part_t), intent(in), optional :: part
 
+      type(part_t) :: places
       integer :: team
 
+      places = new_part(self%grid%count(), 1, 1)
+      if (present(part)) places = part
       team = max(1, min(threads, last - first + 1))
-!$omp parallel default(none) shared(self, first, last, team, summary, failures) num_threads(team)
-      call work_off(self, first, last, team, summary, failures)
+!$omp parallel default(none) shared(self, places, first, last, team, summary, failures) &
+!$omp num_threads(team)
+      call work_off(self, places, first, last, team, summary, failures)
 !$omp end parallel
       call failures%sort()
    end subroutine solve_points
 
-   !> What one thread of a team does: chunk after chunk of the points, as long as there are any
-   subroutine work_off(self, first, last, team, summary, failures)
+   !> What one thread of a team does: chunk after chunk of the places, as long as there are any
+   subroutine work_off(self, part, first, last, team, summary, failures)
       !> The sweep
       type(sweep_t), intent(in) :: self
-      !> First point of the team
+      !> Part of the sweep
+      type(part_t), intent(in) :: part
+      !> First place of the team
       integer, intent(in) :: first
-      !> Last point of the team
+      !> Last place of the team
       integer, intent(in) :: last
       !> Number of threads of the team
       integer, intent(in) :: team
@@ -272,18 +282,21 @@ contains
 !$omp do schedule(dynamic)
       do chunk = 0, (last - first)/length
          start = first + chunk*length
-         call solve_chunk(self, start, min(last, start + length - 1), worker, summary, failures)
+         call solve_chunk(self, part, start, min(last, start + length - 1), worker, summary, &
+            failures)
       end do
 !$omp end do
    end subroutine work_off
 
    !> Solve points one after the other
-   subroutine solve_chunk(self, first, last, worker, summary, failures)
+   subroutine solve_chunk(self, part, first, last, worker, summary, failures)
       !> The sweep
       type(sweep_t), intent(in) :: self
-      !> First point
+      !> Part of the sweep
+      type(part_t), intent(in) :: part
+      !> First place
       integer, intent(in) :: first
-      !> Last point
+      !> Last place
       integer, intent(in) :: last
       !> What the thread works with
       type(worker_t), intent(inout) :: worker
@@ -294,11 +307,12 @@ contains
 
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
-      integer :: point
+      integer :: place, point
 
-      do point = first, last
+      do place = first, last
+         point = part%point(place)
          call solve_point(self, point, worker, outcome, error)
-         call summary%put(point, outcome)
+         call summary%put(place, outcome)
          if (outcome%status == contact_separated) cycle
 !$omp critical (vcor_failures)
          if (allocated(error)) then

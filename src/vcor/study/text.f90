@@ -1,5 +1,5 @@
-!> Texts: case, names, numbers in their shortest form, and what others wrote made fit for one line
-!> of a message
+!> Texts, that is case, names, numbers in their shortest form, and what others wrote made fit for
+!> one line of a message
 module vcor_study_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_kinds, only : wp

@@ -1,0 +1,126 @@
+!> The files of a run, and its bare numbers
+module vcor_app_files
+   use vcor_app_cli, only : request_t
+   use vcor_app_job, only : endings, job_t
+   use vcor, only : default_threads, error_t, history_table, identity_t, make_directory, &
+      place_in_table, remark_t, remarks_of, table_t, trajectory_t, write_csv, write_hdf5, &
+      write_rows, write_summary
+   implicit none
+   private
+
+   public :: make_place, write_files, write_numbers, threads_of
+
+contains
+
+   !> Make the folder that the files of a case go to
+   subroutine make_place(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory
+
+      call job%case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call make_directory(directory, error)
+   end subroutine make_place
+
+   !> Write the files of a case
+   subroutine write_files(request, job, identity, summary, trajectory, files, error, has_csv)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What it is about
+      type(identity_t), intent(in) :: identity
+      !> Its outcomes
+      type(table_t), intent(in) :: summary
+      !> The trajectory of a single impact
+      type(trajectory_t), intent(in) :: trajectory
+      !> Files written, one to a line
+      character(len=:), allocatable, intent(out) :: files
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> Whether the summary as text is there already; false if it is not given
+      logical, intent(in), optional :: has_csv
+
+      type(table_t) :: course
+      character(len=:), allocatable :: csv
+      type(remark_t) :: remarks(4)
+      integer :: i, n
+
+      files = ''
+      if (.not. any(job%writes)) return
+      if (job%history) call history_table(course, summary%title, summary%case_text, trajectory)
+
+      call make_place(request, job, error)
+      if (allocated(error)) return
+      ! the sum over the data, where there are any
+      remarks = remarks_of(identity)
+      n = merge(1, 0, len(identity%data) > 0)
+      if (job%history) then
+         if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
+         if (allocated(error)) return
+         if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
+         if (allocated(error)) return
+         if (job%writes(3)) call write_hdf5(job%path//trim(endings(3)), summary, course, error, &
+            remarks(:n))
+      else
+         csv = name_of(1)
+         if (present(has_csv)) then
+            if (has_csv) csv = ''
+         end if
+         call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), &
+            error)
+      end if
+      if (allocated(error)) return
+      do i = 1, size(endings)
+         if (job%writes(i)) files = files//'  written '//name_of(i)//new_line('a')
+      end do
+
+   contains
+
+      !> Name of a file
+      function name_of(i) result(name)
+         !> Number of its ending
+         integer, intent(in) :: i
+         !> The name; empty if the file is not written
+         character(len=:), allocatable :: name
+
+         name = ''
+         if (job%writes(i)) name = job%path//trim(endings(i))
+      end function name_of
+   end subroutine write_files
+
+   !> Number of threads of each rank
+   function threads_of(request) result(threads)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> Number, at least 1
+      integer :: threads
+
+      threads = request%threads
+      if (threads == 0) threads = default_threads()
+   end function threads_of
+
+   !> Bare numbers for --print, a line per impact
+   subroutine write_numbers(request, summary, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> Outcomes
+      type(table_t), intent(in) :: summary
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: places(size(request%names)), i
+
+      do i = 1, size(places)
+         places(i) = place_in_table(summary, request%names(i)%text)
+      end do
+      call write_rows(summary, places, error)
+   end subroutine write_numbers
+
+end module vcor_app_files

@@ -1,0 +1,171 @@
+!> What is in the place of the files that a run is going to write
+module vcor_app_previous
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use vcor_app_cli, only : request_t
+   use vcor_app_job, only : endings, job_t
+   use vcor, only : attach, check_same, checkpoint_t, error_file, error_t, identity_t, &
+      open_hdf5, plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, &
+      reader_t, write_stdout
+   implicit none
+   private
+
+   public :: previous_t, look_back, look_at, heed, replaced, refuse_unfinished, remark
+
+   !> Results that are there
+   type :: previous_t
+      !> Whether there are any
+      logical :: exist = .false.
+      !> File that was looked into
+      character(len=:), allocatable :: path
+      !> What it is about; all texts are empty if it is not of this program
+      type(identity_t) :: identity
+      !> Why it is not about the same as the run; unallocated if it is
+      type(error_t), allocatable :: objection
+   end type previous_t
+
+contains
+
+   !> Look for results
+   subroutine look_back(job, expected, previous)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What the run is about
+      type(identity_t), intent(in) :: expected
+      !> What is there
+      type(previous_t), intent(out) :: previous
+
+      call look_at(job%path, job%writes, expected, previous)
+   end subroutine look_back
+
+   !> Look for results in files of some names
+   subroutine look_at(path, writes, expected, previous)
+      !> Directory and stem of the files
+      character(len=*), intent(in) :: path
+      !> Which are to be written, in the order of `endings`
+      logical, intent(in) :: writes(:)
+      !> What they should be about
+      type(identity_t), intent(in) :: expected
+      !> What is there
+      type(previous_t), intent(out) :: previous
+
+      type(reader_t) :: reader
+      type(error_t), allocatable :: error, ignored
+      integer :: i
+      logical :: is_ours
+
+      is_ours = .false.
+      do i = size(endings), 1, -1
+         ! a history says nothing that the others do not
+         if (i == 2 .or. .not. writes(i)) cycle
+         previous%path = path//trim(endings(i))
+         if (.not. plain_file_exists(previous%path)) cycle
+         previous%exist = .true.
+         if (i == 1) then
+            call read_csv_identity(previous%path, previous%identity, is_ours)
+            previous%identity%data = expected%data
+         else
+            call open_hdf5(reader, previous%path, error)
+            if (.not. allocated(error)) then
+               call read_identity(reader, previous%identity, is_ours)
+               call reader%close(ignored)
+            end if
+         end if
+         if (is_ours) then
+            call check_same(previous%path, previous%identity, expected, previous%objection)
+         else
+            call raise(previous%objection, error_file, quoted_path(previous%path) &
+               //' is not a file of results of vcor')
+         end if
+         return
+      end do
+   end subroutine look_at
+
+   !> Whether there is nothing to do: with --resume, where the results are there
+   subroutine heed(request, previous, is_finished, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> What is there
+      type(previous_t), intent(in) :: previous
+      !> Whether there is nothing to do
+      logical, intent(out) :: is_finished
+      !> With --resume: what is there is about something else
+      type(error_t), allocatable, intent(out) :: error
+
+      is_finished = .false.
+      if (.not. request%resume .or. .not. previous%exist) return
+      if (allocated(previous%objection)) then
+         error = previous%objection
+         return
+      end if
+      is_finished = .true.
+      if (size(request%names) > 0) then
+         call remark(finished_text())
+      else if (.not. request%quiet) then
+         call write_stdout(finished_text()//new_line('a'), error)
+      end if
+
+   contains
+
+      !> What there is to say
+      function finished_text() result(text)
+         !> One line
+         character(len=:), allocatable :: text
+
+         text = quoted_path(previous%path)//' is finished, there is nothing to resume'
+      end function finished_text
+   end subroutine heed
+
+   !> Nobody's results are replaced in silence
+   function replaced(previous) result(text)
+      !> What was there
+      type(previous_t), intent(in) :: previous
+      !> What there is to say: nothing if there was nothing else
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (allocated(previous%objection)) text = 'replaced: '//previous%objection%message
+   end function replaced
+
+   !> A sweep that begins anew must not take the unfinished points of another one, or of a process
+   !> that is at work on them
+   subroutine refuse_unfinished(path, expected, error)
+      !> Path of the unfinished file, which is there
+      character(len=*), intent(in) :: path
+      !> What the run is about
+      type(identity_t), intent(in) :: expected
+      !> Error of code `error_file`, unallocated if it may be replaced
+      type(error_t), allocatable, intent(out) :: error
+
+      type(checkpoint_t) :: file
+      type(reader_t) :: reader
+      type(identity_t) :: found
+      logical :: is_ours
+
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      call read_identity(reader, found, is_ours)
+      call reader%close(error)
+      if (allocated(error)) return
+      if (.not. is_ours) then
+         call raise(error, error_file, quoted_path(path)//' is not a file of vcor')
+         return
+      end if
+      call check_same(path, found, expected, error)
+      if (allocated(error)) then
+         error%message = error%message//'; remove it, or finish that sweep with --resume'
+         return
+      end if
+      call attach(file, path, error)
+      call file%close()
+   end subroutine refuse_unfinished
+
+   !> One line on stderr that is no error
+   subroutine remark(text)
+      !> What to say; nothing is fine
+      character(len=*), intent(in) :: text
+
+      if (len(text) == 0) return
+      write (error_unit, '(a)') 'vcor: note: '//text
+   end subroutine remark
+
+end module vcor_app_previous

@@ -1,0 +1,247 @@
+!> Running the sweep of a case, by all ranks and their threads
+!>
+!> The first rank alone reads and writes files and talks to the user.
+module vcor_app_sweep
+   use vcor_app_band, only : warn_of_bands
+   use vcor_app_cli, only : request_t
+   use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
+   use vcor_app_job, only : endings, job_t, shard_text
+   use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
+      replaced
+   use vcor_app_signals, only : catch_signals, release_signals, signal_name
+   use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
+   use vcor_app_watch, only : clock, watch_t
+   use vcor, only : create_checkpoint, differs, error_input, error_numerical, error_t, &
+      failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
+      plain_file_exists, point_pending, quoted_path, raise, rank_count, remove_file, share_error, &
+      share_flag, solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, &
+      trajectory_t, write_stdout
+   implicit none
+   private
+
+   public :: run_sweep
+
+   !> Added to the number of a signal, this is the exit code of a run that it has ended, as shells
+   !> have it
+   integer, parameter :: signal_base = 128
+
+contains
+
+   !> Run the sweep of a case; all ranks call this
+   subroutine run_sweep(request, job, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Error of code `error_numerical` if points have no result, of another if there is worse;
+      !> unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(previous_t) :: previous
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      type(watch_t) :: watch
+      integer :: stopped
+      logical :: is_finished
+
+      watch%identity = identity_of(job%case, job%part)
+      watch%path = job%path//'.part.h5'
+      watch%keeps = any(job%writes) .and. this_rank() == 0
+      is_finished = .false.
+      if (this_rank() == 0) call begin(request, job, watch, previous, summary, is_finished, error)
+      call share_error(error)
+      call share_flag(is_finished)
+      if (is_finished .or. allocated(error)) return
+      if (differs(number_of(watch%identity))) then
+         call raise(error, error_input, job%case%source//': not all ranks read the same case, or ' &
+            //'have the same version of vcor')
+         return
+      end if
+
+      call catch_signals()
+      call solve_part(job%sweep, job%part, threads_of(request), watch, summary, failures, stopped, &
+         error)
+      if (this_rank() == 0) then
+         call watch%clear()
+         if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
+            stopped, error)
+         call watch%file%close()
+         call watch%rows%abandon()
+      end if
+      call share_error(error)
+      call release_signals()
+   end subroutine run_sweep
+
+   !> Find out where to begin
+   subroutine begin(request, job, watch, previous, summary, is_finished, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Who watches
+      type(watch_t), intent(inout) :: watch
+      !> Results that are there
+      type(previous_t), intent(out) :: previous
+      !> Outcomes that are there, the others pending
+      type(summary_t), intent(out) :: summary
+      !> Whether there is nothing to do
+      logical, intent(out) :: is_finished
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: is_unfinished
+
+      is_finished = .false.
+      is_unfinished = .false.
+      if (watch%keeps) is_unfinished = plain_file_exists(watch%path)
+      call look_back(job, watch%identity, previous)
+      if (.not. is_unfinished) then
+         call heed(request, previous, is_finished, error)
+         if (allocated(error) .or. is_finished) return
+      end if
+      call new_summary(summary, job%part%count(), error)
+      if (allocated(error)) return
+      if (is_unfinished .and. request%resume) then
+         call open_checkpoint(watch%file, watch%path, watch%identity, summary, error)
+      else if (is_unfinished) then
+         call refuse_unfinished(watch%path, watch%identity, error)
+         if (.not. allocated(error)) call remark(quoted_path(watch%path) &
+            //' is given up, the sweep begins anew (--resume would go on with it)')
+      else if (watch%keeps) then
+         ! better now than after hours
+         call make_place(request, job, error)
+      end if
+      if (allocated(error)) return
+      watch%done = count(summary%status /= point_pending)
+      watch%done_before = watch%done
+      watch%grid = job%sweep%grid
+      if (rank_count() > 1 .and. job%writes(1)) watch%rows%path = job%path//trim(endings(1))
+      watch%rows%threads = threads_of(request)
+      watch%start = clock()
+      watch%shows = stderr_is_terminal() .and. .not. request%quiet
+   end subroutine begin
+
+   !> After the points: write the results, or say what ended the sweep
+   subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Who watches
+      type(watch_t), intent(inout) :: watch
+      !> Results that were there
+      type(previous_t), intent(in) :: previous
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Signal that ended the sweep; 0 if there was none
+      integer, intent(in) :: stopped
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(error_t), allocatable :: trouble
+      logical :: is_shard
+
+      is_shard = request%shards > 0
+      if (watch%keeps .and. .not. watch%file%is_open() .and. (is_shard .or. stopped /= 0)) then
+         call create_checkpoint(watch%file, watch%path, watch%identity, watch%grid, summary, error)
+         if (allocated(error)) return
+      end if
+      if (stopped /= 0) then
+         call raise(error, signal_base + stopped, job%case%source//': stopped by ' &
+            //signal_name(stopped)//' after '//integer_text(watch%done)//' of ' &
+            //integer_text(job%part%count())//' points')
+         if (watch%keeps) error%message = error%message//', which are in ' &
+            //quoted_path(watch%path)//'; the same command with --resume goes on'
+         return
+      end if
+      call end_of_sweep(job, failures, error)
+      if (is_shard) then
+         call finish_shard(request, job, watch, failures, trouble)
+      else
+         call finish_whole(request, job, watch, summary, failures, trouble)
+      end if
+      if (allocated(trouble)) then
+         call move_alloc(trouble, error)
+      else
+         call remark(replaced(previous))
+      end if
+   end subroutine finish
+
+   !> Write the results of a whole sweep
+   subroutine finish_whole(request, job, watch, summary, failures, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Who watches
+      type(watch_t), intent(inout) :: watch
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(table_t) :: table
+      type(trajectory_t) :: none
+      character(len=:), allocatable :: files
+
+      call warn_of_bands(job, summary)
+      associate (identity => watch%identity)
+         call watch%rows%complete(identity, job%sweep%grid, summary, error)
+         if (allocated(error)) return
+         call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
+         call write_files(request, job, identity, table, none, files, error, &
+            has_csv=allocated(watch%rows%path))
+         if (allocated(error)) return
+         ! now that everything is there under its own name
+         call watch%file%remove()
+         if (watch%keeps) call remove_file(watch%path)
+         if (size(request%names) > 0) then
+            call write_numbers(request, table, error)
+         else if (.not. request%quiet) then
+            call write_stdout(sweep_report(job, identity%title, table, failures, files), error)
+         end if
+      end associate
+   end subroutine finish_whole
+
+   !> A shard is finished: its file gets its name
+   subroutine finish_shard(request, job, watch, failures, error)
+      !> The request
+      type(request_t), intent(in) :: request
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Who watches
+      type(watch_t), intent(inout) :: watch
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: path
+
+      path = job%path//trim(endings(3))
+      call watch%file%close_as(path, error)
+      if (.not. allocated(error) .and. .not. request%quiet) &
+         call write_stdout(shard_report(job, watch%identity%title, failures, path), error)
+   end subroutine finish_shard
+
+   !> Points without a result make an error of the whole, after all others are done
+   subroutine end_of_sweep(job, failures, error)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What has no result
+      type(failures_t), intent(in) :: failures
+      !> Error of code `error_numerical`, unallocated where all points have a result
+      type(error_t), allocatable, intent(out) :: error
+
+      if (failures%count == 0) return
+      call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
+         //' of '//integer_text(job%part%count())//' points'//shard_text(job%part) &
+         //' without result, the first at ' &
+         //coordinates(job, failures%reason(1)%first)//': '//failures%reason(1)%message)
+   end subroutine end_of_sweep
+
+end module vcor_app_sweep

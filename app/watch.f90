@@ -1,0 +1,181 @@
+!> Watch over a sweep: what is finished goes to a file, the terminal shows how far it is, and a
+!> signal ends it
+module vcor_app_watch
+   use, intrinsic :: iso_fortran_env, only : int64
+   use vcor_app_row_stream, only : row_stream_t
+   use vcor_app_signals, only : caught_signal
+   use vcor, only : checkpoint_t, create_checkpoint, error_t, grid_t, identity_t, integer_text, &
+      monitor_t, summary_t, wp, write_terminal
+   implicit none
+   private
+
+   public :: watch_t, clock
+
+   !> Time after which a sweep gets a file [s]: what is shorter is solved anew as quickly
+   real(wp), parameter :: time_without_file = 0.25_wp
+   !> Time between two lines on the terminal [s]
+   real(wp), parameter :: time_between_lines = 0.2_wp
+   !> Letters of the line
+   integer, parameter :: width = 72
+
+   !> Who watches
+   type, extends(monitor_t) :: watch_t
+      !> Whether what is finished is kept in a file
+      logical :: keeps = .false.
+      !> Whether the terminal shows how far it is
+      logical :: shows = .false.
+      !> Whether signals are heeded
+      logical :: heeds = .true.
+      !> Path of the file
+      character(len=:), allocatable :: path
+      !> What the sweep is about
+      type(identity_t) :: identity
+      !> Its grid
+      type(grid_t) :: grid
+      !> The file, open once there is one
+      type(checkpoint_t) :: file
+      !> Rows that are written while other ranks work
+      type(row_stream_t) :: rows
+      !> Points that are done
+      integer :: done = 0
+      !> Points that were done at the beginning
+      integer :: done_before = 0
+      !> When it began [s]
+      real(wp) :: start = 0.0_wp
+      !> When the terminal was written to [s]
+      real(wp), private :: shown = 0.0_wp
+   contains
+      !> Places are finished
+      procedure :: finished
+      !> Whether the sweep has to stop
+      procedure :: stop_code
+      !> Take the line off the terminal
+      procedure :: clear
+   end type watch_t
+
+contains
+
+   !> Places are finished
+   subroutine finished(self, first, last, summary, error)
+      !> The watch
+      class(watch_t), intent(inout) :: self
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> Outcomes of all places
+      type(summary_t), intent(inout) :: summary
+      !> Set if they cannot be kept; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: now
+
+      now = clock()
+      self%done = self%done + last - first + 1
+      if (self%file%is_open()) then
+         call self%file%put(first, last, summary, error)
+      else if (self%keeps .and. now - self%start > time_without_file) then
+         call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, error)
+      end if
+      if (allocated(error)) return
+      call self%rows%advance(self%identity, self%grid, summary, error)
+      if (self%shows .and. now - self%shown > time_between_lines) then
+         call show(self, now - self%start)
+         self%shown = now
+      end if
+   end subroutine finished
+
+   !> Whether the sweep has to stop
+   function stop_code(self) result(code)
+      !> The watch
+      class(watch_t), intent(in) :: self
+      !> Signal that has come; 0 if there was none
+      integer :: code
+
+      code = 0
+      if (self%heeds) code = caught_signal()
+   end function stop_code
+
+   !> Show how far the sweep is
+   subroutine show(self, time)
+      !> The watch
+      type(watch_t), intent(in) :: self
+      !> Time since it began [s]
+      real(wp), intent(in) :: time
+
+      character(len=:), allocatable :: line
+      real(wp) :: rate
+      integer :: points
+
+      points = self%identity%part%count()
+      rate = real(self%done - self%done_before, wp)/max(time, epsilon(time))
+      line = '  '//integer_text(self%done)//' of '//integer_text(points)//' points, ' &
+         //integer_text(int(100.0_wp*real(self%done, wp)/real(points, wp)))//' %, ' &
+         //rate_text(rate)//', '//time_text(real(points - self%done, wp)/rate)//' left'
+      call write_terminal(achar(13)//line//repeat(' ', max(0, width - len(line))))
+   end subroutine show
+
+   !> A rate in words
+   function rate_text(rate) result(text)
+      !> Points per second
+      real(wp), intent(in) :: rate
+      !> The rate, per minute or hour where it is small
+      character(len=:), allocatable :: text
+
+      if (rate >= 1.0_wp) then
+         text = integer_text(nint(rate))//'/s'
+      else if (rate >= 1.0_wp/60.0_wp) then
+         text = integer_text(nint(60.0_wp*rate))//'/min'
+      else
+         text = integer_text(nint(3600.0_wp*rate))//'/h'
+      end if
+   end function rate_text
+
+   !> A time as a clock has it
+   function time_text(time) result(text)
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Hours, minutes and seconds
+      character(len=:), allocatable :: text
+
+      real(wp), parameter :: longest = 1.0e9_wp
+      integer :: left
+
+      left = ceiling(min(time, longest))
+      text = integer_text(left/3600)//':'//two(mod(left, 3600)/60)//':'//two(mod(left, 60))
+
+   contains
+
+      !> Two digits
+      function two(number)
+         !> Number, from 0 to 59
+         integer, intent(in) :: number
+         !> Its digits
+         character(len=2) :: two
+
+         write (two, '(i2.2)') number
+      end function two
+   end function time_text
+
+   !> Take the line off the terminal
+   subroutine clear(self)
+      !> The watch
+      class(watch_t), intent(inout) :: self
+
+      if (self%shown > 0.0_wp) &
+         call write_terminal(achar(13)//repeat(' ', width)//achar(13))
+      self%shown = 0.0_wp
+   end subroutine clear
+
+   !> Time by the clock on the wall
+   function clock() result(time)
+      !> Time since some moment, > 0 [s]
+      real(wp) :: time
+
+      integer(int64) :: count, rate
+
+      call system_clock(count, rate)
+      time = real(count, wp)/real(rate, wp)
+   end function clock
+
+end module vcor_app_watch

@@ -1,0 +1,13 @@
+# Run by cpack before it makes the packages: the licence has its place and name of Debian's policy
+file(GLOB folders "${CPACK_TEMPORARY_DIRECTORY}/*")
+foreach(folder IN LISTS folders)
+  cmake_path(GET folder FILENAME component)
+  set(package vcor)
+  if(component STREQUAL "development")
+    set(package libvcor-dev)
+  endif()
+  file(MAKE_DIRECTORY "${folder}/usr/share/doc/${package}")
+  file(REMOVE "${folder}/usr/share/doc/${package}/LICENSE")
+  configure_file("${CMAKE_CURRENT_LIST_DIR}/../LICENSE"
+    "${folder}/usr/share/doc/${package}/copyright" COPYONLY)
+endforeach()

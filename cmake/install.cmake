@@ -1,0 +1,80 @@
+# What `cmake --install` puts where: component program is what runs, development is what others build
+# with. Everything is found relative to the prefix, so the tree can be moved as a whole.
+include(CMakePackageConfigHelpers)
+
+set(vcor_cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/vcor")
+
+# Program and library. A shared library (BUILD_SHARED_LIBS) belongs to the program; its version
+# changes with every release, since the layout of Fortran types is part of the interface
+set_target_properties(vcor PROPERTIES
+  VERSION "${PROJECT_VERSION}"
+  SOVERSION "${PROJECT_VERSION}"
+  EXPORT_NAME vcor)
+file(RELATIVE_PATH from_program "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
+if(BUILD_SHARED_LIBS)
+  set_target_properties(vcor_program PROPERTIES INSTALL_RPATH "$ORIGIN/${from_program}")
+endif()
+install(TARGETS vcor_program RUNTIME COMPONENT program)
+install(TARGETS vcor EXPORT vcorTargets
+  LIBRARY COMPONENT program NAMELINK_COMPONENT development
+  ARCHIVE COMPONENT development)
+install(DIRECTORY "${PROJECT_BINARY_DIR}/include/${vcor_module_folder}/"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${vcor_module_folder}" COMPONENT development
+  FILES_MATCHING PATTERN "*.mod")
+
+# For CMake
+install(EXPORT vcorTargets NAMESPACE vcor:: DESTINATION "${vcor_cmake_folder}"
+  COMPONENT development)
+configure_package_config_file(
+  "${PROJECT_SOURCE_DIR}/cmake/vcorConfig.cmake.in" "${PROJECT_BINARY_DIR}/vcorConfig.cmake"
+  INSTALL_DESTINATION "${vcor_cmake_folder}")
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${PROJECT_BINARY_DIR}/vcorConfig.cmake" "${PROJECT_BINARY_DIR}/vcorConfigVersion.cmake"
+  ${vcor_find_modules}
+  DESTINATION "${vcor_cmake_folder}" COMPONENT development)
+
+# For pkg-config. What a static library stands on is needed by everyone who links with it, so it is
+# not private then, and nobody has to know about --static
+file(RELATIVE_PATH vcor_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+string(REGEX REPLACE "/$" "" vcor_up "${vcor_up}")
+list(REMOVE_DUPLICATES vcor_needed_libraries)
+string(JOIN " " vcor_needed ${vcor_needed_libraries})
+if(BUILD_SHARED_LIBS)
+  set(vcor_libraries "-lvcor\nLibs.private: ${vcor_needed}")
+else()
+  set(vcor_libraries "-lvcor ${vcor_needed}")
+endif()
+configure_file("${PROJECT_SOURCE_DIR}/cmake/vcor.pc.in" "${PROJECT_BINARY_DIR}/vcor.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/vcor.pc"
+  DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
+
+# Pages of man, compressed where there is gzip (without a time stamp: the same bytes each time)
+file(GLOB vcor_pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/man/*.[1-9]")
+find_program(VCOR_GZIP gzip DOC "Compresses the pages of man")
+mark_as_advanced(VCOR_GZIP)
+set(compressed)
+foreach(page IN LISTS vcor_pages)
+  cmake_path(GET page EXTENSION LAST_ONLY section)
+  string(REPLACE "." "" section "${section}")
+  if(VCOR_GZIP)
+    cmake_path(GET page FILENAME name)
+    set(packed "${PROJECT_BINARY_DIR}/man/${name}.gz")
+    add_custom_command(OUTPUT "${packed}" DEPENDS "${page}" VERBATIM
+      COMMAND "${CMAKE_COMMAND}" -E make_directory "${PROJECT_BINARY_DIR}/man"
+      COMMAND "${CMAKE_COMMAND}" -E copy "${page}" "${PROJECT_BINARY_DIR}/man/${name}"
+      COMMAND "${VCOR_GZIP}" -9nf "${PROJECT_BINARY_DIR}/man/${name}")
+    list(APPEND compressed "${packed}")
+    set(page "${packed}")
+  endif()
+  install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}" COMPONENT program)
+endforeach()
+add_custom_target(vcor_man ALL DEPENDS ${compressed})
+# So that a build of the program alone (scripts/run.sh) can be installed, too
+add_dependencies(vcor_program vcor_man)
+
+# What users read
+install(FILES README.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
+  USE_SOURCE_PERMISSIONS)

@@ -1,0 +1,34 @@
+# Packages, by `cpack` in the build folder: vcor with the program, libvcor-dev with what others build
+# with
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_VENDOR "the vcor developers")
+# Debian wants an address; who publishes packages has one to set here
+set(VCOR_MAINTAINER "the vcor developers <vcor@vcor.invalid>" CACHE STRING
+  "Maintainer of the packages, as in: Name <address>")
+set(CPACK_PACKAGE_CONTACT "${VCOR_MAINTAINER}")
+set(CPACK_PACKAGING_INSTALL_PREFIX "/usr")
+set(CPACK_STRIP_FILES TRUE)
+# Debian's name of the licence, in a folder for each package
+set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/debian_layout.cmake")
+
+set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_DEB_COMPONENT_INSTALL TRUE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME vcor)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS TRUE)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
+"vcor computes how a sphere rebounds from a plate, a half space or another
+sphere when at least one of the bodies is viscoelastic: coefficient of
+restitution, contact time, indentation, force and energies, with an estimate
+of the numerical error. Cases are text files, results CSV and HDF5.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvcor-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+# The compiler that can read the module files, and the one that CMake finds HDF5 with (gcc)
+string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+  "gfortran-${vcor_compiler_major}" gfortran ${vcor_debian_packages})
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+"The library that the program vcor is made of: archive, module files, CMake
+package and pkg-config file, to be used from Fortran.")
+include(CPack)

@@ -1,0 +1,309 @@
+!> What a viscoelastic plate remembers of the force
+!>
+!> The plate is linear, so the elastic deflection U' = A F/sqrt(E'_b) becomes by the correspondence
+!> principle, in the Laplace domain with Q_b = s L{E'_b},
+!>
+!>     s U = A F/sqrt(Q_b),   U'(t) = alpha F + int_0^t psi(t - x) F(x) dx,   alpha = A/sqrt(Q_b(oo))
+!>
+!> A s/sqrt(Q_b) has all that makes the complex modulus of a material, and as such it is built here:
+!> psi is its relaxation modulus, alpha its dashpot. 1/sqrt(Q_b) is a Stieltjes function, so
+!> psi = int w(l) exp(-l t) dl with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0)) >= 0.
+module vcor_impact_memory
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
+   use vcor_constants, only : pi
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_spectrum, only : sum_of_spectrum
+   use vcor_material_transform, only : transform_t
+   use vcor_material_type, only : material_t
+   use vcor_numeric_elliptic, only : branch_rule
+   use vcor_numeric_interlacing, only : zeros_between_poles
+   implicit none
+   private
+
+   public :: memory_t, new_memory
+
+   !> Velocity of the plate per force as a modulus [m/(N s)], [m/(N s2)] in time
+   type, extends(transform_t) :: memory_t
+      private
+      !> Material of the plate
+      class(material_t), allocatable :: material
+      !> Coefficient A, the plane-strain factor in it [Pa^0.5 m/(N s)]
+      real(wp) :: coefficient = 0.0_wp
+   contains
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type memory_t
+
+contains
+
+   !> Build the memory of a plate
+   pure subroutine new_memory(self, material, coefficient)
+      !> The memory
+      type(memory_t), intent(out) :: self
+      !> Material of the plate, neither rigid nor elastic
+      class(material_t), intent(in) :: material
+      !> A such that an elastic plate has U' = A F/sqrt(E_b) [Pa^0.5 m/(N s)], > 0
+      real(wp), intent(in) :: coefficient
+
+      real(wp) :: modulus
+
+      call self%prepare()
+      allocate (self%material, source=material)
+      self%coefficient = coefficient
+      modulus = material%glassy()
+      if (material%discrete) modulus = glassy_of(material)
+      if (ieee_is_finite(modulus) .and. .not. material%viscosity > 0.0_wp) &
+         self%viscosity = coefficient/sqrt(modulus)
+   end subroutine new_memory
+
+   !> Glassy modulus of the sum of exponentials that a material is represented by
+   pure function glassy_of(material) result(modulus)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      type(exponential_sum_t) :: terms
+
+      call material%exponentials(1.0_wp, 1.0_wp, terms)
+      modulus = terms%equilibrium + sum(terms%moduli)
+   end function glassy_of
+
+   !> A s/sqrt(Q_b(s)), on the branch that is positive for s > 0
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Laplace variable [1/s]
+      complex(wp), intent(in) :: s
+      !> Velocity per force [m/(N s2)]
+      complex(wp) :: modulus
+
+      modulus = self%coefficient*s/sqrt(self%material%complex_modulus(s))
+   end function complex_modulus
+
+   !> psi(0), which nothing needs: infinite for singular kernels, and taken so for all
+   pure function glassy(self) result(modulus)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Infinite
+      real(wp) :: modulus
+
+      modulus = ieee_value(self%coefficient, ieee_positive_inf)
+   end function glassy
+
+   !> psi(infinity)
+   pure function rubbery(self) result(modulus)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Zero
+      real(wp) :: modulus
+
+      modulus = 0.0_wp*self%coefficient
+   end function rubbery
+
+   !> The memory as a sum of exponentials, alpha as its viscosity; its error is that of the velocity
+   !> under a constant force, over that velocity
+   pure subroutine exponentials(self, window, accuracy, terms)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+
+      integer, parameter :: most_refinements = 3
+      ! what the numerical inversion leaves
+      real(wp), parameter :: rounding = 3.0e-12_wp
+      type(exponential_sum_t) :: now
+      integer :: refinement
+
+      terms%error = huge(1.0_wp)
+      do refinement = 0, most_refinements
+         if (self%material%discrete) then
+            call sum_over_gaps(self, window, max(accuracy, rounding)**(refinement + 1), now)
+         else
+            call sum_of_spectrum(self, window, accuracy, now, refinement=refinement)
+            now%viscosity = now%viscosity + self%viscosity
+         end if
+         now%error = error_of(self, window, now)
+         if (now%error < terms%error) terms = now
+         if (terms%error <= max(accuracy, rounding)) exit
+      end do
+   end subroutine exponentials
+
+   !> Error of the velocity under a constant force, over that velocity
+   pure function error_of(self, window, terms) result(error)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s]
+      real(wp), intent(in) :: window
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Error
+      real(wp) :: error
+
+      real(wp), parameter :: part(4) = [1.0_wp, 0.5_wp, 0.1_wp, 0.01_wp]
+      real(wp) :: expected, found
+      integer :: i
+
+      error = 0.0_wp
+      do i = 1, size(part)
+         expected = self%viscosity + self%integral(part(i)*window)
+         found = terms%viscosity + sum(terms%moduli/terms%rates &
+            *(1.0_wp - exp(-terms%rates*(part(i)*window))))
+         error = max(error, abs(found/expected - 1.0_wp))
+      end do
+   end function error_of
+
+   !> Sum for a material that is a sum of exponentials itself. Q_b(-l) is real, and negative between
+   !> each of its zeros z and the pole b that follows; there w(l) = A/(pi sqrt(-Q_b)), with a branch
+   !> point at both ends. With a dashpot there is a zero beyond the last pole, and w goes on to
+   !> infinity
+   pure subroutine sum_over_gaps(self, window, accuracy, terms)
+      !> The memory
+      class(memory_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s]
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+
+      ! exp(-l t) grows for l < 0 where the window is long: as if there were a branch point
+      real(wp), parameter :: growth = 2.0_wp
+      ! beyond all rates that can be computed with, and what is a dashpot on the window
+      real(wp), parameter :: slow = 0.1_wp, farthest = 600.0_wp, constant = 1.0e-14_wp
+      type(exponential_sum_t) :: material
+      real(wp), allocatable :: pole(:), weight(:), offset(:), from_zero(:), to_pole(:), share(:)
+      real(wp) :: scale, zero, before, after, h, low, high, x, y, w
+      integer, allocatable :: near(:)
+      integer :: i, k, n, zeros
+
+      call self%material%exponentials(1.0_wp, 1.0_wp, material)
+      terms%viscosity = self%viscosity
+      call sort(material, pole, weight)
+      n = size(pole)
+      ! Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)), with the equilibrium modulus at d = 0
+      if (material%equilibrium > 0.0_wp) then
+         pole = [0.0_wp, pole]
+         weight = [material%equilibrium, weight]
+      end if
+      zeros = size(pole) - 1
+      scale = material%equilibrium + sum(material%moduli)
+      if (material%viscosity > 0.0_wp) then
+         zeros = size(pole)
+         scale = material%viscosity
+      end if
+      allocate (near(zeros), offset(zeros))
+      call zeros_between_poles(pole, weight, material%viscosity, near, offset)
+      if (.not. material%equilibrium > 0.0_wp) then
+         ! the factor l is a zero at 0
+         near = [1, near + 1]
+         offset = [0.0_wp, offset]
+         pole = [0.0_wp, pole]
+         zeros = zeros + 1
+      end if
+      ! now zero i lies between pole(i) and pole(i + 1), pole(1) = 0 being none of Q_b
+
+      allocate (terms%rates(0), terms%moduli(0))
+      do i = 1, n
+         zero = pole(near(i)) + offset(i)
+         before = (pole(near(i)) - pole(i)) + offset(i)
+         if (i == 1) before = zero + growth/window
+         after = ieee_value(1.0_wp, ieee_positive_inf)
+         if (i < zeros) after = (pole(near(i + 1)) - pole(i + 1)) + offset(i + 1)
+         call branch_rule(before, (pole(i + 1) - pole(near(i))) - offset(i), after, accuracy, &
+            from_zero, to_pole, share)
+         do k = 1, size(share)
+            share(k) = share(k)*density(i, from_zero(k), to_pole(k))
+         end do
+         terms%rates = [terms%rates, zero + from_zero]
+         terms%moduli = [terms%moduli, share]
+      end do
+      if (.not. zeros > n) return
+
+      ! beyond the last pole l = z + exp(y), and y runs away doubly exponentially at both ends, as in
+      ! `vcor_material_spectrum`
+      zero = pole(near(zeros)) + offset(zeros)
+      before = (pole(near(zeros)) - pole(zeros)) + offset(zeros)
+      if (.not. before > 0.0_wp) before = 1.0_wp/window
+      h = -pi**2/log(accuracy)
+      low = log(slow*min(1.0_wp/window, before))
+      high = log(max(1.0_wp/window, zero)) - log(accuracy)/3.0_wp
+      do k = ceiling((low - log(farthest))/h), floor((high + log(farthest))/h)
+         x = real(k, wp)*h
+         y = x - exp(low - x) + exp(x - high)
+         if (abs(y) > farthest) cycle
+         w = h*(1.0_wp + exp(low - x) + exp(x - high))*exp(y)*density(zeros, exp(y), 1.0_wp)
+         if (.not. w > 0.0_wp) cycle
+         if ((zero + exp(y))*window > 1.0_wp/constant) then
+            terms%viscosity = terms%viscosity + w/(zero + exp(y))
+         else
+            terms%rates = [terms%rates, zero + exp(y)]
+            terms%moduli = [terms%moduli, w]
+         end if
+      end do
+
+   contains
+
+      !> w(l) at l = z_i + x = b_i - y, by the zeros and poles of Q_b
+      pure function density(i, x, y) result(w)
+         !> Number of the zero
+         integer, intent(in) :: i
+         !> Distance from the zero [1/s], > 0
+         real(wp), intent(in) :: x
+         !> Distance to the pole after it [1/s], > 0; without meaning beyond the last pole
+         real(wp), intent(in) :: y
+         !> Density
+         real(wp) :: w
+
+         real(wp) :: root, from
+         integer :: j
+
+         root = 1.0_wp/sqrt(scale)
+         do j = 1, zeros
+            from = x
+            if (j /= i) from = x + ((pole(near(i)) - pole(near(j))) + (offset(i) - offset(j)))
+            root = root/sqrt(abs(from))
+         end do
+         do j = 2, n + 1
+            from = y
+            if (j /= i + 1) from = x + ((pole(near(i)) - pole(j)) + offset(i))
+            root = root*sqrt(abs(from))
+         end do
+         w = self%coefficient/pi*root
+      end function density
+   end subroutine sum_over_gaps
+
+   !> Rates in increasing order, those that are the same but for rounding taken together
+   pure subroutine sort(material, pole, weight)
+      !> The sum
+      type(exponential_sum_t), intent(in) :: material
+      !> Rates [1/s]
+      real(wp), allocatable, intent(out) :: pole(:)
+      !> Their moduli [Pa]
+      real(wp), allocatable, intent(out) :: weight(:)
+
+      real(wp), parameter :: same = 1.0e-13_wp
+      integer :: i, k
+
+      allocate (pole(0), weight(0))
+      do k = 1, size(material%rates)
+         i = 1 + count(pole < material%rates(k)*(1.0_wp - same))
+         if (i <= size(pole)) then
+            if (pole(i) <= material%rates(k)*(1.0_wp + same)) then
+               weight(i) = weight(i) + material%moduli(k)
+               cycle
+            end if
+         end if
+         pole = [pole(:i - 1), material%rates(k), pole(i:)]
+         weight = [weight(:i - 1), material%moduli(k), weight(i:)]
+      end do
+   end subroutine sort
+
+end module vcor_impact_memory

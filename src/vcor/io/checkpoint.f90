@@ -1,0 +1,436 @@
+!> Files of a sweep under way, and shards of a sweep: a valid HDF5 file at every moment
+!>
+!>     /             attributes program, version, title, case, data, points, shard, shards
+!>     /summary      over the dimension `point`: what is swept, the columns of a summary, status as
+!>                   a number, check
+!>
+!> HDF5 writes the file once, as a whole, all points pending: nan. Every dataset is in one piece and
+!> uncompressed, so its numbers have a fixed place in the file, and what makes the file an HDF5 file
+!> never changes again. Outcomes are written to their places by the system's `pwrite`, which is why
+!> neither SIGKILL nor a crash leaves a file that HDF5 cannot open, and why a chunk costs its own
+!> length only. The room is taken at the beginning: a disk that is too small is noticed then.
+!>
+!> A point is done if its check sum is right. It is written last; after a crash of the machine the
+!> disk may have any part of what was written, in any order, and the sum tells.
+module vcor_io_checkpoint
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
+      c_ptr, c_size_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_file, only : move_file, quoted_path, remove_file
+   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
+   use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
+   use vcor_io_number, only : integer_text
+   use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_lockf, c_pwrite, &
+      c_text, errno_interrupted, errno_locked, last_errno, lock_alone, system_reason
+   use vcor_io_results, only : unit_of
+   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_kinds, only : wp
+   use vcor_study_grid, only : grid_t
+   use vcor_study_partition, only : part_t
+   use vcor_study_quantity, only : point_pending, quantities
+   use vcor_study_summary, only : summary_t
+   implicit none
+   private
+
+   public :: checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
+
+   !> Columns: the quantities, steps, status and check
+   integer, parameter :: columns = size(quantities) + 3, steps_column = size(quantities) + 1, &
+      status_column = size(quantities) + 2, check_column = size(quantities) + 3
+
+   !> A file of a sweep under way
+   type :: checkpoint_t
+      !> Its path
+      character(len=:), allocatable :: path
+      !> Stream of C, null unless the file is open
+      type(c_ptr), private :: stream = c_null_ptr
+      !> Where in the file each column begins [bytes]
+      integer(c_int64_t), private :: offsets(columns) = 0_c_int64_t
+   contains
+      !> Whether there is a file
+      procedure :: is_open
+      !> Keep outcomes
+      procedure :: put
+      !> Close the file, which stays
+      procedure :: close => close_checkpoint
+      !> Close the file and give it another name
+      procedure :: close_as
+      !> Close the file and remove it
+      procedure :: remove
+   end type checkpoint_t
+
+contains
+
+   !> Whether there is a file
+   pure function is_open(self)
+      !> The file
+      class(checkpoint_t), intent(in) :: self
+      !> Whether there is
+      logical :: is_open
+
+      is_open = c_associated(self%stream)
+   end function is_open
+
+   !> Begin a file, with what is done so far
+   subroutine create_checkpoint(self, path, identity, grid, summary, error)
+      !> The file
+      type(checkpoint_t), intent(inout) :: self
+      !> Its path; replaced if it is there
+      character(len=*), intent(in) :: path
+      !> What it is about
+      type(identity_t), intent(in) :: identity
+      !> Grid of the sweep
+      type(grid_t), intent(in) :: grid
+      !> Outcomes of all places of the part; they move to a table and back
+      type(summary_t), intent(inout) :: summary
+      !> Set if the file cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      type(table_t) :: table
+      integer :: i, offset
+
+      call begin_table(table, identity, grid)
+      offset = table%column_count
+      call add_column(table, 'check', [(check_of(summary, i), i = 1, size(summary%status))], '1', &
+         'check sum of the row; 0: pending')
+      do i = 1, size(quantities)
+         call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
+            trim(quantities(i)%unit), trim(quantities(i)%meaning))
+      end do
+      call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
+      call move_in_column(table, 'status', summary%status, '1', 'how the contact ended: -1 '// &
+         'pending, 0 separated, 1 no_separation, 2 sticks, 3 invalid, 4 failed')
+      call write_hdf5(path, table, error=error, remarks=remarks_of(identity), plain=.true.)
+      if (.not. allocated(table%fault)) then
+         do i = 1, size(quantities)
+            call move_alloc(table%columns(offset + 1 + i)%reals, summary%values(i)%at)
+         end do
+         call move_alloc(table%columns(offset + 2 + size(quantities))%integers, summary%steps)
+         call move_alloc(table%columns(offset + 3 + size(quantities))%integers, summary%status)
+      end if
+      if (.not. allocated(error)) call attach(self, path, error)
+   end subroutine create_checkpoint
+
+   !> Table of the points of a part
+   subroutine begin_table(table, identity, grid)
+      !> The table, without outcomes
+      type(table_t), intent(out) :: table
+      !> What it is about
+      type(identity_t), intent(in) :: identity
+      !> Grid of the sweep
+      type(grid_t), intent(in) :: grid
+
+      integer, allocatable :: points(:), places(:)
+      real(wp), allocatable :: values(:)
+      integer :: i, j
+
+      call new_table(table, identity%version, identity%title, identity%case_text)
+      points = [(identity%part%point(i), i = 1, identity%part%count())]
+      call add_dimension(table, 'point', points, '1', 'number of the point in the sweep')
+      allocate (values(size(points)))
+      do j = 1, size(grid%axes)
+         associate (axis => grid%axes(j))
+            do i = 1, size(points)
+               places = grid%places(points(i))
+               values(i) = axis%values(places(j))
+            end do
+            call add_column(table, axis%name, values, unit_of(axis%unit), axis%meaning)
+         end associate
+      end do
+   end subroutine begin_table
+
+   !> Go on with a file that is there
+   subroutine open_checkpoint(self, path, identity, summary, error)
+      !> The file
+      type(checkpoint_t), intent(inout) :: self
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> What it should be about
+      type(identity_t), intent(in) :: identity
+      !> Outcomes: those that the file has
+      type(summary_t), intent(inout) :: summary
+      !> Error of code `error_file` if the file is about something else, is no such file, or another
+      !> process is at work on it; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(identity_t) :: found
+
+      call read_points(path, found, summary, error, identity)
+      if (.not. allocated(error)) call attach(self, path, error)
+   end subroutine open_checkpoint
+
+   !> Read a file
+   subroutine read_points(path, identity, summary, error, expected)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> What it is about
+      type(identity_t), intent(out) :: identity
+      !> Outcomes of its points; there is room for all of them if `expected` is given, otherwise
+      !> they are pending afterwards where there is no room
+      type(summary_t), intent(inout) :: summary
+      !> Set if it cannot be read, or is not about what is expected
+      type(error_t), allocatable, intent(out) :: error
+      !> What it should be about; nothing but this is read without it
+      type(identity_t), intent(in), optional :: expected
+
+      type(reader_t) :: reader
+      type(error_t), allocatable :: trouble
+      integer, allocatable :: checks(:)
+      integer :: i, n
+      logical :: is_ours
+
+      n = 0
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      call read_identity(reader, identity, is_ours)
+      if (.not. is_ours .or. identity%part%points == 0) then
+         call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
+      else if (present(expected)) then
+         call check_same(path, identity, expected, error)
+         if (.not. allocated(error) .and. (identity%part%number /= expected%part%number .or. &
+            identity%part%points /= expected%part%points)) call raise(error, error_file, &
+            quoted_path(path)//' has other points of the sweep')
+         n = size(summary%status)
+         if (.not. allocated(error)) then
+            do i = 1, size(quantities)
+               call reader%get_reals(dataset(i), summary%values(i)%at)
+            end do
+            allocate (checks(n))
+            call reader%get_integers(dataset(steps_column), summary%steps)
+            call reader%get_integers(dataset(status_column), summary%status)
+            call reader%get_integers(dataset(check_column), checks)
+         end if
+      end if
+      call reader%close(trouble)
+      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
+      if (allocated(error) .or. .not. allocated(checks)) return
+      do i = 1, n
+         if (checks(i) == check_of(summary, i)) cycle
+         summary%status(i) = point_pending
+         summary%steps(i) = 0
+         call forget(summary, i)
+      end do
+   end subroutine read_points
+
+   !> Take the numbers of a point away
+   pure subroutine forget(summary, place)
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> Place of the point
+      integer, intent(in) :: place
+
+      integer :: i
+
+      do i = 1, size(quantities)
+         summary%values(i)%at(place) = ieee_value(1.0_wp, ieee_quiet_nan)
+      end do
+   end subroutine forget
+
+   !> Path of the dataset of a column
+   pure function dataset(column) result(path)
+      !> Number of the column
+      integer, intent(in) :: column
+      !> Its path in the file
+      character(len=:), allocatable :: path
+
+      select case (column)
+      case (steps_column)
+         path = 'steps'
+      case (status_column)
+         path = 'status'
+      case (check_column)
+         path = 'check'
+      case default
+         path = trim(quantities(column)%name)
+      end select
+      path = 'summary/'//path
+   end function dataset
+
+   !> Open a file that is there for writing, and learn where its columns are
+   subroutine attach(self, path, error)
+      !> The file
+      type(checkpoint_t), intent(inout) :: self
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> Set if it cannot be written
+      type(error_t), allocatable, intent(out) :: error
+
+      type(reader_t) :: reader
+      integer(c_int) :: reason
+      integer :: i
+
+      self%path = path
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      do i = 1, columns
+         self%offsets(i) = reader%place(dataset(i))
+      end do
+      call reader%close(error)
+      if (allocated(error)) return
+
+      self%stream = c_fopen(c_text(path), c_text('rb+'))
+      reason = last_errno()
+      if (.not. c_associated(self%stream)) then
+         call raise(error, error_file, 'cannot write '//quoted_path(path)//': '// &
+            system_reason(reason))
+         return
+      end if
+      ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
+      ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
+      ! goes without
+      if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) == 0) return
+      if (last_errno() /= errno_locked) return
+      call self%close()
+      call raise(error, error_file, quoted_path(path)//' is in use: another vcor is at work on '// &
+         'this sweep')
+   end subroutine attach
+
+   !> Keep outcomes
+   subroutine put(self, first, last, summary, error)
+      !> The file
+      class(checkpoint_t), intent(in) :: self
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> Outcomes of all places
+      type(summary_t), intent(in), target :: summary
+      !> Set if they could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, target :: checks(last - first + 1)
+      integer :: i
+
+      do i = 1, size(quantities)
+         call write_at(self, self%offsets(i), storage_size(1.0_wp)/8, first, last, &
+            c_loc(summary%values(i)%at(first)), error)
+         if (allocated(error)) return
+      end do
+      call write_at(self, self%offsets(steps_column), storage_size(1)/8, first, last, &
+         c_loc(summary%steps(first)), error)
+      if (allocated(error)) return
+      call write_at(self, self%offsets(status_column), storage_size(1)/8, first, last, &
+         c_loc(summary%status(first)), error)
+      if (allocated(error)) return
+      do i = 1, size(checks)
+         checks(i) = check_of(summary, first + i - 1)
+      end do
+      call write_at(self, self%offsets(check_column), storage_size(1)/8, first, last, &
+         c_loc(checks), error)
+   end subroutine put
+
+   !> Write numbers to their place
+   subroutine write_at(self, offset, bytes, first, last, values, error)
+      !> The file
+      class(checkpoint_t), intent(in) :: self
+      !> Where the column begins
+      integer(c_int64_t), intent(in) :: offset
+      !> Bytes of a number
+      integer, intent(in) :: bytes
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> Address of the numbers
+      type(c_ptr), intent(in) :: values
+      !> Set if they could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(c_size_t) :: length, done, written
+      integer(c_int64_t) :: start
+      integer(c_int) :: reason
+
+      length = int(last - first + 1, c_size_t)*int(bytes, c_size_t)
+      start = offset + int(first - 1, c_int64_t)*int(bytes, c_int64_t)
+      done = 0_c_size_t
+      do while (done < length)
+         written = c_pwrite(c_fileno(self%stream), shifted(values, done), length - done, &
+            start + done)
+         reason = last_errno()
+         if (written > 0_c_size_t) then
+            done = done + written
+         else if (reason /= errno_interrupted) then
+            call raise(error, error_file, 'cannot write '//quoted_path(self%path)//': '// &
+               system_reason(reason))
+            return
+         end if
+      end do
+   end subroutine write_at
+
+   !> An address so many bytes further
+   pure function shifted(place, bytes)
+      !> The address
+      type(c_ptr), intent(in) :: place
+      !> Number of bytes
+      integer(c_size_t), intent(in) :: bytes
+      !> The address there
+      type(c_ptr) :: shifted
+
+      shifted = transfer(transfer(place, 0_c_int64_t) + int(bytes, c_int64_t), shifted)
+   end function shifted
+
+   !> Close the file, which stays
+   subroutine close_checkpoint(self)
+      !> The file
+      class(checkpoint_t), intent(inout) :: self
+
+      integer(c_int) :: ignored
+
+      if (.not. self%is_open()) return
+      ignored = c_fsync(c_fileno(self%stream))
+      ignored = c_fclose(self%stream)
+      self%stream = c_null_ptr
+   end subroutine close_checkpoint
+
+   !> Close the file and give it another name
+   subroutine close_as(self, path, error)
+      !> The file
+      class(checkpoint_t), intent(inout) :: self
+      !> Its new path, in the same folder
+      character(len=*), intent(in) :: path
+      !> Set if that failed
+      type(error_t), allocatable, intent(out) :: error
+
+      call self%close()
+      call move_file(self%path, path, error)
+   end subroutine close_as
+
+   !> Close the file and remove it
+   subroutine remove(self)
+      !> The file
+      class(checkpoint_t), intent(inout) :: self
+
+      integer(c_int) :: ignored
+
+      if (.not. self%is_open()) return
+      ignored = c_fclose(self%stream)
+      self%stream = c_null_ptr
+      call remove_file(self%path)
+   end subroutine remove
+
+   !> Check sum of a point
+   pure function check_of(summary, place) result(check)
+      !> Outcomes
+      type(summary_t), intent(in) :: summary
+      !> Place of the point
+      integer, intent(in) :: place
+      !> The sum; 0 where the point is pending, and nowhere else
+      integer :: check
+
+      integer(c_int64_t) :: sum
+      integer :: i
+
+      check = 0
+      if (summary%status(place) == point_pending) return
+      sum = int(summary%steps(place), c_int64_t)
+      sum = ieor(ishftc(sum, 11), int(summary%status(place), c_int64_t))
+      do i = 1, size(quantities)
+         sum = ieor(ishftc(sum, 11), transfer(summary%values(i)%at(place), sum))
+      end do
+      check = int(ibits(ieor(sum, ishft(sum, -31)), 0, 31))
+      if (check == 0) check = 1
+   end function check_of
+
+end module vcor_io_checkpoint

@@ -1,0 +1,183 @@
+!> Rows of a table as text with commas, by any thread
+module vcor_io_csv_rows
+   use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
+   use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
+      & put_real
+   use vcor_io_table, only : column_t, coordinate_row, integer_column, real_column, table_t, &
+      & text_column
+   implicit none
+   private
+
+   public :: row_writer_t, new_row_writer, field
+
+   !> What makes quotation marks necessary; `#` begins a comment for most readers
+   character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
+
+   !> What a thread writes rows with
+   type :: row_writer_t
+      !> The rows
+      character(len=:), allocatable :: text
+      !> Last character in use
+      integer :: last = 0
+      !> Powers of ten for the numbers
+      type(decimal_t), private :: decimal
+      !> Room for a row
+      integer, private :: width = 0
+      !> Whether texts stand between quotation marks, by dimension
+      logical, allocatable, private :: quotes_of_dimensions(:)
+      !> The same by column
+      logical, allocatable, private :: quotes_of_columns(:)
+   contains
+      !> Make text of rows
+      procedure :: take
+   end type row_writer_t
+
+contains
+
+   !> Prepare for the rows of a table
+   subroutine new_row_writer(self, table)
+      !> What a thread writes with
+      type(row_writer_t), intent(out) :: self
+      !> The table
+      type(table_t), intent(in) :: table
+      integer :: i
+
+      call new_decimal(self%decimal)
+      allocate(self%quotes_of_dimensions(table%dimension_count))
+      allocate(self%quotes_of_columns(table%column_count))
+      self%width = 1
+      do i = 1, table%dimension_count
+         call look_at(table%dimensions(i)%coordinate, self%quotes_of_dimensions(i))
+      end do
+      do i = 1, table%column_count
+         call look_at(table%columns(i), self%quotes_of_columns(i))
+      end do
+
+   contains
+
+      !> See what a column needs
+      subroutine look_at(column, quotes)
+         !> The column
+         type(column_t), intent(in) :: column
+         !> Whether any of its texts may need quotation marks
+         logical, intent(out) :: quotes
+         integer :: k
+
+         ! every letter may be one that is written twice
+         self%width = self%width + 3 + max(longest_real, longest_integer, 2*column%width)
+         quotes = .false.
+         if (column%kind /= text_column) return
+         quotes = scan(column%texts, special) > 0
+         do k = 1, column%length
+            ! empty, or with a blank before it
+            quotes = quotes .or. column%texts((k - 1)*column%width + 1: &
+               & (k - 1)*column%width + min(1, column%width)) == " "
+         end do
+      end subroutine look_at
+   end subroutine new_row_writer
+
+   !> Make text of rows
+   subroutine take(self, first, last, table)
+      !> What the thread writes with; the text is that of these rows afterwards
+      class(row_writer_t), intent(inout) :: self
+      !> First row
+      integer, intent(in) :: first
+      !> Last row
+      integer, intent(in) :: last
+      !> The table
+      type(table_t), intent(in) :: table
+      integer :: i, row
+      logical :: is_first
+
+      if (allocated(self%text)) then
+         if (len(self%text) < (last - first + 1)*self%width) deallocate(self%text)
+      end if
+      if (.not. allocated(self%text)) &
+         & allocate(character(len=(last - first + 1)*self%width) :: self%text)
+      self%last = 0
+      do row = first, last
+         is_first = .true.
+         do i = 1, table%dimension_count
+            if (table%dimensions(i)%is_index) cycle
+            call put_value(self, table%dimensions(i)%coordinate, coordinate_row(table, i, row), &
+               & self%quotes_of_dimensions(i), is_first)
+         end do
+         do i = 1, table%column_count
+            call put_value(self, table%columns(i), row, self%quotes_of_columns(i), is_first)
+         end do
+         self%last = self%last + 1
+         self%text(self%last:self%last) = c_new_line
+      end do
+   end subroutine take
+
+   !> Add one value
+   subroutine put_value(self, column, row, quotes, is_first)
+      !> What the thread writes with
+      type(row_writer_t), intent(inout) :: self
+      !> Column
+      type(column_t), intent(in) :: column
+      !> Number of the value
+      integer, intent(in) :: row
+      !> Whether a text may need quotation marks
+      logical, intent(in) :: quotes
+      !> Whether it is the first of the line; false afterwards
+      logical, intent(inout) :: is_first
+
+      if (.not. is_first) then
+         self%last = self%last + 1
+         self%text(self%last:self%last) = ","
+      end if
+      is_first = .false.
+      select case (column%kind)
+      case (real_column)
+         call put_real(self%decimal, column%reals(row), self%text, self%last)
+      case (integer_column)
+         call put_integer(column%integers(row), self%text, self%last)
+      case default
+         associate (from => (row - 1)*column%width + 1, to => row*column%width)
+            if (quotes) then
+               ! one thread at a time: the length of what a function returns is static
+!$omp critical (vcor_quotes)
+               call add(field(column%texts(from:to)))
+!$omp end critical (vcor_quotes)
+            else
+               call add(column%texts(from:from + len_trim(column%texts(from:to)) - 1))
+            end if
+         end associate
+      end select
+
+   contains
+
+      !> Add text
+      subroutine add(text)
+         !> The text
+         character(len=*), intent(in) :: text
+
+         self%text(self%last + 1:self%last + len(text)) = text
+         self%last = self%last + len(text)
+      end subroutine add
+   end subroutine put_value
+
+   !> A text as a field of a row
+   pure function field(text)
+      !> Any text; blanks at its end do not count
+      character(len=*), intent(in) :: text
+      !> The text, between quotation marks if need be
+      character(len=:), allocatable :: field
+      integer :: i
+
+      field = trim(text)
+      ! An empty field might make an empty line, which readers skip
+      if (len(field) > 0) then
+         if (scan(field, special) == 0 .and. field(1:1) /= " ") return
+      end if
+
+      field = '"'
+      do i = 1, len_trim(text)
+         field = field//text(i:i)
+         if (text(i:i) == '"') field = field//'"'
+      end do
+      field = field//'"'
+   end function field
+
+end module vcor_io_csv_rows

@@ -1,0 +1,255 @@
+!> What a file of results is about: the program's version, the case and its data, and how many
+!> points there are
+module vcor_io_identity
+   use, intrinsic :: iso_fortran_env, only : int64
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_data_file, only : data_file
+   use vcor_io_file, only : quoted_path
+   use vcor_io_hdf5, only : remark_t
+   use vcor_io_hdf5_reader, only : reader_t
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_study_case, only : case_t
+   use vcor_study_partition, only : new_part, part_t
+   use vcor_study_text, only : shortened
+   use vcor_version, only : version
+   implicit none
+   private
+
+   public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same, &
+      number_of
+
+   !> What a file is about
+   type :: identity_t
+      !> Version of the program
+      character(len=:), allocatable :: version
+      !> Title of the case
+      character(len=:), allocatable :: title
+      !> Full case
+      character(len=:), allocatable :: case_text
+      !> Sum over the points of its data files
+      character(len=:), allocatable :: data
+      !> Which points are there
+      type(part_t) :: part
+   end type identity_t
+
+contains
+
+   !> What a run of a case is about
+   function identity_of(case, part) result(identity)
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Points of the run
+      type(part_t), intent(in) :: part
+      !> What it is about
+      type(identity_t) :: identity
+
+      identity%version = version
+      call case%get('case', 'title', identity%title)
+      identity%case_text = case%to_text(complete=.true.)
+      identity%data = data_of(case)
+      identity%part = part
+   end function identity_of
+
+   !> Sum over the points of the data files of a case
+   function data_of(case) result(text)
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> The sum; empty where there are no data files
+      character(len=:), allocatable :: text
+
+      real(wp), allocatable :: times(:), moduli(:)
+      character(len=16) :: digits
+      integer(int64) :: sum
+      integer :: item, i
+
+      sum = 0_int64
+      text = ''
+      do item = 1, case%count('material')
+         if (data_file(case, item) == '') cycle
+         call case%get('material', 'times', times, item)
+         call case%get('material', 'moduli', moduli, item)
+         do i = 1, size(times)
+            sum = ieor(ishftc(sum, 7), transfer(times(i), sum))
+            sum = ieor(ishftc(sum, 7), transfer(moduli(i), sum))
+         end do
+         write (digits, '(z16.16)') sum
+         text = digits
+      end do
+   end function data_of
+
+   !> A number that is the same for the same case on all ranks
+   pure function number_of(identity) result(number)
+      !> What a run is about
+      type(identity_t), intent(in) :: identity
+      !> Any number
+      integer :: number
+
+      character(len=:), allocatable :: text
+      integer :: i
+
+      text = identity%version//identity%case_text//identity%data
+      number = identity%part%number
+      do i = 1, len(text)
+         number = ieor(ishftc(number, 5), iachar(text(i:i)))
+      end do
+   end function number_of
+
+   !> What a file says about itself beside version, title and case
+   function remarks_of(identity) result(remarks)
+      !> What it is about
+      type(identity_t), intent(in) :: identity
+      !> Attributes
+      type(remark_t) :: remarks(4)
+
+      remarks(1)%name = 'data'
+      remarks(1)%text = identity%data
+      remarks(2)%name = 'points'
+      remarks(2)%text = integer_text(identity%part%points)
+      remarks(3)%name = 'shard'
+      remarks(3)%text = integer_text(identity%part%number)
+      remarks(4)%name = 'shards'
+      remarks(4)%text = integer_text(identity%part%parts)
+   end function remarks_of
+
+   !> What an open file is about
+   subroutine read_identity(reader, identity, is_ours)
+      !> The file
+      type(reader_t), intent(inout) :: reader
+      !> What it is about; one shard without points where it says nothing of those
+      type(identity_t), intent(out) :: identity
+      !> Whether the file is of this program
+      logical, intent(out) :: is_ours
+
+      is_ours = reader%text('program') == 'vcor'
+      identity%version = reader%text('version')
+      identity%title = reader%text('title')
+      identity%case_text = reader%text('case')
+      identity%data = reader%text('data')
+      identity%part = new_part(max(0, number('points')), max(1, number('shard')), &
+         max(1, number('shards')))
+
+   contains
+
+      !> A number in an attribute
+      function number(name)
+         !> Name of the attribute
+         character(len=*), intent(in) :: name
+         !> The number; 0 where there is none
+         integer :: number
+
+         character(len=:), allocatable :: digits
+         integer :: status
+
+         number = 0
+         digits = reader%text(name)
+         if (len(digits) == 0) return
+         read (digits, *, iostat=status) number
+         if (status /= 0) number = 0
+      end function number
+   end subroutine read_identity
+
+   !> What a summary as text is about, from its head; its data are not known
+   subroutine read_csv_identity(path, identity, is_ours)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> What it is about
+      type(identity_t), intent(out) :: identity
+      !> Whether the file is of this program
+      logical, intent(out) :: is_ours
+
+      character(len=*), parameter :: program = '# vcor ', title = '# title: ', case = '# case:'
+      character(len=:), allocatable :: line
+      character(len=500) :: part
+      integer :: unit, status, length
+      logical :: in_case
+
+      identity%version = ''
+      identity%title = ''
+      identity%case_text = ''
+      identity%data = ''
+      in_case = .false.
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      is_ours = status == 0
+      if (.not. is_ours) return
+      do
+         line = ''
+         do
+            read (unit, '(a)', advance='no', size=length, iostat=status) part
+            line = line//part(:length)
+            if (status /= 0) exit
+         end do
+         if (is_iostat_end(status) .or. index(line, '#') /= 1) exit
+         if (in_case) then
+            identity%case_text = identity%case_text//line(3:)//new_line('a')
+         else if (index(line, program) == 1) then
+            identity%version = line(len(program) + 1:)
+         else if (index(line, title) == 1) then
+            identity%title = line(len(title) + 1:)
+         end if
+         in_case = in_case .or. line == case
+      end do
+      close (unit)
+      is_ours = in_case .and. len(identity%version) > 0
+   end subroutine read_csv_identity
+
+   !> Refuse a file that is not about the same; which of the shards it has does not matter
+   subroutine check_same(path, found, expected, error)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> What it is about
+      type(identity_t), intent(in) :: found
+      !> What it should be about
+      type(identity_t), intent(in) :: expected
+      !> Error of code `error_file` with the reason, unallocated if it is about the same
+      type(error_t), allocatable, intent(out) :: error
+
+      if (found%version /= expected%version) then
+         call raise(error, error_file, quoted_path(path)//' is of another version: found '// &
+            shortened(found%version)//', expected '//expected%version)
+      else if (found%case_text /= expected%case_text) then
+         call raise(error, error_file, quoted_path(path)//' is of another case: '// &
+            first_difference(found%case_text, expected%case_text))
+      else if (found%data /= expected%data) then
+         call raise(error, error_file, quoted_path(path)//' was made from a data file with '// &
+            'other points')
+      else if (found%part%parts /= expected%part%parts) then
+         call raise(error, error_file, quoted_path(path)//' is one of '// &
+            integer_text(found%part%parts)//' shards, expected one of '// &
+            integer_text(expected%part%parts))
+      end if
+   end subroutine check_same
+
+   !> Where two cases differ first
+   pure function first_difference(found, expected) result(text)
+      !> A case
+      character(len=*), intent(in) :: found
+      !> Another case
+      character(len=*), intent(in) :: expected
+      !> Found and expected
+
+      character(len=:), allocatable :: text
+      integer :: i, start
+
+      start = 1
+      do i = 1, min(len(found), len(expected))
+         if (found(i:i) /= expected(i:i)) exit
+         if (found(i:i) == new_line('a')) start = i + 1
+      end do
+      text = "found '"//line_at(found)//"', expected '"//line_at(expected)//"'"
+
+   contains
+
+      !> The line that begins there
+      pure function line_at(case_text) result(line)
+         !> A case
+         character(len=*), intent(in) :: case_text
+         !> The line, shortened where it is long
+         character(len=:), allocatable :: line
+
+         line = case_text(min(start, len(case_text) + 1):)
+         line = shortened(trim(adjustl(line(:index(line//new_line('a'), new_line('a')) - 1))))
+      end function line_at
+   end function first_difference
+
+end module vcor_io_identity

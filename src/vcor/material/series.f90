@@ -1,0 +1,275 @@
+!> Two materials in series: they bear the same force and their deformations add, so it is the creep
+!> compliances that add, in the Laplace domain
+!>
+!>     1/Q = 1/Q_a + 1/Q_b,   Q = s L{E}(s)
+!>
+!> Two Prony series make a Prony series. Its rates are the zeros of P = Q_a + Q_b, one between each
+!> rate of both and the next, with those that both have, and the modulus that belongs to the rate l is Q_a^2/(l P') at s = -l.
+!> All other moduli are known by their transform, and as exponentials through their spectrum.
+module vcor_material_series
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_error, only : error_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_prony, only : new_prony, prony_t
+   use vcor_material_spectrum, only : sum_of_resolved_spectrum
+   use vcor_material_transform, only : transform_t
+   use vcor_material_type, only : material_t
+   use vcor_numeric_interlacing, only : zeros_between_poles
+   implicit none
+   private
+
+   public :: new_series
+
+   !> Two materials in series of which at least one is no Prony series
+   type, extends(transform_t) :: series_t
+      private
+      !> One of them
+      class(material_t), allocatable :: first
+      !> The other one
+      class(material_t), allocatable :: second
+      !> Factor of the first modulus
+      real(wp) :: first_factor = 1.0_wp
+      !> Factor of the second modulus
+      real(wp) :: second_factor = 1.0_wp
+      !> The sum of exponentials that represents two moduli that are represented by such sums
+      type(exponential_sum_t), allocatable :: terms
+   contains
+      procedure :: complex_modulus
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type series_t
+
+contains
+
+   !> Put two materials in series
+   pure subroutine new_series(self, first, first_factor, second, second_factor, error)
+      !> The two; not allocated on entry, nor on failure
+      class(material_t), allocatable, intent(inout) :: self
+      !> One material, not rigid
+      class(material_t), intent(in) :: first
+      !> Factor of its modulus, > 0
+      real(wp), intent(in) :: first_factor
+      !> The other material, not rigid
+      class(material_t), intent(in) :: second
+      !> Factor of its modulus, > 0
+      real(wp), intent(in) :: second_factor
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(series_t), allocatable :: series
+      type(prony_t), allocatable :: prony
+      type(exponential_sum_t) :: a, b
+
+      if (first%discrete .and. second%discrete) then
+         call first%exponentials(1.0_wp, 1.0_wp, a)
+         call second%exponentials(1.0_wp, 1.0_wp, b)
+         allocate (prony)
+         call combine(a%scaled(first_factor), b%scaled(second_factor), prony, error)
+         if (allocated(error)) return
+         if (.not. max(a%error, b%error) > 0.0_wp) then
+            call move_alloc(prony, self)
+            return
+         end if
+      end if
+
+      allocate (series)
+      if (allocated(prony)) then
+         allocate (series%terms)
+         call prony%exponentials(1.0_wp, 1.0_wp, series%terms)
+         series%terms%error = max(a%error, b%error)
+      end if
+      call series%prepare()
+      series%discrete = allocated(series%terms)
+      allocate (series%first, source=first)
+      allocate (series%second, source=second)
+      series%first_factor = first_factor
+      series%second_factor = second_factor
+      series%viscosity = in_series(first_factor*first%viscosity, second_factor*second%viscosity)
+      call move_alloc(series, self)
+   end subroutine new_series
+
+   !> a b/(a + b), also where one of them is infinite, or both are zero
+   pure function in_series(a, b) result(value)
+      !> One
+      real(wp), intent(in) :: a
+      !> The other
+      real(wp), intent(in) :: b
+      !> Value
+      real(wp) :: value
+
+      value = 0.0_wp
+      if (min(a, b) > 0.0_wp) value = 1.0_wp/(1.0_wp/a + 1.0_wp/b)
+   end function in_series
+
+   !> Two Prony series in series
+   pure subroutine combine(a, b, prony, error)
+      !> One
+      type(exponential_sum_t), intent(in) :: a
+      !> The other
+      type(exponential_sum_t), intent(in) :: b
+      !> The Prony series that they make
+      type(prony_t), intent(out) :: prony
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      ! moduli of terms that nothing can feel, over the glassy modulus
+      real(wp), parameter :: nothing = 1.0e-30_wp
+      real(wp), dimension(size(a%rates) + size(b%rates) + 1) :: pole, of_a, of_b, rate, modulus
+      real(wp), dimension(size(a%rates) + size(b%rates) + 1) :: offset, distance
+      integer :: near(size(pole)), n, k, zeros
+      real(wp) :: viscosity, part_a, part_b, slope
+      logical :: kept(size(pole))
+
+      ! -P(-x)/x = viscosity + sum E_j/(d_j - x), with the equilibrium modulus at d = 0
+      n = 0
+      if (a%equilibrium + b%equilibrium > 0.0_wp) &
+         call insert(0.0_wp, a%equilibrium, b%equilibrium, pole, of_a, of_b, n)
+      do k = 1, size(a%rates)
+         call insert(a%rates(k), a%moduli(k), 0.0_wp, pole, of_a, of_b, n)
+      end do
+      do k = 1, size(b%rates)
+         call insert(b%rates(k), 0.0_wp, b%moduli(k), pole, of_a, of_b, n)
+      end do
+      viscosity = a%viscosity + b%viscosity
+      zeros = n
+      if (.not. viscosity > 0.0_wp) zeros = n - 1
+      call zeros_between_poles(pole(:n), of_a(:n) + of_b(:n), viscosity, near(:zeros), &
+         offset(:zeros))
+
+      do k = 1, zeros
+         rate(k) = pole(near(k)) + offset(k)
+         distance(:n) = (pole(:n) - pole(near(k))) - offset(k)
+         ! Q_a = -Q_b = -l part: where the two parts differ by rounding, the smaller one is right
+         part_a = a%viscosity + sum(of_a(:n)/distance(:n))
+         part_b = b%viscosity + sum(of_b(:n)/distance(:n))
+         slope = sum((of_a(:n) + of_b(:n))/distance(:n)**2)
+         modulus(k) = min(part_a**2, part_b**2)/slope
+      end do
+      ! a rate that both have stays one
+      do k = 1, n
+         if (.not. (pole(k) > 0.0_wp .and. min(of_a(k), of_b(k)) > 0.0_wp)) cycle
+         zeros = zeros + 1
+         rate(zeros) = pole(k)
+         modulus(zeros) = in_series(of_a(k), of_b(k))
+      end do
+      kept(:zeros) = modulus(:zeros) > nothing*sum(modulus(:zeros))
+      call new_prony(prony, in_series(a%equilibrium, b%equilibrium), &
+         pack(modulus(:zeros), kept(:zeros)), pack(rate(:zeros), kept(:zeros)), &
+         in_series(a%viscosity, b%viscosity), error)
+
+   end subroutine combine
+
+   !> Insert a rate where it belongs
+   pure subroutine insert(l, e_a, e_b, pole, of_a, of_b, n)
+      !> Rate [1/s]
+      real(wp), intent(in) :: l
+      !> Modulus of the first material [Pa]
+      real(wp), intent(in) :: e_a
+      !> Modulus of the second material [Pa]
+      real(wp), intent(in) :: e_b
+      !> Rates, increasing, shape (> n)
+      real(wp), intent(inout) :: pole(:)
+      !> Moduli of the first material
+      real(wp), intent(inout) :: of_a(:)
+      !> Moduli of the second material
+      real(wp), intent(inout) :: of_b(:)
+      !> Number of rates
+      integer, intent(inout) :: n
+
+      ! rates that are the same but for rounding
+      real(wp), parameter :: same = 1.0e-13_wp
+      integer :: i
+
+      i = 1 + count(pole(:n) < l*(1.0_wp - same))
+      if (i <= n) then
+         if (pole(i) <= l*(1.0_wp + same)) then
+            of_a(i) = of_a(i) + e_a
+            of_b(i) = of_b(i) + e_b
+            return
+         end if
+      end if
+      pole(i + 1:n + 1) = pole(i:n)
+      of_a(i + 1:n + 1) = of_a(i:n)
+      of_b(i + 1:n + 1) = of_b(i:n)
+      pole(i) = l
+      of_a(i) = e_a
+      of_b(i) = e_b
+      n = n + 1
+   end subroutine insert
+
+   !> Complex modulus Q_a Q_b/(Q_a + Q_b)
+   elemental function complex_modulus(self, s) result(modulus)
+      !> The two
+      class(series_t), intent(in) :: self
+      !> Laplace variable [1/s]
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      modulus = 1.0_wp/(1.0_wp/(self%first_factor*self%first%complex_modulus(s)) &
+         + 1.0_wp/(self%second_factor*self%second%complex_modulus(s)))
+   end function complex_modulus
+
+   !> Glassy modulus; a dashpot beside one of the moduli makes it rigid at first
+   pure function glassy(self) result(modulus)
+      !> The two
+      class(series_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      real(wp) :: a, b
+
+      a = self%first_factor*self%first%glassy()
+      b = self%second_factor*self%second%glassy()
+      if (self%viscosity > 0.0_wp) then
+         ! what is left of Q - viscosity*s at s -> infinity
+         associate (eta_a => self%first_factor*self%first%viscosity, &
+                    eta_b => self%second_factor*self%second%viscosity)
+            modulus = a*(eta_b/(eta_a + eta_b))**2 + b*(eta_a/(eta_a + eta_b))**2
+         end associate
+      else if (self%first%viscosity > 0.0_wp) then
+         modulus = b
+      else if (self%second%viscosity > 0.0_wp) then
+         modulus = a
+      else if (.not. ieee_is_finite(a)) then
+         modulus = b
+      else if (.not. ieee_is_finite(b)) then
+         modulus = a
+      else
+         modulus = in_series(a, b)
+      end if
+   end function glassy
+
+   !> Rubbery modulus
+   pure function rubbery(self) result(modulus)
+      !> The two
+      class(series_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = in_series(self%first_factor*self%first%rubbery(), &
+         self%second_factor*self%second%rubbery())
+   end function rubbery
+
+   !> The modulus as a sum of exponentials, from its spectrum
+   pure subroutine exponentials(self, window, accuracy, terms)
+      !> The two
+      class(series_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+
+      if (allocated(self%terms)) then
+         terms = self%terms
+         return
+      end if
+      call sum_of_resolved_spectrum(self, window, accuracy, terms)
+      terms%viscosity = terms%viscosity + self%viscosity
+   end subroutine exponentials
+
+end module vcor_material_series

@@ -1,0 +1,160 @@
+!> The points of a sweep, or of a part of it, as a task of all ranks and their threads
+module vcor_study_points
+   use vcor_error, only : error_t
+   use vcor_kinds, only : wp
+   use vcor_impact_trajectory, only : contact_lasting, contact_sticking
+   use vcor_study_failures, only : failures_t
+   use vcor_study_monitor, only : monitor_t
+   use vcor_study_partition, only : new_todo, part_t, todo_t
+   use vcor_study_quantity, only : point_failed, point_invalid, point_pending
+   use vcor_study_summary, only : new_summary, numbers_per_point, summary_t
+   use vcor_study_sweep, only : lacking, solve_points, sweep_t
+   use vcor_study_team, only : task_t, work_together
+   implicit none
+   private
+
+   public :: solve_part
+
+   !> Points as a task
+   type, extends(task_t) :: points_t
+      !> The sweep
+      type(sweep_t), pointer :: sweep => null()
+      !> Part of its points
+      type(part_t) :: part
+      !> Threads of this rank
+      integer :: threads = 1
+      !> Outcomes of all places of the part, on the first rank
+      type(summary_t), pointer :: summary => null()
+      !> What has no result and why, on the first rank
+      type(failures_t), pointer :: failures => null()
+      !> Who watches
+      class(monitor_t), pointer :: monitor => null()
+   contains
+      !> Solve places
+      procedure :: solve
+      !> Take their outcomes
+      procedure :: take
+      !> Whether to stop
+      procedure :: stop_code
+   end type points_t
+
+contains
+
+   !> Solve what is pending of a part of a sweep; all ranks call this
+   !>
+   !> Reasons are not kept in files. A failure that comes from there is solved once more for its
+   !> reason: the status stays, since the same point gives the same bits.
+   subroutine solve_part(sweep, part, threads, monitor, summary, failures, stopped, error)
+      !> The sweep
+      type(sweep_t), intent(in), target :: sweep
+      !> Part of its points
+      type(part_t), intent(in) :: part
+      !> Threads of this rank, > 0
+      integer, intent(in) :: threads
+      !> Who watches
+      class(monitor_t), intent(inout), target :: monitor
+      !> Outcomes of all places of the part, those that are there already included; on the first
+      !> rank
+      type(summary_t), intent(inout), target :: summary
+      !> What points have no result and why; on the first rank
+      type(failures_t), intent(out), target :: failures
+      !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
+      integer, intent(out) :: stopped
+      !> What ended the sweep; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(points_t) :: task
+      type(todo_t) :: todo
+      integer :: i
+
+      task%sweep => sweep
+      task%part = part
+      task%threads = threads
+      task%least = 2*threads
+      if (threads == 1) task%least = 1
+      task%summary => summary
+      task%failures => failures
+      task%monitor => monitor
+      if (allocated(summary%status)) then
+         do i = 1, size(summary%status)
+            if (any(summary%status(i) == [contact_lasting, contact_sticking])) &
+               call failures%note(part%point(i), lacking(summary%status(i)))
+         end do
+         call new_todo(todo, .not. (summary%status == point_pending &
+            .or. summary%status == point_invalid .or. summary%status == point_failed))
+      end if
+      call work_together(task, todo, stopped, error)
+      call failures%sort()
+   end subroutine solve_part
+
+   !> Solve places
+   subroutine solve(self, first, last, result, error)
+      !> The points
+      class(points_t), intent(inout) :: self
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> Outcomes, then what has none and why, shape (n)
+      real(wp), allocatable, intent(out) :: result(:)
+      !> Error of code `error_internal` if there is not enough memory; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      integer :: n
+
+      n = last - first + 1
+      call new_summary(summary, n, error, before=first - 1)
+      if (allocated(error)) return
+      call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part)
+      associate (reasons => failures%pack())
+         allocate (result(n*numbers_per_point + size(reasons)))
+         result(n*numbers_per_point + 1:) = reasons
+      end associate
+      call pack_into(result)
+
+   contains
+
+      !> Outcomes as the first of so many numbers
+      subroutine pack_into(numbers)
+         !> Numbers, by point and quantity
+         real(wp), intent(inout) :: numbers(n, numbers_per_point)
+
+         call summary%pack(numbers)
+      end subroutine pack_into
+   end subroutine solve
+
+   !> Take the outcomes of places
+   subroutine take(self, first, last, result, error)
+      !> The points
+      class(points_t), intent(inout) :: self
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> Outcomes, as `solve` made them, shape (n)
+      real(wp), intent(in) :: result(:)
+      !> What ends the sweep; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: n
+
+      n = last - first + 1
+      call self%summary%unpack(first, reshape(result(:n*numbers_per_point), &
+         [n, numbers_per_point]))
+      call self%failures%add_packed(result(n*numbers_per_point + 1:))
+      call self%monitor%finished(first, last, self%summary, error)
+   end subroutine take
+
+   !> Whether to stop
+   function stop_code(self) result(code)
+      !> The points
+      class(points_t), intent(in) :: self
+      !> 0 to go on
+      integer :: code
+
+      code = self%monitor%stop_code()
+   end function stop_code
+
+end module vcor_study_points

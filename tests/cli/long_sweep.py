@@ -1,0 +1,89 @@
+"""A sweep that takes a while, whatever the build: long enough to be interrupted."""
+
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import h5py
+from cases import SLS, edit
+from program import contents, program
+
+PART = "case.part.h5"
+FILES = ["case.h5", "case_summary.csv"]
+
+
+def sweep_text(count):
+    """A map over velocity and radius; a tenth of the radii is below zero."""
+    text, _ = edit(SLS, "solver", "accuracy", "1e-6")
+    return text + (
+        "&sweep\n   parameter = 'impact.velocity'\n   start = 1.0\n   stop = 50.0\n"
+        f"   count = {max(2, count // 10)}\n/\n"
+        "&sweep\n   parameter = 'sphere.radius'\n   start = -0.002\n   stop = 0.02\n"
+        "   count = 10\n/\n"
+    )
+
+
+def write_long_sweep(vcor, seconds):
+    """A case that takes so long."""
+    start = time.monotonic()
+    vcor("--version")
+    begun = time.monotonic() - start
+    points = 200
+    while True:
+        vcor.write(sweep_text(points))
+        start = time.monotonic()
+        done = vcor("run", "case.nml", "--print", "cor", "--threads", "1")
+        spent = time.monotonic() - start - begun
+        assert done.code == 5
+        if spent > 0.2:
+            break
+        points *= 3
+    vcor.write(sweep_text(int(points * seconds / spent)))
+
+
+def begin(vcor, *words, folder="out", **options):
+    """Start a run."""
+    options.setdefault("stdout", subprocess.PIPE)
+    options.setdefault("stderr", subprocess.PIPE)
+    return subprocess.Popen(
+        [program(), "run", "case.nml", "--output", folder, *words],
+        cwd=vcor.folder,
+        encoding="utf-8",
+        **options,
+    )
+
+
+def wait_for(path, process):
+    """Wait until there is a file."""
+    while not path.exists():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+
+
+def done_in(path):
+    """Number of points that a file says are done, and of all; the others have no numbers."""
+    with h5py.File(path) as file:
+        status = file["summary/status"][:]
+        cor = file["summary/cor"][:]
+        check = file["summary/check"][:]
+        assert (cor[status != 0] != cor[status != 0]).all()
+        assert (cor[check == 0] != cor[check == 0]).all()
+        return int((check != 0).sum()), len(status)
+
+
+def interrupted(vcor, number=signal.SIGKILL, folder="out", *words, name=PART):
+    """Run, wait until there is something to resume, and send a signal; what the run said."""
+    process = begin(vcor, *words, folder=folder)
+    wait_for(vcor.folder / folder / name, process)
+    os.kill(process.pid, number)
+    out, err = process.communicate(timeout=60)
+    return process.returncode, out, err
+
+
+def same_files(one: Path, other: Path, names=FILES):
+    """Both folders hold these files and nothing else, byte for byte."""
+    assert {path.name for path in contents(one)} == set(names)
+    for name in names:
+        assert (one / name).read_bytes() == (other / name).read_bytes(), name

@@ -1,0 +1,198 @@
+"""The documents: links that lead somewhere, commands and examples that do what they say."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from places import LIMIT, ROOT
+
+CONSUMER = ROOT / "tests" / "consumer"
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
+# What a block has that is not for a test: it installs something, builds, or needs a prefix of yours
+OTHER = re.compile(r"apt-get|cmake|cpack|\bfpm\b|ctest|scripts/|pkg-config|build/release|case\.nml")
+
+
+def text_of(name):
+    """A page."""
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def blocks(name, language):
+    """The blocks of a language on a page."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", text_of(name), re.DOTALL | re.MULTILINE)
+
+
+def plain(page):
+    """A page without its blocks."""
+    text = page.read_text(encoding="utf-8")
+    return re.sub(r"^```.*?^```$", "", text, flags=re.DOTALL | re.MULTILINE)
+
+
+def anchors(page):
+    """What a link may have after #: the headings as GitHub names them."""
+    found = set()
+    for title in re.findall(r"^#+ (.*)$", plain(page), re.MULTILINE):
+        name = re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+        count = sum(1 for other in found if re.fullmatch(rf"{re.escape(name)}(-\d+)?", other))
+        found.add(f"{name}-{count}" if count else name)
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links(page):
+    words = re.sub(r"`[^`\n]*`", "", plain(page))
+    links = re.findall(r"\]\(([^)\s]+)\)", words) + re.findall(r'(?:src|href)="([^"]+)"', words)
+    for link in links:
+        if "://" in link:
+            continue
+        path, _, anchor = link.partition("#")
+        target = (page.parent / path).resolve() if path else page
+        assert target.exists(), link
+        assert target.is_relative_to(ROOT), link
+        if anchor:
+            assert anchor in anchors(target), link
+
+
+def test_the_readme_has_the_index_of_the_manual():
+    rows = [line for line in text_of("docs/README.md").splitlines() if line.startswith("| ")]
+    assert len(rows) > 10
+    for row in rows:
+        assert re.sub(r"\]\((\w+\.md)\)", r"](docs/\1)", row) in text_of("README.md")
+
+
+def test_the_index_names_every_page():
+    index = text_of("docs/README.md")
+    for page in (ROOT / "docs").glob("*.md"):
+        assert f"({page.name})" in index or f"docs/{page.name}" in index or page.name == "README.md"
+
+
+# ---------------------------------------------------------------------------------- commands
+
+
+@pytest.fixture
+def folder(vcor, tmp_path):
+    """A folder as the documents take it: a copy of the examples, and mine.nml, a case of yours."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/vcor").symlink_to(vcor)
+    return tmp_path
+
+
+def shell(folder, text):
+    """Run a block as it stands; what it prints."""
+    env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
+    done = subprocess.run(
+        ["bash", "-euc", text],
+        capture_output=True,
+        encoding="utf-8",
+        timeout=LIMIT,
+        check=False,
+        cwd=folder,
+        env=env,
+    )
+    assert (done.returncode, done.stderr) == (0, ""), text
+    return done.stdout
+
+
+def commands():
+    """All blocks of commands of vcor, with where they stand."""
+    for page in PAGES:
+        name = str(page.relative_to(ROOT))
+        for i, block in enumerate(blocks(name, "sh")):
+            if "vcor " in block and not OTHER.search(block):
+                yield pytest.param(block, id=f"{page.stem}-{i}")
+
+
+def test_there_are_commands():
+    assert len(list(commands())) >= 4
+
+
+@pytest.mark.parametrize("block", list(commands()))
+def test_command(folder, block):
+    shell(folder, block)
+
+
+def test_the_loop_prints_what_the_page_shows(folder):
+    page = text_of("docs/sweeps.md")
+    loop = next(block for block in blocks("docs/sweeps.md", "sh") if "for v in" in block)
+    shown = page.split(loop)[1].split("```")[2].lstrip("\n")
+    assert shell(folder, loop) == shown
+
+
+def test_the_first_run_of_the_readme(folder):
+    """The numbers to all digits that are shown; errors, steps and files are another matter."""
+    shown = next(b for b in text_of("README.md").split("```") if b.startswith("\nvcor "))
+    found = shell(folder, "vcor run examples/paper/sls.nml")
+
+    def rows(text):
+        lines = [re.sub(r" \+- .*", "", line) for line in text.strip().splitlines()]
+        lines = [line.rstrip() for line in lines if line]
+        return [line for line in lines if not re.search(r"missing|steps", line)]
+
+    assert rows(shown) == rows(found)
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/getting_started.md"])
+def test_the_case_of_the_page(folder, name):
+    """The case that is shown is the example."""
+    (folder / "sls.nml").write_text(blocks(name, "fortran")[0])
+    assert shell(folder, "vcor check sls.nml") == shell(folder, "vcor check examples/paper/sls.nml")
+
+
+def test_the_solver_group_of_the_page(folder):
+    (group,) = blocks("docs/accuracy.md", "fortran")
+    with (folder / "mine.nml").open("a") as file:
+        file.write(group)
+    assert shell(folder, "vcor run mine.nml --print status") == "separated\n"
+
+
+def test_the_sweep_of_the_page(folder):
+    """The sweep that is shown, and the scripts of the page that read results."""
+    (groups,) = blocks("docs/sweeps.md", "fortran")
+    case = (folder / "mine.nml").read_text()
+    (folder / "case.nml").write_text(f"{case}\n{groups}")
+    shell(folder, "vcor run case.nml --quiet; vcor run examples/paper/sls.nml --quiet")
+    scripts = blocks("docs/sweeps.md", "python") + blocks("docs/output.md", "python")
+    assert len(scripts) >= 5
+    env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
+    for script in scripts:
+        # a figure wants a screen and Matplotlib
+        text = re.sub(r"\.plot\(.*\)", "", script)
+        done = subprocess.run(
+            [sys.executable, "-c", text],
+            capture_output=True,
+            text=True,
+            timeout=LIMIT,
+            check=False,
+            cwd=folder,
+            env=env,
+        )
+        assert done.returncode == 0, done.stderr
+
+
+# ---------------------------------------------------------------------------------- library
+
+
+@pytest.mark.parametrize(
+    "language, names",
+    [
+        ("fortran", ["app/from_case.f90", "app/from_code.f90"]),
+        ("cmake", ["CMakeLists.txt"]),
+        ("toml", ["fpm.toml"]),
+    ],
+)
+def test_the_page_of_the_library_shows_the_consumer(language, names):
+    """The project that tests/package and scripts/test.sh build."""
+    assert blocks("docs/library.md", language) == [(CONSUMER / name).read_text() for name in names]
+
+
+def test_the_library_has_what_the_page_names():
+    facade = (ROOT / "src/vcor.f90").read_text()
+    names = re.findall(r"`((?:new|waves|read|solve|evaluate)\w*)`", text_of("docs/library.md"))
+    assert len(names) > 15
+    for name in names:
+        assert re.search(rf"public ::.*\b{name}\b", facade), name

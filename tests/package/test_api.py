@@ -1,0 +1,49 @@
+"""The pages that FORD makes of the comments in the sources."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LIMIT = 170
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory):
+    """Folder of the pages, and what FORD said about them."""
+    folder = tmp_path_factory.mktemp("ford") / "api"
+    done = subprocess.run(
+        [sys.executable, "-m", "ford", "--output_dir", folder, ROOT / "docs/api.md"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        timeout=LIMIT,
+        check=False,
+        cwd=ROOT,
+    )
+    assert done.returncode == 0, done.stdout
+    return folder, done.stdout
+
+
+def test_no_warning(pages):
+    """A first line as 'Word: ...' is taken for a setting, for example: reword it."""
+    words = [part for part in re.split(r"(?=Warning:)", pages[1]) if part.startswith("Warning:")]
+    assert not words, words
+    assert "rror" not in pages[1].replace("error.f90", "")
+
+
+def test_every_module_has_a_page(pages):
+    sources = [*(ROOT / "src").rglob("*.f90"), *(ROOT / "src").rglob("*.F90")]
+    assert len(sources) > 80
+    for source in sources:
+        path = source.relative_to(ROOT / "src").with_suffix("")
+        assert (pages[0] / "module" / f"{'_'.join(path.parts)}.html").exists()
+
+
+def test_the_first_page_has_the_example(pages):
+    first = (pages[0] / "index.html").read_text(encoding="utf-8")
+    assert "from_code" in first and "new_contact_modulus" in first
+    assert "[[" not in first and "{!" not in first

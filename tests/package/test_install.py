@@ -1,0 +1,205 @@
+"""What cmake --install and cpack leave behind: complete, movable, of use to others."""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CONSUMER = ROOT / "tests" / "consumer"
+PAPER = ROOT / "examples" / "paper"
+LIMIT = 120
+
+# COR of examples/paper/sls.nml at 2.5 m/s, by vcor verify, and the setting for it
+COR = 0.407292416
+FASTER = ["--set", "impact.velocity=2.5", "--print", "cor"]
+# What from_code.f90 of the consumer solves, as changes of that case
+CODE = ["--set", "impact.velocity=3", "--set", "plate.waves=none", "--set", "sphere.mass=0.03"]
+
+
+def run(*words, code=0, **options):
+    """Run a command; what it prints."""
+    done = subprocess.run(
+        list(map(str, words)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        timeout=LIMIT,
+        check=False,
+        **options,
+    )
+    assert done.returncode == code, done.stdout
+    return done.stdout
+
+
+@pytest.fixture(scope="session")
+def build():
+    """Folder of the build, from the environment."""
+    folder = os.environ.get("VCOR_BUILD")
+    assert folder, "the environment variable VCOR_BUILD is not set, expected a folder of a build"
+    return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def prefix(build, tmp_path_factory):
+    """An installation that was moved as a whole, to a path with a blank."""
+    folder = tmp_path_factory.mktemp("install")
+    run("cmake", "--install", build, "--prefix", folder / "first")
+    assert not any("first" in text for text in texts(folder / "first").values())
+    (folder / "first").rename(folder / "moved here")
+    return folder / "moved here"
+
+
+def texts(folder):
+    """The text files below a folder that programs read."""
+    found = {}
+    for path in folder.rglob("*"):
+        if path.suffix in {".cmake", ".pc"}:
+            found[path] = path.read_text()
+    assert len(found) >= 5
+    return found
+
+
+def library_folder(prefix):
+    """Where the library is: lib, lib64 or the like."""
+    (archive,) = prefix.glob("lib*/**/libvcor.a")
+    return archive.parent
+
+
+def is_close(text):
+    """Whether the first COR in a text is that of the case."""
+    return abs(float(re.search(r"COR +([0-9.]+)", text).group(1)) - COR) <= 1e-7
+
+
+def test_everything_is_there(prefix):
+    files = {str(path.relative_to(prefix)) for path in prefix.rglob("*") if path.is_file()}
+    for name in ["bin/vcor", "share/doc/vcor/LICENSE", "share/doc/vcor/README.md"]:
+        assert name in files
+    for page in (ROOT / "man").iterdir():
+        (found,) = (name for name in files if Path(name).name.startswith(page.name))
+        assert f"share/man/man{page.suffix[1:]}/" in found
+    for folder in ["docs", "examples"]:
+        for path in (ROOT / folder).rglob("*"):
+            if path.is_file() and path.suffix != ".h5":
+                assert f"share/doc/vcor/{path.relative_to(ROOT)}" in files
+    assert any(name.startswith("include/vcor/") and name.endswith("/vcor.mod") for name in files)
+
+
+def test_no_path_of_the_build(build, prefix):
+    """What was installed knows neither sources nor build."""
+    for path, text in texts(prefix).items():
+        assert str(ROOT) not in text, path
+        assert str(build) not in text, path
+
+
+def test_program(prefix, tmp_path):
+    """The program in an empty environment, on an example that was installed with it."""
+    case = prefix / "share/doc/vcor/examples/paper/sls.nml"
+    words = ["run", case, *FASTER]
+    assert abs(float(run(prefix / "bin/vcor", *words, env={}, cwd=tmp_path)) - COR) <= 1e-8
+
+
+def test_pages_of_man(prefix):
+    env = {**os.environ, "LC_ALL": "C.UTF-8"}
+    for section, name in [("1", "vcor"), ("5", "vcor-input"), ("5", "vcor-output")]:
+        page = run("man", "-M", prefix / "share/man", section, name, env=env)
+        assert f"{name.upper()}({section})" in page
+
+
+def test_consumer_with_cmake(prefix, tmp_path):
+    """A project in Fortran only: find_package and nothing else."""
+    options = [f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release"]
+    run("cmake", "-S", CONSUMER, "-B", tmp_path, *options)
+    run("cmake", "--build", tmp_path)
+    assert is_close(run(tmp_path / "from_case", cwd=PAPER))
+    cor = float(run(prefix / "bin/vcor", "run", PAPER / "sls.nml", *CODE, "--print", "cor"))
+    assert f"3 m/s: COR {cor:11.8f}," in run(tmp_path / "from_code")
+
+
+def test_consumer_with_another_compiler(prefix, tmp_path):
+    """Module files of another compiler cannot be read: said at once, not by the compiler."""
+    config = next(prefix.rglob("vcorConfig.cmake"))
+    copy = tmp_path / "vcor"
+    shutil.copytree(config.parent, copy)
+    text = (copy / "vcorConfig.cmake").read_text()
+    spoilt = re.sub(r"\^GNU [0-9]+", "^GNU 5", text)
+    assert spoilt != text
+    (copy / "vcorConfig.cmake").write_text(spoilt)
+    words = ["cmake", "-S", CONSUMER, "-B", tmp_path / "build", f"-Dvcor_DIR={copy}"]
+    assert "it was built by GNU" in run(*words, code=1).replace("\n ", "")
+
+
+def test_consumer_with_pkg_config(prefix, tmp_path):
+    """A plain compiler command."""
+    env = {**os.environ, "PKG_CONFIG_PATH": str(library_folder(prefix) / "pkgconfig")}
+    assert run("pkg-config", "--modversion", "vcor", env=env).strip() == version()
+    # the shell takes the words apart, as in the documents
+    command = 'eval gfortran "$1" $(pkg-config --cflags --libs vcor) -o drop'
+    source = CONSUMER / "app/from_case.f90"
+    run("sh", "-c", command, "sh", source, env=env, cwd=tmp_path)
+    assert is_close(run(tmp_path / "drop", cwd=PAPER))
+
+
+def version():
+    """Version of the project."""
+    return re.search(r'^version = "(.*)"', (ROOT / "fpm.toml").read_text(), re.MULTILINE).group(1)
+
+
+@pytest.fixture(scope="session")
+def packages(build, tmp_path_factory):
+    """The packages of Debian."""
+    folder = tmp_path_factory.mktemp("packages")
+    run("cpack", "--config", build / "CPackConfig.cmake", "-B", folder, cwd=folder)
+    return {path.name.split("_")[0]: path for path in folder.glob("*.deb")}
+
+
+def field(package, name):
+    """A field of a package."""
+    return run("dpkg-deb", "-f", package, name).strip()
+
+
+def test_packages(packages):
+    assert set(packages) == {"vcor", "libvcor-dev"}
+    for name, package in packages.items():
+        assert field(package, "Package") == name
+        assert field(package, "Version") == version()
+        assert run("dpkg-deb", "-c", package).count(f"./usr/share/doc/{name}/copyright\n") == 1
+    needs = field(packages["vcor"], "Depends")
+    for library in ["libc6", "libgfortran5", "libhdf5-fortran-", "liblapack3", "libgomp1"]:
+        assert library in needs
+    needs = field(packages["libvcor-dev"], "Depends")
+    for library in ["gfortran-", "libhdf5-dev", "liblapack-dev"]:
+        assert library in needs
+
+
+def test_packages_need_what_debian_has(packages):
+    """Here, where vcor was built, all that they need is installed under these names."""
+    for package in packages.values():
+        for need in field(package, "Depends").split(", "):
+            names = [re.sub(r" \(.*\)", "", name) for name in need.split(" | ")]
+            states = [
+                subprocess.run(
+                    ["dpkg-query", "-W", "-f", "${Status}", name],
+                    capture_output=True,
+                    text=True,
+                    check=False,
+                ).stdout
+                for name in names
+            ]
+            assert "install ok installed" in states, need
+
+
+def test_package_runs(packages, tmp_path):
+    """What is in the packages, in a folder of its own: the program and the library."""
+    for package in packages.values():
+        run("dpkg-deb", "-x", package, tmp_path)
+    case = tmp_path / "usr/share/doc/vcor/examples/paper/sls.nml"
+    words = ["run", case, *FASTER]
+    assert abs(float(run(tmp_path / "usr/bin/vcor", *words, env={}, cwd=tmp_path)) - COR) <= 1e-8
+    build = tmp_path / "build"
+    run("cmake", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={tmp_path / 'usr'}")
+    run("cmake", "--build", build, "--target", "from_case")
+    assert is_close(run(build / "from_case", cwd=PAPER))

@@ -1,0 +1,374 @@
+!> Exact hereditary mechanics: receding contact, hereditary plate, bodies in series
+program test_mechanics
+   use vcor_error, only : error_t
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_plate, only : waves_constant, waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_kinds, only : wp
+   use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_power_law, only : new_power_law, power_law_t
+   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
+   use vcor_material_type, only : material_t
+   use vcor_solver_ive, only : ive_t
+   use vcor_solver_product, only : product_t
+   use vcor_test, only : check, check_close, check_relative, finish, suite
+   use vcor_test_cases, only : make_ive, make_product, random_t, rigid_on_plate, run, success
+   implicit none
+
+   !> What ive is asked for
+   real(wp), parameter :: ive_accuracy = 1.0e-8_wp
+   !> Energy that may be missing, over the initial energy, at the accuracy 1e-8
+   real(wp), parameter :: imbalance_tolerance = 1.0e-8_wp
+
+   type(ive_t) :: ive
+   type(product_t) :: direct
+
+   call suite("mechanics")
+   call make_ive(ive_accuracy, ive)
+   call make_product(1.0e-6_wp, 1.0e-6_wp, direct)
+   call test_table()
+   call test_order()
+   call test_reduced_dimension()
+   call test_reversible()
+   call test_fractional()
+   call test_series()
+   call test_energies()
+   call finish()
+
+contains
+
+   !> The SLS rubber of the paper
+   subroutine make_rubber(rubber)
+      !> The material
+      type(prony_t), intent(out) :: rubber
+
+      type(error_t), allocatable :: error
+
+      call new_sls(rubber, 15.0e6_wp, 300.0_wp, 1200.0_wp, error)
+      call success(error, "an SLS is built")
+   end subroutine make_rubber
+
+   !> The paper's first impact in all models, to ten digits: each model by independent code with
+   !> steps refined until the digits stood
+   subroutine test_table()
+      integer, parameter :: waves(5) = [waves_none, waves_constant, waves_relaxing, &
+         waves_hereditary, waves_hereditary]
+      integer, parameter :: law(5) = [law_receding, law_receding, law_receding, law_boltzmann, &
+         law_receding]
+      real(wp), parameter :: cor(5) = [0.6320155755_wp, 0.4902964335_wp, 0.4479958102_wp, &
+         0.4711951774_wp, 0.4875824382_wp]
+      real(wp), parameter :: cor_sphere(5) = [0.6320155755_wp, 0.4902964335_wp, 0.4195242675_wp, &
+         0.4434202328_wp, 0.4606655775_wp]
+      real(wp), parameter :: contact_time(5) = [0.001391361347_wp, 0.001444646412_wp, &
+         0.001442593897_wp, 0.001337438012_wp, 0.001433384911_wp]
+      character(len=*), parameter :: name(5) = [character(len=21) :: "none, receding", &
+         "constant, receding", "relaxing, receding", "hereditary, boltzmann", &
+         "hereditary, receding"]
+      ! with a step of 1 us
+      real(wp), parameter :: direct_tolerance = 1.0e-5_wp
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome
+      integer :: i
+
+      call make_rubber(rubber)
+      do i = 1, size(cor)
+         call rigid_on_plate(rubber, waves(i), 10.0_wp, impact)
+         impact%law = law(i)
+         call run(ive, impact, outcome)
+         call check_close(outcome%cor, cor(i), ive_accuracy, trim(name(i))//": ive, cor")
+         call check_close(outcome%cor_sphere, cor_sphere(i), ive_accuracy, &
+            trim(name(i))//": ive, cor_sphere")
+         call check_relative(outcome%contact_time, contact_time(i), ive_accuracy, &
+            trim(name(i))//": ive, contact time")
+         call check_close(outcome%cor, cor(i), 3.0_wp*outcome%cor_error + 1.0e-10_wp, &
+            trim(name(i))//": ive, the error is what it says")
+         call run(direct, impact, outcome)
+         call check_close(outcome%cor, cor(i), direct_tolerance, trim(name(i))//": direct, cor")
+         call check_relative(outcome%contact_time, contact_time(i), direct_tolerance, &
+            trim(name(i))//": direct, contact time")
+      end do
+   end subroutine test_table
+
+   !> Product integration is of second order with both exact models
+   subroutine test_order()
+      real(wp), parameter :: exact = 0.4875824382_wp, step = 8.0e-6_wp
+      real(wp), parameter :: least_order = 1.8_wp
+      type(product_t) :: coarse, fine
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: one, other
+
+      call make_rubber(rubber)
+      call rigid_on_plate(rubber, waves_hereditary, 10.0_wp, impact)
+      impact%law = law_receding
+      call make_product(step, 1.0e-6_wp, coarse)
+      call make_product(0.25_wp*step, 1.0e-6_wp, fine)
+      call run(coarse, impact, one)
+      call run(fine, impact, other)
+      call check(log(abs(one%cor - exact)/abs(other%cor - exact))/log(4.0_wp) >= least_order, &
+         "product integration with exact mechanics is of second order")
+   end subroutine test_order
+
+   !> The method of dimensionality reduction: the contact as a row of independent elements of width
+   !> dx and stiffness E' dx under the profile x^2/R. Each comes into contact when s = x^2/R, follows
+   !> the SLS law as long as its force is positive, and then has lost contact for good.
+   !> V. L. Popov and M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction
+   !> (2015), section 7; motion by the leapfrog method
+   subroutine test_reduced_dimension()
+      integer, parameter :: elements = 3000
+      real(wp), parameter :: dt = 2.0e-8_wp, radius = 0.01_wp, velocity = 10.0_wp
+      real(wp), parameter :: rate = 1200.0_wp, glassy = 20.0e6_wp, rubbery = 5.0e6_wp
+      real(wp), parameter :: tolerance = 1.0e-4_wp
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome
+      real(wp), dimension(elements) :: edge, relaxing, elastic
+      logical, dimension(elements) :: touches, lost
+      real(wp) :: s, v, ds, force, dx, decay, gain, t
+      integer :: i
+
+      call make_rubber(rubber)
+      call rigid_on_plate(rubber, waves_none, velocity, impact)
+      impact%law = law_receding
+      call run(ive, impact, outcome)
+
+      ! x from 0 to the largest contact radius and somewhat beyond, elements between equal steps
+      dx = sqrt(radius*1.02_wp*outcome%max_indentation)/real(elements, wp)
+      edge = [((dx*(real(i, wp) - 0.5_wp))**2/radius, i=1, elements)]
+      relaxing = 0.0_wp
+      elastic = 0.0_wp
+      touches = .false.
+      lost = .false.
+      decay = exp(-rate*dt)
+      gain = exp(-0.5_wp*rate*dt)
+      s = 0.0_wp
+      v = velocity
+      t = 0.0_wp
+      force = 0.0_wp
+      do
+         t = t + dt
+         v = v - dt*force/impact%mass
+         ds = v*dt
+         s = s + ds
+         do i = 1, elements
+            if (lost(i)) cycle
+            if (.not. touches(i)) then
+               ! the elements lie in the order of their contact
+               if (s <= edge(i)) exit
+               touches(i) = .true.
+               elastic(i) = rubbery*(s - edge(i))
+               relaxing(i) = (glassy - rubbery)*(s - edge(i))
+            else
+               elastic(i) = elastic(i) + rubbery*ds
+               relaxing(i) = relaxing(i)*decay + (glassy - rubbery)*ds*gain
+            end if
+            if (elastic(i) + relaxing(i) < 0.0_wp) then
+               lost(i) = .true.
+               elastic(i) = 0.0_wp
+               relaxing(i) = 0.0_wp
+            end if
+         end do
+         ! both sides of the row
+         force = 2.0_wp*dx*sum(elastic + relaxing)
+         if (v < 0.0_wp .and. .not. force > 0.0_wp) exit
+         if (t > 3.0e-3_wp) exit
+      end do
+      call check_close(-v/velocity, outcome%cor, tolerance, "a row of elements: cor")
+      call check_relative(t, outcome%contact_time, 10.0_wp*tolerance, "a row of elements: time")
+   end subroutine test_reduced_dimension
+
+   !> An elastic contact is reversible: the same with both laws
+   subroutine test_reversible()
+      type(prony_t) :: elastic
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, usual
+      type(error_t), allocatable :: error
+      integer, parameter :: waves(3) = [waves_none, waves_constant, waves_hereditary]
+      ! the usual law ends where u = s^1.5 has its branch point
+      real(wp), parameter :: tolerance = 1.0e-8_wp, direct_tolerance = 1.0e-5_wp
+      integer :: i
+
+      call new_elastic(elastic, 15.0e6_wp, error)
+      call success(error, "an elastic material is built")
+      do i = 1, size(waves)
+         call rigid_on_plate(elastic, waves(i), 10.0_wp, impact)
+         call run(ive, impact, usual)
+         impact%law = law_receding
+         call run(ive, impact, outcome)
+         call check_close(outcome%cor, usual%cor, tolerance, "elastic contact: ive, cor")
+         call check_relative(outcome%contact_time, usual%contact_time, tolerance, &
+            "elastic contact: ive, contact time")
+         call check(abs(outcome%residual_indentation) <= tolerance*outcome%max_indentation, &
+            "elastic contact: no dent is left")
+         call run(direct, impact, outcome)
+         call check_close(outcome%cor, usual%cor, direct_tolerance, "elastic contact: direct, cor")
+      end do
+   end subroutine test_reversible
+
+   !> The fractional kernels by both methods, product integration extrapolated
+   subroutine test_fractional()
+      type(power_law_t) :: power_law
+      type(cerf_t) :: cerf
+      type(error_t), allocatable :: error
+
+      call new_power_law(power_law, 5.6e6_wp, 8.9e5_wp, 0.5_wp, error)
+      call success(error, "a power law is built")
+      call compare(power_law, "power law")
+      call new_power_law(power_law, 1.0e6_wp, 2.0e6_wp, 0.3_wp, error)
+      call success(error, "a power law is built")
+      call compare(power_law, "power law of exponent 0.3")
+      call new_cerf(cerf, 10.0e6_wp, 60.0e6_wp, 50.0_wp, error)
+      call success(error, "a CERF is built")
+      call compare(cerf, "CERF")
+   end subroutine test_fractional
+
+   !> Compare both methods on the exact models
+   subroutine compare(material, name)
+      !> The material of the plate
+      class(material_t), intent(in) :: material
+      !> Its name
+      character(len=*), intent(in) :: name
+
+      real(wp), parameter :: tolerance = 1.0e-6_wp
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, coarse, fine
+      type(product_t) :: solver
+      real(wp) :: step
+      integer :: i, law
+
+      do i = 1, 2
+         law = merge(law_boltzmann, law_receding, i == 1)
+         call rigid_on_plate(material, waves_hereditary, 10.0_wp, impact)
+         impact%law = law
+         call run(ive, impact, outcome)
+         step = outcome%contact_time/500.0_wp
+         call make_product(step, 1.0e-6_wp, solver)
+         call run(solver, impact, coarse)
+         call make_product(0.5_wp*step, 1.0e-6_wp, solver)
+         call run(solver, impact, fine)
+         call check_close(outcome%cor, fine%cor + (fine%cor - coarse%cor)/3.0_wp, tolerance, &
+            name//": both methods, cor")
+         call check_relative(outcome%contact_time, fine%contact_time &
+            + (fine%contact_time - coarse%contact_time)/3.0_wp, 10.0_wp*tolerance, &
+            name//": both methods, contact time")
+      end do
+   end subroutine compare
+
+   !> Two bodies in series
+   subroutine test_series()
+      real(wp), parameter :: tolerance = 1.0e-11_wp
+      type(prony_t) :: rubber, other, elastic, rigid, viscous
+      type(contact_modulus_t) :: series, eq1
+      type(error_t), allocatable :: error
+      complex(wp) :: a, b
+      real(wp), parameter :: time(4) = [1.0e-5_wp, 1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp]
+      real(wp), parameter :: omega(3) = [10.0_wp, 1000.0_wp, 1.0e5_wp]
+      integer :: i
+
+      call make_rubber(rubber)
+      call new_rigid(rigid)
+      call new_elastic(elastic, 40.0e6_wp, error)
+      call success(error, "an elastic material is built")
+      call new_prony(other, 2.0e6_wp, [5.0e6_wp, 20.0e6_wp, 3.0e6_wp], &
+         [50.0_wp, 1200.0_wp, 3.0e4_wp], 0.0_wp, error)
+      call success(error, "a Prony series is built")
+      call new_prony(viscous, 2.0e6_wp, [5.0e6_wp], [50.0_wp], 300.0_wp, error)
+      call success(error, "a Prony series with a dashpot is built")
+
+      call new_contact_modulus(series, rigid, rubber, .false., error, pair_series)
+      call success(error, "a rigid body in series")
+      call new_contact_modulus(eq1, rigid, rubber, .false., error, pair_eq1)
+      call check_relative(series%relaxation(time), eq1%relaxation(time), tolerance, &
+         "series and Eq. (1) agree where one body is rigid")
+      call new_contact_modulus(series, rubber, rubber, .true., error, pair_series)
+      call new_contact_modulus(eq1, rubber, rubber, .true., error, pair_eq1)
+      call check_relative(series%relaxation(time), eq1%relaxation(time), tolerance, &
+         "series and Eq. (1) agree for one material")
+      call new_contact_modulus(series, rubber, rubber, .false., error, pair_series)
+      call check_relative(series%relaxation(time), eq1%relaxation(time), tolerance, &
+         "two materials that are the same are one")
+      do i = 1, size(omega)
+         call new_contact_modulus(series, rubber, other, .false., error, pair_series)
+         call success(error, "two Prony series in series")
+         call of_both(rubber, other, omega(i), a, b)
+         call check(abs(series%dynamic_modulus(omega(i))*(a + b)/(a*b) - 1.0_wp) <= tolerance, &
+            "compliances add: two Prony series")
+         call new_contact_modulus(series, elastic, viscous, .false., error, pair_series)
+         call success(error, "a spring and a Prony series with a dashpot in series")
+         call of_both(elastic, viscous, omega(i), a, b)
+         call check(abs(series%dynamic_modulus(omega(i))*(a + b)/(a*b) - 1.0_wp) <= tolerance, &
+            "compliances add: a spring and a dashpot")
+      end do
+   end subroutine test_series
+
+   !> Plane-strain moduli of two materials at a frequency
+   subroutine of_both(first, second, omega, a, b)
+      !> One material
+      class(material_t), intent(in) :: first
+      !> The other one
+      class(material_t), intent(in) :: second
+      !> Frequency [rad/s]
+      real(wp), intent(in) :: omega
+      !> Modulus of one [Pa]
+      complex(wp), intent(out) :: a
+      !> Modulus of the other one [Pa]
+      complex(wp), intent(out) :: b
+
+      a = first%plane_strain_factor()*first%complex_modulus(cmplx(0.0_wp, omega, wp))
+      b = second%plane_strain_factor()*second%complex_modulus(cmplx(0.0_wp, omega, wp))
+   end subroutine of_both
+
+   !> Random materials and geometries: energies are positive and close, the sphere loses speed
+   subroutine test_energies()
+      integer, parameter :: cases = 200
+      type(random_t) :: random
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome
+      type(prony_t) :: prony
+      type(power_law_t) :: power_law
+      type(cerf_t) :: cerf
+      type(error_t), allocatable :: error
+      real(wp) :: e, velocity, radius, mass
+      integer :: i, separated
+
+      separated = 0
+      do i = 1, cases
+         e = random%log_between(1.0e6_wp, 1.0e9_wp)
+         velocity = random%log_between(0.1_wp, 30.0_wp)
+         radius = random%log_between(0.003_wp, 0.03_wp)
+         mass = random%log_between(0.3_wp, 3.0_wp)*3.0e4_wp*radius**3
+         select case (mod(i, 4))
+         case (0)
+            call new_power_law(power_law, 0.2_wp*e, e*1.0e-2_wp, random%between(0.2_wp, 0.6_wp), &
+               error)
+            call rigid_on_plate(power_law, waves_hereditary, velocity, impact, mass, radius)
+         case (1)
+            call new_cerf(cerf, 0.3_wp*e, e, random%log_between(5.0_wp, 200.0_wp), error)
+            call rigid_on_plate(cerf, waves_hereditary, velocity, impact, mass, radius)
+         case (2)
+            call new_sls(prony, e, 0.3_wp*1.0e3_wp, random%log_between(400.0_wp, 3.0e3_wp), error)
+            call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
+         case default
+            call new_prony(prony, random%log_between(0.05_wp, 1.0_wp)*e, e*[0.5_wp, 1.0_wp, 2.0_wp], &
+               [random%log_between(10.0_wp, 300.0_wp), random%log_between(300.0_wp, 3.0e3_wp), &
+               random%log_between(3.0e3_wp, 1.0e5_wp)], 0.0_wp, error)
+            call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
+         end select
+         call success(error, "a random material is built")
+         impact%law = merge(law_receding, law_boltzmann, mod(i/4, 2) == 0)
+         call run(ive, impact, outcome)
+         if (outcome%status /= contact_separated) cycle
+         separated = separated + 1
+         call check(outcome%cor_sphere < 1.0_wp, "random impact: the sphere loses speed")
+         call check(outcome%hysteresis_energy >= 0.0_wp .and. outcome%wave_energy >= 0.0_wp &
+            .and. outcome%final_energy >= 0.0_wp, "random impact: no energy is negative")
+         call check(abs(outcome%energy_imbalance) <= imbalance_tolerance*outcome%initial_energy, &
+            "random impact: the energies close")
+      end do
+      call check(separated == cases, "all random impacts end in separation")
+   end subroutine test_energies
+
+end program test_mechanics
