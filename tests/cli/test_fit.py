@@ -266,6 +266,13 @@ def test_fixed_parameter(vcor):
     assert group(out)["beta"] == 1000.0
 
 
+def test_wrong_model(vcor):
+    """A model that is not that of the data is told."""
+    words = ["fit", "--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2", "--model"]
+    assert "does not follow the data" in vcor.succeeds(*words, "sls")
+    assert "does not follow the data" not in vcor.succeeds(*words, "power_law")
+
+
 # Sampled models
 
 

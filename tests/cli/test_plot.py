@@ -609,6 +609,25 @@ def test_what_others_wrote(bad):
     assert blocks(bad.folder / "radius_sweep.dat") == [[(1.0, 0.5), (2.0, 0.6)]]
 
 
+def test_other_types(vcor):
+    """Numbers of any width and byte order, whole ones, text of fixed length."""
+    for name, kind in (("a", ">f4"), ("b", "<f8"), ("c", "<i2")):
+        with h5py.File(vcor.folder / f"{name}.h5", "w") as file:
+            file.attrs["title"] = np.bytes_(f"title {name}")
+            file["summary/sphere.radius"] = np.array([1, 2, 4], dtype=kind)
+            file["summary/sphere.radius"].attrs["units"] = np.bytes_("m")
+            if kind != "<i2":
+                file["summary/sphere.radius"].make_scale()
+            file["summary/cor"] = np.array([3, 2, 1], dtype=kind)
+            file["summary/status"] = np.array([b"separated", b"x", b""])
+    vcor.succeeds("plot", "a.h5", "b.h5", "--script")
+    found = texts(vcor.folder / "a_sweep.svg")
+    assert "title a" in found and "title b" in found and "sphere radius [m]" in found
+    line = [(1.0, 3.0), (2.0, 2.0), (4.0, 1.0)]
+    assert blocks(vcor.folder / "a_sweep.dat") == [line, line]
+    vcor.refuses("plot", "c.h5", code=INPUT, at="c.h5", says="single impact")
+
+
 def test_quiet(vcor, results):
     assert vcor.succeeds("plot", results / "sls.h5", "--quiet") == ""
     assert {path.name for path in vcor.folder.iterdir()} == {"sls_history.svg"}
