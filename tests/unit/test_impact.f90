@@ -375,7 +375,7 @@ contains
          *sqrt(3.0_wp*1100.0_wp*0.75_wp/15.0e6_wp)/(16.0_wp*1100.0_wp*0.02_wp**2), &
          rounding, "Zener's lambda = alpha(0) m/T")
       call check_close(impact%inelasticity(), 0.138_wp, 1.0e-4_wp, "the paper's is 0.1380")
-      call check(impact%patience() > 100.0_wp*scale, "a contact may last")
+      call check(impact%patience(impact%time_scale()) > 100.0_wp*scale, "a contact may last")
       call check_close(hertz_contact_time, 0.8_wp*sqrt(pi)*gamma(0.4_wp)/gamma(0.9_wp) &
          *1.25_wp**0.4_wp, hertz_tolerance, "Hertz: contact time in units of T")
 

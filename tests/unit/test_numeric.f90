@@ -8,6 +8,7 @@ program test_numeric
    use vcor_numeric_dot, only : dot
    use vcor_numeric_legendre, only : gauss_nodes, legendre, radau_nodes
    use vcor_numeric_linear, only : apply, factorise, factors_t
+   use vcor_numeric_pairs, only : ratio, times
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : random_t, success
@@ -260,7 +261,7 @@ contains
       integer, parameter :: steps = 12
       type(collocation_t) :: rule
       type(error_t), allocatable :: error
-      real(wp) :: value(0:width)
+      real(wp) :: value(0:width), slope(0:width), theta(width)
       integer :: n, j, step
 
       do n = 2, most_stages
@@ -269,15 +270,19 @@ contains
          value = rule%point**n
          call check_close(rule%interpolate(value(0:n), 0.37_wp), 0.37_wp**n, &
             collocation_tolerance, "a polynomial of degree n is interpolated")
+         theta = [(0.25_wp*real(j, wp), j = 1, width)]
+         call check_close(rule%extend(value, theta), theta**n, &
+            collocation_tolerance*2.0_wp**n, "a polynomial is extended beyond its panel")
          do j = 0, n
             call check_close(rule%interpolate(value(0:n), rule%point(j)), value(j), rounding, &
                "interpolation takes the values at the points")
          end do
-         call check_close(matmul(rule%derivative(0:n, 0:n), value(0:n)), &
+         slope = rule%slopes(value)
+         call check_close(slope(0:n), &
             real(n, wp)*rule%point(0:n)**(n - 1), collocation_tolerance, &
             "a polynomial of degree n is differentiated")
          value = (rule%point - 0.43_wp)*(1.0_wp + rule%point)
-         call check_close(rule%crossing(value(0:n), 0.0_wp, 1.0_wp), 0.43_wp, &
+         call check_close(rule%crossing(value, 0.0_wp, 1.0_wp, 1.0e-10_wp), 0.43_wp, &
             collocation_tolerance, "the zero of a polynomial is found")
          call check_map(rule, rule%map(linear), 1.0_wp, 0.0_wp)
          do step = 0, steps
@@ -298,39 +303,31 @@ contains
       !> What its bend is to be
       real(wp), intent(in) :: bend
 
-      complex(wp) :: left(rule%stages, map%pairs), right(rule%stages, map%pairs)
-      complex(wp) :: eigenvalue(map%pairs)
-      real(wp) :: b(rule%stages, rule%stages), inverse(rule%stages, rule%stages)
-      real(wp) :: node(rule%stages), one(rule%stages), length, tolerance
-      integer :: n, m, k, i, j
+      real(wp) :: b(width, width), inverse(width, width)
+      real(wp) :: node(rule%stages), one(width), length, tolerance
+      integer :: n, k, j
 
       n = rule%stages
-      m = map%pairs
       tolerance = eigenvector_tolerance(n)
       node = rule%node(1:n)
       call check_close(map%slope, slope, 0.0_wp, "slope of the map")
       call check_close(map%bend, bend, 0.0_wp, "bend of the map")
-      call check(2*m >= n .and. m <= n, "of each pair one eigenvalue is kept")
-      left = cmplx(map%left_re(1:n, 1:m), map%left_im(1:n, 1:m), wp)
-      right = cmplx(map%right_re(1:n, 1:m), map%right_im(1:n, 1:m), wp)
-      eigenvalue = map%eigenvalue(1:m)
-      do j = 1, n
-         one(j) = real(sum(right(j, :)*map%left_one(1:m)), wp)
-         do i = 1, n
-            b(i, j) = real(sum(right(i, :)*eigenvalue*left(j, :)), wp)
-            inverse(i, j) = real(sum(right(i, :)/eigenvalue*left(j, :)), wp)
-         end do
+      call check(all(abs(abs(map%square) - 1.0_wp) <= 0.0_wp), "j^2 is 1 or -1")
+      one = apply(map%right, map%left_one)
+      do j = 1, width
+         b(:, j) = apply(map%right, times(map%square, map%eigenvalue, map%left(:, j)))
+         inverse(:, j) = apply(map%right, ratio(map%square, map%left(:, j), map%eigenvalue))
       end do
       length = slope + bend
-      call check_close(one, 1.0_wp, tolerance, "V V^-1 takes a constant to itself")
-      call check_close(b/length, map%matrix(1:n, 1:n)/length, tolerance, "V lambda V^-1 is B")
+      call check_close(one(1:n), 1.0_wp, tolerance, "V V^-1 takes a constant to itself")
+      call check_close(b/length, map%matrix/length, tolerance, "V lambda V^-1 is B")
       do k = 0, n - 2
          call check_close(matmul(map%matrix(1:n, 1:n), node**k)/length, &
             (slope*node**(k + 1)/real(k + 1, wp) + 2.0_wp*bend*node**(k + 2)/real(k + 2, wp)) &
             /length, rounding, "B integrates powers of theta exactly")
       end do
       ! B's smallest eigenvalue is about a hundredth of its largest
-      call check_close(matmul(inverse, matmul(map%matrix(1:n, 1:n), node)), node, &
+      call check_close(matmul(inverse(1:n, 1:n), matmul(map%matrix(1:n, 1:n), node)), node, &
          100.0_wp*tolerance, "the inverse of B by its eigenvalues")
    end subroutine check_map
 

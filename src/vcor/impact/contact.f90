@@ -291,7 +291,7 @@ contains
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp), parameter :: slowest = 0.05_wp, fastest = 1.0e7_wp, spacing = 0.2_wp
-      real(wp), parameter :: lost = 1.0e-12_wp
+      real(wp), parameter :: lost = 2.0e-13_wp
       ! columns that depend on each other to this part make large moduli of opposite signs
       real(wp), parameter :: dependent = 1.0e-13_wp
       ! first sample over the time of the fastest term; share of the window with full weight

@@ -46,6 +46,8 @@ module vcor_impact_problem
       procedure :: kernel_viscosity
       !> Time scale of the contact
       procedure :: time_scale
+      !> Time scale of an elastic contact
+      procedure, private :: hertz_time
       !> Time scale of the fastest motion
       procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
@@ -189,17 +191,32 @@ contains
       real(wp) :: firmness, viscosity, guess
       integer :: iteration
 
-      ! start from T = 1 s and iterate; with a kernel t^-a the map contracts by 2a/5
+      ! start from the time scale of the glassy contact, or 1 s, and iterate; with a kernel t^-a the
+      ! map contracts by 2a/5
       scale = 1.0_wp
+      firmness = self%hertz_factor*self%modulus%glassy()
+      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) scale = self%hertz_time(firmness)
       viscosity = self%kernel_viscosity()
       do iteration = 1, 60
          firmness = (self%kernel_integral(scale) + viscosity)/scale
-         guess = (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp
+         guess = self%hertz_time(firmness)
          if (abs(guess - scale) <= 1.0e-3_wp*guess) exit
          scale = guess
       end do
       scale = guess
    end function time_scale
+
+   !> Hertz's time scale T = (m/(k sqrt(v0)))^(2/5) of an elastic contact
+   pure function hertz_time(self, firmness) result(time)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Firmness k of the contact [N/m^1.5], > 0
+      real(wp), intent(in) :: firmness
+      !> Time scale [s]
+      real(wp) :: time
+
+      time = (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp
+   end function hertz_time
 
    !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
    !> that relaxes before it is over can be shorter than its time scale
@@ -214,23 +231,24 @@ contains
       scale = self%time_scale()
       firmness = self%hertz_factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
-         scale = min(scale, (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp)
+         scale = min(scale, self%hertz_time(firmness))
    end function fast_time_scale
 
    !> Time after which a contact counts as lasting where the user gives none: a thousand time
    !> scales, those of the rubbery modulus if there is one
-   pure function patience(self) result(time)
+   pure function patience(self, time_scale) result(time)
       !> The impact
       class(impact_t), intent(in) :: self
+      !> Its time scale [s]
+      real(wp), intent(in) :: time_scale
       !> Time [s]
       real(wp) :: time
 
       real(wp) :: firmness
 
-      time = self%time_scale()
+      time = time_scale
       firmness = self%hertz_factor*self%modulus%rubbery()
-      if (firmness > 0.0_wp) &
-         time = max(time, (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp)
+      if (firmness > 0.0_wp) time = max(time, self%hertz_time(firmness))
       time = 1000.0_wp*time
    end function patience
 

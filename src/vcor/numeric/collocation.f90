@@ -15,22 +15,30 @@
 module vcor_numeric_collocation
    use vcor_error, only : error_internal, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_numeric_lapack, only : dgeev, dgesv, zgesv
+   use vcor_numeric_lapack, only : dgeev, dgesv
    use vcor_numeric_legendre, only : legendre, radau_nodes
    implicit none
    private
 
    public :: collocation_t, panel_map_t, new_collocation
-   public :: linear, width
+   public :: linear, width, pairs
 
    !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
    !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
    !> The eigenvectors' condition grows tenfold per stage; with eight, they cost four digits
    integer, parameter :: width = 8
+   !> Number of pairs of eigenvalues of as many stages
+   integer, parameter :: pairs = width/2
    !> Index of the map of a step in t
    integer, parameter :: linear = -1
 
-   !> Integration matrix B of one map, diagonalised; of each complex pair one member is kept
+   !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
+   !>
+   !> Eigenvalues are kept as pairs a + b j and a - b j: complex ones with j^2 = -1, real ones two
+   !> by two with j^2 = +1. So a function of B is one number f = a + b j per pair, stored as a
+   !> vector of `width`: the parts without j, then those with j. `right` and `left` are real
+   !> matrices: f(B) u is the product of `right` with the products (those of `vcor_numeric_pairs`)
+   !> of f and the numbers `left` u
    type :: panel_map_t
       !> Linear coefficient of the map
       real(wp) :: slope = 0.0_wp
@@ -38,20 +46,16 @@ module vcor_numeric_collocation
       real(wp) :: bend = 0.0_wp
       !> B itself
       real(wp) :: matrix(width, width) = 0.0_wp
-      !> Number of eigenvalues kept, between half and all of the stages
-      integer :: pairs = 0
-      !> Eigenvalues, `pairs` of them
-      complex(wp) :: eigenvalue(width) = (0.0_wp, 0.0_wp)
-      !> V, one column per kept eigenvalue: real parts
-      real(wp) :: right_re(width, width) = 0.0_wp
-      !> V: imaginary parts
-      real(wp) :: right_im(width, width) = 0.0_wp
-      !> V^-1 transposed, doubled where a conjugate is left out: real parts
-      real(wp) :: left_re(width, width) = 0.0_wp
-      !> V^-1 transposed: imaginary parts
-      real(wp) :: left_im(width, width) = 0.0_wp
-      !> V^-1 applied to a vector of ones, `pairs` of them
-      complex(wp) :: left_one(width) = (0.0_wp, 0.0_wp)
+      !> j^2 of each pair
+      real(wp) :: square(pairs) = 1.0_wp
+      !> Eigenvalues; pairs beyond the stages are 1 and have no vectors
+      real(wp) :: eigenvalue(width) = [spread(1.0_wp, 1, pairs), spread(0.0_wp, 1, pairs)]
+      !> From the numbers of the pairs to the stages
+      real(wp) :: right(width, width) = 0.0_wp
+      !> From the stages to the numbers of the pairs
+      real(wp) :: left(width, width) = 0.0_wp
+      !> V^-1 applied to a vector of ones
+      real(wp) :: left_one(width) = 0.0_wp
    end type panel_map_t
 
    !> A Radau IIA rule
@@ -74,6 +78,10 @@ module vcor_numeric_collocation
    contains
       !> Value of a polynomial given at the points
       procedure :: interpolate
+      !> Values of such a polynomial at as many arguments as a panel has stages
+      procedure :: extend
+      !> Derivative of a polynomial at the points
+      procedure :: slopes
       !> Zero of a polynomial between two arguments
       procedure :: crossing
    end type collocation_t
@@ -163,39 +171,24 @@ contains
 
       real(wp) :: b(size(node), size(node)), wr(size(node)), wi(size(node))
       real(wp) :: vl(1, 1), vr(size(node), size(node)), work(8*size(node))
-      complex(wp) :: v(size(node), size(node)), inverse(size(node), size(node))
-      integer :: pivot(size(node)), kept(size(node)), n, j, m, info
+      real(wp) :: inverse(size(node), size(node)), factors(size(node), size(node))
+      integer :: pivot(size(node)), n, j, m, other, info
 
       n = size(node)
       do j = 1, n
          b(:, j) = matrix(:, j)*(slope + 2.0_wp*bend*node(j))
       end do
+      map%slope = slope
+      map%bend = bend
       map%matrix(1:n, 1:n) = b
       call dgeev('N', 'V', n, b, n, wr, wi, vl, 1, vr, n, work, size(work), info)
       if (info == 0) then
-         m = 0
-         j = 1
-         do while (j <= n)
-            m = m + 1
-            kept(m) = j
-            if (wi(j) > 0.0_wp) then
-               v(:, j) = cmplx(vr(:, j), vr(:, j + 1), wp)
-               v(:, j + 1) = conjg(v(:, j))
-               j = j + 2
-            else
-               v(:, j) = cmplx(vr(:, j), 0.0_wp, wp)
-               j = j + 1
-            end if
-         end do
-         inverse = (0.0_wp, 0.0_wp)
+         inverse = 0.0_wp
          do j = 1, n
-            inverse(j, j) = (1.0_wp, 0.0_wp)
+            inverse(j, j) = 1.0_wp
          end do
-         block
-            complex(wp) :: factors(n, n)
-            factors = v
-            call zgesv(n, n, factors, n, pivot, inverse, n, info)
-         end block
+         factors = vr
+         call dgesv(n, n, factors, n, pivot, inverse, n, info)
       end if
       if (info /= 0) then
          call raise(error, error_internal, &
@@ -203,18 +196,54 @@ contains
          return
       end if
 
-      map%slope = slope
-      map%bend = bend
-      map%pairs = m
-      do j = 1, m
-         map%eigenvalue(j) = cmplx(wr(kept(j)), wi(kept(j)), wp)
-         map%right_re(1:n, j) = real(v(:, kept(j)), wp)
-         map%right_im(1:n, j) = aimag(v(:, kept(j)))
-         if (wi(kept(j)) > 0.0_wp) inverse(kept(j), :) = 2.0_wp*inverse(kept(j), :)
-         map%left_re(1:n, j) = real(inverse(kept(j), :), wp)
-         map%left_im(1:n, j) = aimag(inverse(kept(j), :))
-         map%left_one(j) = sum(inverse(kept(j), :))
+      m = 0
+      other = 0
+      do j = 1, n
+         if (wi(j) > 0.0_wp) then
+            ! u = x Re v + y Im v is the real part of (x - i y) v
+            m = m + 1
+            map%square(m) = -1.0_wp
+            map%eigenvalue([m, pairs + m]) = [wr(j), wi(j)]
+            map%right(1:n, m) = vr(:, j)
+            map%right(1:n, pairs + m) = -vr(:, j + 1)
+            map%left(m, 1:n) = inverse(j, :)
+            map%left(pairs + m, 1:n) = -inverse(j + 1, :)
+         else if (wi(j) < 0.0_wp) then
+            cycle
+         else if (other == 0) then
+            other = j
+         else
+            call join(other, j)
+            other = 0
+         end if
       end do
+      ! a real eigenvalue that is left over
+      if (other > 0) then
+         m = m + 1
+         map%eigenvalue(m) = wr(other)
+         map%right(1:n, m) = vr(:, other)
+         map%left(m, 1:n) = inverse(other, :)
+      end if
+      map%left_one = sum(map%left, 2)
+
+   contains
+
+      !> Make a pair of two real eigenvalues a + b and a - b: x v + y w = (x + y)/2 (v + w)
+      !> + (x - y)/2 (v - w)
+      subroutine join(first, second)
+         !> Number of one
+         integer, intent(in) :: first
+         !> Number of the other one
+         integer, intent(in) :: second
+
+         m = m + 1
+         map%eigenvalue(m) = 0.5_wp*(wr(first) + wr(second))
+         map%eigenvalue(pairs + m) = 0.5_wp*(wr(first) - wr(second))
+         map%right(1:n, m) = vr(:, first) + vr(:, second)
+         map%right(1:n, pairs + m) = vr(:, first) - vr(:, second)
+         map%left(m, 1:n) = 0.5_wp*(inverse(first, :) + inverse(second, :))
+         map%left(pairs + m, 1:n) = 0.5_wp*(inverse(first, :) - inverse(second, :))
+      end subroutine join
    end subroutine diagonalise
 
    !> Barycentric weights of a set of nodes
@@ -279,9 +308,58 @@ contains
       end do
    end function interpolate
 
+   !> Values of the polynomial that takes the given values at the points: `interpolate` for many
+   !> arguments at once
+   pure function extend(self, value, theta) result(y)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `point`
+      real(wp), intent(in) :: value(0:width)
+      !> Arguments
+      real(wp), intent(in) :: theta(width)
+      !> Values
+      real(wp) :: y(width)
+
+      real(wp) :: before(width, 0:width), after(width), factor
+      integer :: i, j
+
+      before(:, 0) = 1.0_wp
+      do j = 1, self%stages
+         do i = 1, width
+            before(i, j) = before(i, j - 1)*(theta(i) - self%point(j - 1))
+         end do
+      end do
+      after = 1.0_wp
+      y = 0.0_wp
+      do j = self%stages, 0, -1
+         factor = value(j)*self%barycentric(j)
+         do i = 1, width
+            y(i) = y(i) + factor*before(i, j)*after(i)
+            after(i) = after(i)*(theta(i) - self%point(j))
+         end do
+      end do
+   end function extend
+
+   !> Derivative by theta, at the points, of the polynomial that takes the given values there
+   pure function slopes(self, value) result(slope)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `point`
+      real(wp), intent(in) :: value(0:width)
+      !> Derivative
+      real(wp) :: slope(0:width)
+
+      integer :: j
+
+      slope = 0.0_wp
+      do j = 0, self%stages
+         slope = slope + self%derivative(:, j)*value(j)
+      end do
+   end function slopes
+
    !> Zero of the polynomial with the given values between two arguments where its signs differ,
-   !> by the Illinois method, to ten digits; the upper one where they do not
-   pure function crossing(self, value, lower, upper) result(theta)
+   !> by the Illinois method; the upper one where they do not
+   pure function crossing(self, value, lower, upper, tolerance) result(theta)
       !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`, shape (0:stages)
@@ -290,6 +368,8 @@ contains
       real(wp), intent(in) :: lower
       !> Upper end of the bracket
       real(wp), intent(in) :: upper
+      !> Wanted width of the bracket
+      real(wp), intent(in) :: tolerance
       !> Zero
       real(wp) :: theta
 
@@ -303,7 +383,7 @@ contains
       theta = b
       if ((fa > 0.0_wp) .eqv. (fb > 0.0_wp)) return
       do iteration = 1, 100
-         if (abs(b - a) <= 1.0e-10_wp .or. .not. abs(fb - fa) > 0.0_wp) exit
+         if (abs(b - a) <= tolerance .or. .not. abs(fb - fa) > 0.0_wp) exit
          theta = (a*fb - b*fa)/(fb - fa)
          f = self%interpolate(value, theta)
          if (.not. abs(f) > 0.0_wp) exit

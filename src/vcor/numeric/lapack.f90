@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgelsy, dgesv, zgesv
+   public :: dgeev, dgelsy, dgesv
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -92,27 +92,6 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgesv
-
-      !> Solve a general complex system of linear equations
-      subroutine zgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
-         import :: wp
-         !> Number of equations
-         integer, intent(in) :: n
-         !> Number of right-hand sides
-         integer, intent(in) :: nrhs
-         !> Leading dimension of `a`
-         integer, intent(in) :: lda
-         !> The matrix, on return its factors, shape (lda, n)
-         complex(wp), intent(inout) :: a(lda, *)
-         !> Row interchanges, shape (n)
-         integer, intent(out) :: ipiv(*)
-         !> Leading dimension of `b`
-         integer, intent(in) :: ldb
-         !> Right-hand sides, on return the solutions, shape (ldb, nrhs)
-         complex(wp), intent(inout) :: b(ldb, *)
-         !> 0 on success
-         integer, intent(out) :: info
-      end subroutine zgesv
    end interface
 
 end module vcor_numeric_lapack

@@ -74,12 +74,14 @@ contains
 
       do k = 1, width - 1
          x = b(k)
+!GCC$ novector
          do i = k + 1, width
             b(i) = b(i) - self%lower(i, k)*x
          end do
       end do
       do k = width, 1, -1
          x = b(k)*self%inverse(k)
+!GCC$ novector
          do i = 1, k - 1
             b(i) = b(i) - self%matrix(i, k)*x
          end do
@@ -99,8 +101,8 @@ contains
       integer :: i
 
       do i = 1, width
-         y(i) = a(i, 1)*x(1) + a(i, 2)*x(2) + a(i, 3)*x(3) + a(i, 4)*x(4) &
-            + a(i, 5)*x(5) + a(i, 6)*x(6) + a(i, 7)*x(7) + a(i, 8)*x(8)
+         y(i) = ((a(i, 1)*x(1) + a(i, 2)*x(2)) + (a(i, 3)*x(3) + a(i, 4)*x(4))) &
+            + ((a(i, 5)*x(5) + a(i, 6)*x(6)) + (a(i, 7)*x(7) + a(i, 8)*x(8)))
       end do
    end function apply
 

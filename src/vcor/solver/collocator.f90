@@ -1,26 +1,29 @@
-!> Panels of the internal-variable method: the two rules, and how a panel is guessed and solved
+!> Panels of the internal-variable method: the two rules, and how a panel is guessed, solved and
+!> accompanied
 module vcor_solver_collocator
    use vcor_error, only : error_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, new_collocation
+   use vcor_numeric_collocation, only : collocation_t, new_collocation, width
+   use vcor_numeric_linear, only : apply, factors_t
    use vcor_solver_general_panel, only : solve_general_panel
    use vcor_solver_modes, only : advance_modes, start_t
-   use vcor_solver_panel, only : panel_t, solve_panel
+   use vcor_solver_panel, only : improve_panel, panel_t, solve_near_panel, &
+      solve_panel
    use vcor_solver_step, only : step_t
    implicit none
    private
 
    public :: collocator_t, new_collocator
-   public :: guess, solve_step, refine, advance, plate_velocity
+   public :: guess, solve_step, solve_near_step, improve, accompany, advance, plate_velocity
    public :: most_steps
 
-   !> Stages of the solution: enough that four panels make an impact, few enough that the
-   !> eigenvectors of the integration matrices cost three digits only
-   integer, parameter :: stages = 7
-   !> Stages of the finer solution
-   integer, parameter :: fine_stages = 8
+   !> Stages of the solution: enough that three panels make an impact, few enough that the
+   !> eigenvectors of the integration matrices cost four digits only
+   integer, parameter :: stages = width
+   !> Stages of its companion
+   integer, parameter :: fewer_stages = stages - 1
    !> Steps in x = sqrt(t) are taken from x = 0, h, .. most_steps*h
    integer, parameter :: most_steps = 12
 
@@ -28,14 +31,21 @@ module vcor_solver_collocator
    type :: collocator_t
       !> Rule of the panels
       type(collocation_t) :: rule
-      !> Rule of the finer solution
-      type(collocation_t) :: fine
-      !> Interpolation from the points of `rule` to the nodes of `fine`
-      real(wp) :: to_fine(fine_stages, 0:stages) = 0.0_wp
+      !> Rule of the companion
+      type(collocation_t) :: coarse
+      !> Interpolation from the points of `rule` to the nodes of `coarse`
+      real(wp) :: to_coarse(width, 0:width) = 0.0_wp
+      !> Interpolation from the nodes of `coarse` to those of `rule`, of what is zero at the start
+      real(wp) :: from_coarse(width, width) = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp) :: second_coefficient = 0.0_wp
       !> Error that Newton's method may leave in the indentation, over its largest value
       real(wp) :: tolerance = 0.0_wp
+      !> The same at the end of a panel that is solved with the Jacobian of another one, where the
+      !> error falls slowly
+      real(wp) :: near_tolerance = 0.0_wp
+      !> The same for the companion, whose difference to the solution is wanted to two digits only
+      real(wp) :: coarse_tolerance = 0.0_wp
    end type collocator_t
 
 contains
@@ -50,20 +60,30 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: tightest = 1.0e-14_wp, tolerance_share = 1.0e-5_wp
+      real(wp), parameter :: near_tolerance_share = 1.0e-3_wp, coarse_tolerance_share = 3.0e-3_wp
       real(wp) :: unit(0:stages)
       integer :: i, j
 
       self%tolerance = max(tightest, tolerance_share*accuracy)
+      self%near_tolerance = max(tightest, near_tolerance_share*accuracy)
+      self%coarse_tolerance = max(tightest, coarse_tolerance_share*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
-      call new_collocation(self%fine, fine_stages, most_steps, error)
+      call new_collocation(self%coarse, fewer_stages, most_steps, error)
       if (allocated(error)) return
 
       do j = 0, stages
          unit = 0.0_wp
          unit(j) = 1.0_wp
-         do i = 1, fine_stages
-            self%to_fine(i, j) = self%rule%interpolate(unit, self%fine%node(i))
+         do i = 1, fewer_stages
+            self%to_coarse(i, j) = self%rule%interpolate(unit, self%coarse%node(i))
+         end do
+      end do
+      do j = 1, fewer_stages
+         unit = 0.0_wp
+         unit(j) = 1.0_wp
+         do i = 1, stages
+            self%from_coarse(i, j) = self%coarse%interpolate(unit, self%rule%node(i))
          end do
       end do
    end subroutine new_collocator
@@ -85,30 +105,23 @@ contains
 
       ! polynomials run away beyond their own panel
       real(wp), parameter :: farthest = 2.2_wp
-      real(wp) :: time, theta
-      integer :: j
+      real(wp), dimension(width) :: time, theta
 
       associate (map => rule%map(step%index))
-         do j = 1, rule%stages
-            time = start%time &
-               + step%map_scale()*rule%node(j)*(map%slope + map%bend*rule%node(j))
-            if (previous%stages == 0) then
-               panel%indentation(j) = impact%velocity*time
-            else
-               theta = min(previous%theta(time), farthest)
-               panel%indentation(j) = &
-                  rule%interpolate(previous%indentation(0:rule%stages), theta)
-            end if
-         end do
+         time = start%time + step%map_scale()*rule%node*(map%slope + map%bend*rule%node)
       end associate
+      if (previous%stages == 0) then
+         panel%indentation(1:) = impact%velocity*time
+      else
+         theta = min(previous%theta(time), farthest)
+         panel%indentation(1:) = rule%extend(previous%indentation, theta)
+      end if
    end subroutine guess
 
    !> Solve the panel of a step
-   pure subroutine solve_step(self, rule, step, impact, kernel, start, panel)
+   pure subroutine solve_step(self, step, impact, kernel, start, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
       !> Step
       type(step_t), intent(in) :: step
       !> The impact
@@ -119,36 +132,132 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry its indentation is guessed
       type(panel_t), intent(inout) :: panel
+      !> Factors of its Jacobian, for its companion
+      type(factors_t), intent(out) :: factors
 
-      if (abs(self%second_coefficient) > 0.0_wp .or. impact%plate%frozen()) then
-         call solve_general_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, &
-            self%second_coefficient, start, panel, self%tolerance)
+      if (is_general(self, impact)) then
+         call solve_general_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
+            kernel, self%second_coefficient, start, panel, self%tolerance)
       else
-         call solve_panel(rule, rule%map(step%index), step%map_scale(), impact, kernel, start, &
-            panel, self%tolerance)
+         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
+            start, self%tolerance, panel, factors)
       end if
    end subroutine solve_step
 
-   !> Solve the panel of the finer solution, from its own start
-   subroutine refine(self, impact, kernel, start, step, panel, fine)
+   !> Solve a panel next to one that has been solved: of the same start and a somewhat other length
+   pure subroutine solve_near_step(self, step, impact, kernel, start, tolerance, panel, &
+                                   factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
+      !> Step
+      type(step_t), intent(in) :: step
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> State of the finer solution at the start of the panel
+      !> State at the start of the panel
       type(start_t), intent(in) :: start
+      !> Wanted error of the indentation over its largest value
+      real(wp), intent(in) :: tolerance
+      !> The panel; on entry its indentation is guessed
+      type(panel_t), intent(inout) :: panel
+      !> Factors of the Jacobian of the other panel, on return of one that serves
+      type(factors_t), intent(inout) :: factors
+
+      type(panel_t) :: guessed
+
+      if (.not. is_general(self, impact)) then
+         guessed = panel
+         call solve_near_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
+            kernel, start, tolerance, factors, panel)
+         if (panel%converged) return
+         panel = guessed
+      end if
+      call solve_step(self, step, impact, kernel, start, panel, factors)
+   end subroutine solve_near_step
+
+   !> Improve a guess at a panel to an accuracy that is less than that of the solution
+   pure subroutine improve(self, step, impact, kernel, start, tolerance, panel)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
       !> Step
       type(step_t), intent(in) :: step
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Wanted error of the indentation over its largest value
+      real(wp), intent(in) :: tolerance
+      !> The panel; on entry its indentation is guessed
+      type(panel_t), intent(inout) :: panel
+
+      type(panel_t) :: guessed
+      type(factors_t) :: factors
+
+      if (.not. is_general(self, impact)) then
+         guessed = panel
+         call improve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
+            kernel, start, tolerance, panel)
+         if (panel%converged) return
+         panel = guessed
+      end if
+      call solve_step(self, step, impact, kernel, start, panel, factors)
+   end subroutine improve
+
+   !> Solve the companion of a panel, from its own start
+   pure subroutine accompany(self, step, impact, kernel, start, panel, factors, companion)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
+      !> Step
+      type(step_t), intent(in) :: step
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State of the companion at the start of the panel
+      type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> The panel in the finer rule
-      type(panel_t), intent(out) :: fine
+      !> Factors of its Jacobian
+      type(factors_t), intent(in) :: factors
+      !> Its companion
+      type(panel_t), intent(out) :: companion
 
-      fine%indentation(1:fine_stages) = matmul(self%to_fine, panel%indentation(0:stages))
-      call solve_step(self, self%fine, step, impact, kernel, start, fine)
-   end subroutine refine
+      type(factors_t) :: own_factors
+      real(wp) :: scale
+
+      scale = step%map_scale()
+      associate (rule => self%coarse, map => self%coarse%map(step%index))
+         companion%indentation(1:) = self%to_coarse(:, 0)*panel%indentation(0) &
+            + apply(self%to_coarse(:, 1:), panel%indentation(1:))
+         if (is_general(self, impact)) then
+            call solve_general_panel(rule, map, scale, impact, kernel, self%second_coefficient, &
+               start, companion, self%tolerance)
+            return
+         end if
+         call solve_near_panel(rule, map, scale, impact, kernel, start, self%coarse_tolerance, &
+            factors, companion, self%from_coarse, self%to_coarse(:, 1:))
+         if (companion%converged) return
+         companion%indentation(1:) = self%to_coarse(:, 0)*panel%indentation(0) &
+            + apply(self%to_coarse(:, 1:), panel%indentation(1:))
+         call solve_panel(rule, map, scale, impact, kernel, start, self%tolerance, companion, &
+            own_factors)
+      end associate
+   end subroutine accompany
+
+   !> Whether the panels are not those of the plain equations
+   pure function is_general(self, impact)
+      !> The collocation
+      type(collocator_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Whether they are
+      logical :: is_general
+
+      is_general = abs(self%second_coefficient) > 0.0_wp .or. impact%plate%frozen()
+   end function is_general
 
    !> Make the end of a panel the start of the next one
    subroutine advance(rule, step, kernel, panel, start)

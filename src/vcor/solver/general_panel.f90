@@ -15,6 +15,8 @@ module vcor_solver_general_panel
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
+   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_pairs, only : constant, ratio, times
    use vcor_solver_modes, only : resolve_modes, start_t
    use vcor_solver_newton, only : most_iterations, newton_t
    use vcor_solver_panel, only : panel_t
@@ -47,14 +49,14 @@ contains
       !> Wanted error of the indentation over its largest value
       real(wp), intent(in) :: tolerance
 
-      complex(wp), dimension(width) :: lambda, stiffness, memory
+      real(wp), dimension(width) :: lambda, stiffness, memory
       real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
       real(wp), dimension(width) :: impulse, drift
       real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian
       real(wp) :: lag(width, width, size(kernel%rates))
-      complex(wp) :: factor
-      integer :: n, iteration, j, k, m
+      integer :: n, iteration, j, k
       type(newton_t) :: newton
+      type(factors_t) :: factors
       logical :: frozen
 
       n = rule%stages
@@ -70,20 +72,14 @@ contains
 
       h = scale*map%matrix
       lambda = scale*map%eigenvalue
-      call resolve_modes(kernel, start, lambda(1:map%pairs), stiffness, memory)
-      s_matrix = 0.0_wp
-      b = 0.0_wp
-      do m = 1, map%pairs
-         call add_function(map, m, stiffness(m), s_matrix)
-         factor = memory(m)*map%left_one(m)
-         b = b + map%right_re(:, m)*real(factor, wp) - map%right_im(:, m)*aimag(factor)
-      end do
+      call resolve_modes(kernel, start, map%square, lambda, stiffness, memory)
+      s_matrix = function_of_h(map, stiffness)
+      b = apply(map%right, times(map%square, memory, map%left_one))
       lag = 0.0_wp
       if (abs(coefficient) > 0.0_wp) then
          do k = 1, size(kernel%rates)
-            do m = 1, map%pairs
-               call add_function(map, m, 1.0_wp/(1.0_wp + kernel%rates(k)*lambda(m)), lag(:, :, k))
-            end do
+            lag(:, :, k) = function_of_h(map, ratio(map%square, constant(1.0_wp), &
+               constant(1.0_wp) + kernel%rates(k)*lambda))
          end do
       end if
 
@@ -117,9 +113,9 @@ contains
                jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
                jacobian(j, j) = jacobian(j, j) + 1.0_wp
             end do
-            newton%jacobian%matrix = jacobian
+            factors%matrix = jacobian
          end if
-         call newton%correct(change, s, tolerance)
+         call newton%correct(factors, change, s, tolerance)
          if (newton%converged .or. newton%failed) exit
       end do
       panel%converged = newton%converged
@@ -182,24 +178,20 @@ contains
       end do
    end subroutine add_second_term
 
-   !> Add the part of one eigenvalue to the matrix f(H) = V f(lambda) V^-1
-   pure subroutine add_function(map, m, f, matrix)
+   !> The matrix f(H) = V f(lambda) V^-1
+   pure function function_of_h(map, f) result(matrix)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
-      !> Number of the eigenvalue
-      integer, intent(in) :: m
-      !> Value of the function
-      complex(wp), intent(in) :: f
+      !> Values of the function at the eigenvalues
+      real(wp), intent(in) :: f(width)
       !> The matrix
-      real(wp), intent(inout) :: matrix(width, width)
+      real(wp) :: matrix(width, width)
 
-      complex(wp) :: w
       integer :: j
 
       do j = 1, width
-         w = f*cmplx(map%left_re(j, m), map%left_im(j, m), wp)
-         matrix(:, j) = matrix(:, j) + map%right_re(:, m)*real(w, wp) - map%right_im(:, m)*aimag(w)
+         matrix(:, j) = apply(map%right, times(map%square, f, map%left(:, j)))
       end do
-   end subroutine add_function
+   end function function_of_h
 
 end module vcor_solver_general_panel

@@ -1,8 +1,8 @@
 !> Internal variable evolution: the fast method for kernels that are sums of exponentials
 !> (Section VI of Green's paper), by collocation with the internal variables eliminated
 !>
-!> Every impact is solved twice on the same panels, with seven stages and with eight: what the two
-!> differ by is the error, of a panel and of the outcome.
+!> Every impact is solved twice on the same panels, with eight stages and with seven by a companion:
+!> what the two differ by is the error, of a panel and of the outcome.
 !>
 !> Time is cut into panels. Close to first contact they are steps in x = sqrt(t), in which the
 !> solution is analytic from the start, u = s^1.5 included; later, where the branch point at t = 0
@@ -19,8 +19,9 @@ module vcor_solver_ive
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear
-   use vcor_solver_collocator, only : advance, collocator_t, guess, most_steps, new_collocator, &
-      plate_velocity, refine, solve_step
+   use vcor_numeric_linear, only : factors_t
+   use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
+      new_collocator, plate_velocity, solve_step
    use vcor_solver_landing, only : first_without_force, land
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
@@ -33,11 +34,11 @@ module vcor_solver_ive
    public :: ive_t, new_ive
 
    !> Share of the wanted accuracy that the error of one panel may use up
-   real(wp), parameter :: panel_share = 0.4_wp
+   real(wp), parameter :: panel_share = 1.2_wp
 
    !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
    !> and better, and at most
-   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.02_wp
+   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.05_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -102,7 +103,7 @@ contains
       share = min(kernel_share*max(1.0_wp, self%accuracy/usual), largest_share)
       time_scale = impact%time_scale()
       end_time = self%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience()
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
       window = margin*hertz_contact_time*time_scale
       do
          call impact%kernel_exponentials(window, share*self%accuracy, kernel)
@@ -155,9 +156,10 @@ contains
       real(wp), parameter :: step_growth = 0.025_wp
       ! residual indentation over the largest one that makes an end a smooth one
       real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
-      type(start_t) :: start, fine_start
+      type(start_t) :: start, coarse_start
       type(step_t) :: step
-      type(panel_t) :: panel, previous, fine, recorded
+      type(panel_t) :: panel, previous, coarse, recorded
+      type(factors_t) :: factors
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, force_error
       integer :: trial, n
@@ -171,12 +173,12 @@ contains
       end_time = patience
       allocate (start%q(size(kernel%rates)))
       start%q = 0.0_wp
-      fine_start = start
+      coarse_start = start
       step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
          *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
-      call begin(self%collocator%fine, impact, trajectory)
+      call begin(self%collocator%rule, impact, trajectory)
       largest_force = 0.0_wp
       refused = huge(1.0_wp)
       shallow = .false.
@@ -184,36 +186,37 @@ contains
       ! transients that the impulse does not feel
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
-      ! between the two solutions; the finer one is better by an order
+      ! between the two solutions; the one that counts is better by an order
       time_tolerance = max(3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.3_wp), 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time
          if (last) step = step_to(start%time, end_time - start%time)
          call guess(self%collocator%rule, impact, previous, start, step, panel)
-         call solve_step(self%collocator, self%collocator%rule, step, impact, kernel, start, &
-            panel)
+         call solve_step(self%collocator, step, impact, kernel, start, panel, factors)
          ends = .false.
          if (panel%converged .and. trajectory%status /= contact_separated) &
             ends = first_without_force(panel) > 0
-         if (ends) call land(self%collocator, impact, kernel, start, accuracy, step, panel)
+         if (ends) call land(self%collocator, impact, kernel, start, accuracy, step, panel, &
+            factors)
          if (.not. panel%converged) then
             call step%shorten(0.5_wp*step%duration())
             cycle
          end if
          previous = panel
 
-         call refine(self%collocator, impact, kernel, fine_start, step, panel, fine)
-         if (.not. fine%converged) then
+         call accompany(self%collocator, step, impact, kernel, coarse_start, panel, factors, &
+            coarse)
+         if (.not. coarse%converged) then
             call step%shorten(0.5_wp*step%duration())
             cycle
          end if
          largest_force = max(largest_force, maxval(panel%force(1:n)))
-         excess = (growth_of(fine%impulse, panel%impulse)/(impact%mass*impact%velocity) &
-            + growth_of(fine%indentation, panel%indentation)/(impact%velocity*time_scale)) &
+         excess = (growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity) &
+            + growth_of(panel%indentation, coarse%indentation)/(impact%velocity*time_scale)) &
             /(panel_share*accuracy)
-         force_error = max(0.0_wp, min(growth_of(fine%force, panel%force), &
-            abs(fine%force(n + 1) - panel%force(n))) - rounding*largest_force)
+         force_error = max(0.0_wp, min(growth_of(panel%force, coarse%force), &
+            abs(panel%force(n) - coarse%force(n - 1))) - rounding*largest_force)
          if (ends) then
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
@@ -234,21 +237,20 @@ contains
          end if
 
          refused = huge(1.0_wp)
-         recorded = fine
+         recorded = panel
          if (ends) then
             elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
-            trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, fine, &
+            trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, coarse, &
                trajectory%steps + 1, elastic)
             call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, recorded)
          end if
-         call append(self%collocator, impact, kernel, fine_start, panel, recorded, accuracy, &
-            trajectory)
+         call append(self%collocator, impact, kernel, start, recorded, accuracy, trajectory)
          complete = .not. panel%time(n) > window
          if (.not. complete) return
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
-            end_time = 2.0_wp*recorded%time(n + 1)
+            end_time = 2.0_wp*recorded%time(n)
             if (self%end_time > 0.0_wp) end_time = self%end_time
          end if
          if (trajectory%status == contact_separated) then
@@ -261,8 +263,8 @@ contains
          end if
 
          call advance(self%collocator%rule, step, kernel, panel, start)
-         call advance(self%collocator%fine, step, kernel, fine, fine_start)
-         call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n, wp))), &
+         call advance(self%collocator%coarse, step, kernel, coarse, coarse_start)
+         call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp))), &
             most_steps)
       end do
       call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
@@ -272,14 +274,14 @@ contains
 
       !> By how much the difference of the two solutions grows over the panel
       pure function growth_of(one, other) result(difference)
-         !> Values of the finer solution at the points of the panel
+         !> Values of the solution at the points of the panel
          real(wp), intent(in) :: one(0:)
-         !> Values of the solution
+         !> Values of the companion
          real(wp), intent(in) :: other(0:)
          !> Growth
          real(wp) :: difference
 
-         difference = abs((one(n + 1) - other(n)) - (one(0) - other(0)))
+         difference = abs((one(n) - other(n - 1)) - (one(0) - other(0)))
       end function growth_of
    end subroutine follow
 
@@ -294,31 +296,30 @@ contains
       levels = max(0, ceiling(log(4.0e-7_wp/(panel_share*accuracy))/log(16.0_wp)))
    end function levels
 
-   !> Let the finer solution end where its own force is zero, which is next to where that of the
-   !> other one is
-   pure subroutine end_at_zero(impact, slope, shallow, fine)
+   !> Let the solution end where its force is zero, which is next to where the last panel ends
+   pure subroutine end_at_zero(impact, slope, shallow, panel)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Rate of the force [N/s], < 0
       real(wp), intent(in) :: slope
       !> Whether the indentation ends next to zero, where the force is not linear in time
       logical, intent(in) :: shallow
-      !> The last panel of the finer solution
-      type(panel_t), intent(inout) :: fine
+      !> The last panel
+      type(panel_t), intent(inout) :: panel
 
       real(wp) :: time
 
-      associate (n => fine%stages)
+      associate (n => panel%stages)
          if (.not. shallow) then
-            time = -fine%force(n)/slope
-            fine%time(n) = fine%time(n) + time
-            fine%impulse(n) = fine%impulse(n) + 0.5_wp*time*fine%force(n)
-            fine%second_impulse(n) = fine%second_impulse(n) + time*fine%impulse(n)
-            fine%indentation(n) = fine%indentation(n) + time*(impact%velocity &
-               - fine%impulse(n)/impact%mass - plate_velocity(impact, fine, n))
-            fine%alpha(n) = impact%plate%alpha(fine%time(n))
+            time = -panel%force(n)/slope
+            panel%time(n) = panel%time(n) + time
+            panel%impulse(n) = panel%impulse(n) + 0.5_wp*time*panel%force(n)
+            panel%second_impulse(n) = panel%second_impulse(n) + time*panel%impulse(n)
+            panel%indentation(n) = panel%indentation(n) + time*(impact%velocity &
+               - panel%impulse(n)/impact%mass - plate_velocity(impact, panel, n))
+            panel%alpha(n) = impact%plate%alpha(panel%time(n))
          end if
-         fine%force(n) = 0.0_wp
+         panel%force(n) = 0.0_wp
       end associate
    end subroutine end_at_zero
 
@@ -332,21 +333,21 @@ contains
       real(wp) :: slope
 
       associate (n => rule%stages)
-         slope = sum(rule%derivative(n, 0:n)*panel%force(0:n))/(panel%map(1) + 2.0_wp*panel%map(2))
+         slope = sum(rule%derivative(n, :)*panel%force)/(panel%map(1) + 2.0_wp*panel%map(2))
       end associate
    end function slope_at_end
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
-   !> finer solution reaches F = 0 a little earlier or later, which only alpha' feels
-   pure function error_of_cor(rule, impact, panel, fine, panels, shallow) result(estimate)
+   !> companion reaches F = 0 a little earlier or later, which only alpha' feels
+   pure function error_of_cor(rule, impact, panel, coarse, panels, shallow) result(estimate)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The impact
       type(impact_t), intent(in) :: impact
       !> The last panel
       type(panel_t), intent(in) :: panel
-      !> The last panel of the finer solution
-      type(panel_t), intent(in) :: fine
+      !> Its companion
+      type(panel_t), intent(in) :: coarse
       !> Number of panels
       integer, intent(in) :: panels
       !> Whether the indentation ends next to zero
@@ -356,19 +357,19 @@ contains
 
       ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
       real(wp), parameter :: rounding = 5.0e-13_wp
-      ! the difference is the error of the coarser solution: that of the finer one is less, where
+      ! the difference is the error of the companion: that of the solution is less, where
       ! the solution is smooth by orders, where it is not by a factor of this size
       real(wp), parameter :: finer = 0.3_wp
       real(wp) :: impulse_error, time_error, alpha_rate
 
       associate (n => rule%stages)
-         impulse_error = abs(fine%impulse(n + 1) - panel%impulse(n))
-         time_error = abs((fine%force(n + 1) - panel%force(n))/slope_at_end(rule, panel))
+         impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         time_error = abs((panel%force(n) - coarse%force(n - 1))/slope_at_end(rule, panel))
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          estimate = rounding*real(panels, wp) + merge(1.0_wp, finer, shallow)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
-            + abs(fine%drift(n + 1) - panel%drift(n)))
+            + abs(panel%drift(n) - coarse%drift(n - 1)))
       end associate
    end function error_of_cor
 

@@ -3,7 +3,9 @@ module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_step
+   use vcor_numeric_collocation, only : width
+   use vcor_numeric_linear, only : factors_t
+   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_near_step
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
@@ -32,7 +34,7 @@ contains
    end function first_without_force
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
-   subroutine land(self, impact, kernel, start, accuracy, step, panel)
+   subroutine land(self, impact, kernel, start, accuracy, step, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -47,6 +49,8 @@ contains
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the zero; not converged on failure
       type(panel_t), intent(inout) :: panel
+      !> Factors of its Jacobian
+      type(factors_t), intent(inout) :: factors
 
       integer, parameter :: most_iterations = 40
       ! a shorter correction tells nothing about slopes
@@ -64,7 +68,8 @@ contains
          panel%converged = .false.
          return
       end if
-      theta = self%rule%crossing(crossing%force(0:n), self%rule%point(k - 1), self%rule%point(k))
+      theta = self%rule%crossing(crossing%force, self%rule%point(k - 1), self%rule%point(k), &
+         noticeable)
       time = theta*(crossing%map(1) + crossing%map(2)*theta)
 
       ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
@@ -74,8 +79,8 @@ contains
       ! and then from the last two iterations
       tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
       kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
-      memory_rate = (kappa*slope_at(hertz(crossing%indentation(0:n))) &
-         - slope_at(crossing%force(0:n)))/(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
+      memory_rate = slope_at(kappa*hertz(crossing%indentation) - crossing%force) &
+         /(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
       correction = 0.0_wp
       panel%converged = .false.
@@ -84,7 +89,8 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_step(self, self%rule, step, impact, kernel, start, panel)
+         call solve_near_step(self, step, impact, kernel, start, &
+            merge(tolerance, self%near_tolerance, iteration == 1), panel, factors)
          if (.not. panel%converged) return
          last = panel
          velocity = impact%velocity - panel%impulse(n)/impact%mass &
@@ -96,7 +102,7 @@ contains
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
-         if (abs(correction) <= tolerance*(start%time + time)) return
+         if (abs(correction) <= tolerance*(start%time + time) .and. iteration > 1) return
          ! rounding in the force of a dashpot or of stiff internal variables ends it, too
          if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
              .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
@@ -108,12 +114,12 @@ contains
 
       !> Slope of a polynomial at theta
       pure function slope_at(value) result(slope)
-         !> Values at the points of the panel, shape (0:n)
-         real(wp), intent(in) :: value(0:)
+         !> Values at the points of the panel
+         real(wp), intent(in) :: value(0:width)
          !> Derivative by theta
          real(wp) :: slope
 
-         slope = self%rule%interpolate(matmul(self%rule%derivative(0:n, 0:n), value), theta)
+         slope = self%rule%interpolate(self%rule%slopes(value), theta)
       end function slope_at
    end subroutine land
 

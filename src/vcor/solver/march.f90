@@ -134,7 +134,7 @@ contains
       stable = .false.
       complete = .true.
       end_time = scheme%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience()
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
       room = max(kernel_terms, nint(min(min(end_time, 5.0_wp*impact%time_scale())/dt, &
          real(most_steps, wp)))) + steps_beyond + 2
       call make_room()

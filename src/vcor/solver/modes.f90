@@ -3,20 +3,19 @@
 !>
 !> For q_k' = l_k (u - q_k) the stage values follow from those of u:
 !> u - q = (1 + l_k H)^-1 (u - q_n) with the integration matrix H of the panel, known through its
-!> eigenvalues. A kernel may have a hundred modes, so the loops over them are kept in independent
-!> lanes, which the compiler turns into vector instructions.
+!> eigenvalues. A kernel may have a hundred modes: the loops over the eigenvalues are the innermost
+!> ones, which the compiler turns into vector instructions.
 module vcor_solver_modes
    use vcor_impact_problem, only : hertz
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
+   use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
+   use vcor_numeric_linear, only : apply
+   use vcor_numeric_pairs, only : constant, ratio
    implicit none
    private
 
    public :: start_t, resolve_modes, advance_modes
-
-   !> Modes summed side by side
-   integer, parameter :: lanes = 4
 
    !> State at the start of a panel
    type :: start_t
@@ -40,83 +39,49 @@ module vcor_solver_modes
 
 contains
 
-   !> S and b of F = S u - b as functions of an eigenvalue of H
-   pure subroutine resolve_modes(kernel, start, lambda, stiffness, memory)
+   !> S and b of F = S u - b as functions of the eigenvalues of H
+   pure subroutine resolve_modes(kernel, start, square, lambda, stiffness, memory)
       !> The kernel
       type(exponential_sum_t), intent(in) :: kernel
       !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> Eigenvalues of H [s], shape (pairs)
-      complex(wp), intent(in) :: lambda(:)
-      !> S [N/m^1.5], shape (pairs), zero beyond
-      complex(wp), intent(out) :: stiffness(width)
-      !> b without the vector of ones [N], shape (pairs), zero beyond
-      complex(wp), intent(out) :: memory(width)
+      !> j^2 of the pairs
+      real(wp), intent(in) :: square(pairs)
+      !> Eigenvalues of H [s]
+      real(wp), intent(in) :: lambda(width)
+      !> S [N/m^1.5]
+      real(wp), intent(out) :: stiffness(width)
+      !> b without the vector of ones [N]
+      real(wp), intent(out) :: memory(width)
 
-      real(wp), dimension(lanes) :: s_re, s_im, b_re, b_im
-      real(wp) :: x, y
-      integer :: m, k, n
+      real(wp) :: a, d, share, s(width), b(width), dashpot(width)
+      integer :: k, m
 
-      n = size(kernel%rates)
-      stiffness = (0.0_wp, 0.0_wp)
-      memory = (0.0_wp, 0.0_wp)
-      do m = 1, size(lambda)
-         x = real(lambda(m), wp)
-         y = aimag(lambda(m))
-         s_re = 0.0_wp
-         s_im = 0.0_wp
-         b_re = 0.0_wp
-         b_im = 0.0_wp
-         do k = 1, n - lanes + 1, lanes
-            call add(kernel%rates(k:k + lanes - 1), kernel%moduli(k:k + lanes - 1), &
-               start%q(k:k + lanes - 1), x, y, s_re, s_im, b_re, b_im)
-         end do
-         do k = n - mod(n, lanes) + 1, n
-            call add(kernel%rates(k), kernel%moduli(k), start%q(k), x, y, s_re(1), s_im(1), &
-               b_re(1), b_im(1))
-         end do
-         stiffness(m) = cmplx(kernel%equilibrium + sum(s_re), sum(s_im), wp)
-         memory(m) = cmplx(sum(b_re), sum(b_im), wp)
-         if (kernel%viscosity > 0.0_wp) then
-            stiffness(m) = stiffness(m) + kernel%viscosity/lambda(m)
-            memory(m) = memory(m) + kernel%viscosity*hertz(start%indentation)/lambda(m)
-         end if
+      s = constant(kernel%equilibrium)
+      b = 0.0_wp
+      do k = 1, size(kernel%rates)
+         associate (rate => kernel%rates(k), modulus => kernel%moduli(k), q => start%q(k))
+            do m = 1, pairs
+               a = 1.0_wp + rate*lambda(m)
+               d = rate*lambda(pairs + m)
+               share = modulus/(a*a - square(m)*(d*d))
+               a = a*share
+               d = d*share
+               s(m) = s(m) + a
+               s(pairs + m) = s(pairs + m) - d
+               b(m) = b(m) + a*q
+               b(pairs + m) = b(pairs + m) - d*q
+            end do
+         end associate
       end do
+      if (kernel%viscosity > 0.0_wp) then
+         dashpot = ratio(square, constant(kernel%viscosity), lambda)
+         s = s + dashpot
+         b = b + dashpot*hertz(start%indentation)
+      end if
+      stiffness = s
+      memory = b
    end subroutine resolve_modes
-
-   !> Add G/(1 + l (x + i y)) and its product with q
-   elemental subroutine add(rate, modulus, q, x, y, s_re, s_im, b_re, b_im)
-      !> Rate l [1/s]
-      real(wp), intent(in) :: rate
-      !> Modulus G [N/m^1.5]
-      real(wp), intent(in) :: modulus
-      !> Internal variable [m^1.5]
-      real(wp), intent(in) :: q
-      !> Real part of the eigenvalue [s]
-      real(wp), intent(in) :: x
-      !> Imaginary part of the eigenvalue [s]
-      real(wp), intent(in) :: y
-      !> Sum of G/(1 + l lambda), real part [N/m^1.5]
-      real(wp), intent(inout) :: s_re
-      !> Imaginary part
-      real(wp), intent(inout) :: s_im
-      !> Sum of q G/(1 + l lambda), real part [N]
-      real(wp), intent(inout) :: b_re
-      !> Imaginary part
-      real(wp), intent(inout) :: b_im
-
-      real(wp) :: a, d, share
-
-      a = 1.0_wp + rate*x
-      d = rate*y
-      share = modulus/(a*a + d*d)
-      a = a*share
-      d = -d*share
-      s_re = s_re + a
-      s_im = s_im + d
-      b_re = b_re + a*q
-      b_im = b_im + d*q
-   end subroutine add
 
    !> Internal variables at the end of a panel: q = u - (1 + l H)^-1 (u - q_n) at the last stage
    pure subroutine advance_modes(rule, map, scale, kernel, indentation, q)
@@ -133,27 +98,41 @@ contains
       !> Internal variables: at the start on entry, at the end on return [m^1.5], shape (modes)
       real(wp), intent(inout) :: q(:)
 
-      complex(wp) :: from_u, from_q
-      real(wp) :: u(width), lag(size(q)), x, y, a, d
-      integer :: n, m, k
+      real(wp), dimension(width) :: u, lambda, from_u, from_q
+      real(wp) :: a, d, lag(pairs)
+      integer :: m, k
 
-      n = rule%stages
       u = hertz(indentation)
-      lag = 0.0_wp
-      do m = 1, map%pairs
-         from_q = cmplx(map%right_re(n, m), map%right_im(n, m), wp)
-         from_u = from_q*cmplx(sum(map%left_re(:, m)*u), sum(map%left_im(:, m)*u), wp)
-         from_q = from_q*map%left_one(m)
-         x = scale*real(map%eigenvalue(m), wp)
-         y = scale*aimag(map%eigenvalue(m))
-         do k = 1, size(q)
-            a = 1.0_wp + kernel%rates(k)*x
-            d = kernel%rates(k)*y
-            lag(k) = lag(k) + ((real(from_u, wp) - q(k)*real(from_q, wp))*a &
-               + (aimag(from_u) - q(k)*aimag(from_q))*d)/(a*a + d*d)
-         end do
+      lambda = scale*map%eigenvalue
+      from_u = at_end(apply(map%left, u))
+      from_q = at_end(map%left_one)
+      do k = 1, size(q)
+         associate (rate => kernel%rates(k))
+            do m = 1, pairs
+               a = 1.0_wp + rate*lambda(m)
+               d = rate*lambda(pairs + m)
+               lag(m) = ((from_u(m) - q(k)*from_q(m))*a &
+                  - (from_u(pairs + m) - q(k)*from_q(pairs + m))*d)/(a*a - map%square(m)*(d*d))
+            end do
+         end associate
+         q(k) = u(rule%stages) - ((lag(1) + lag(2)) + (lag(3) + lag(4)))
       end do
-      q = u(n) - lag
+
+   contains
+
+      !> What the numbers x of the pairs add to the last stage, by products with a + d j: the share
+      !> of a, and that of d
+      pure function at_end(x) result(share)
+         !> Numbers of the pairs
+         real(wp), intent(in) :: x(width)
+         !> The shares, all of a first
+         real(wp) :: share(width)
+
+         associate (last => map%right(rule%stages, :))
+            share(:pairs) = last(:pairs)*x(:pairs) + last(pairs + 1:)*x(pairs + 1:)
+            share(pairs + 1:) = map%square*last(:pairs)*x(pairs + 1:) + last(pairs + 1:)*x(:pairs)
+         end associate
+      end function at_end
    end subroutine advance_modes
 
 end module vcor_solver_modes

@@ -6,7 +6,7 @@ module vcor_solver_newton
    implicit none
    private
 
-   public :: newton_t, most_iterations
+   public :: newton_t, most_iterations, largest
 
    !> Iterations after which there is no hope
    integer, parameter :: most_iterations = 40
@@ -15,8 +15,6 @@ module vcor_solver_newton
    type :: newton_t
       !> Whether the next correction needs a new Jacobian
       logical :: stale = .true.
-      !> Jacobian, to be given where `stale`, otherwise its factors
-      type(factors_t) :: jacobian
       !> Size of the last correction
       real(wp), private :: last = 0.0_wp
       !> Whether the equations are solved
@@ -33,9 +31,11 @@ contains
    !> Correct the solution and judge what is left of its error: next to a fresh Jacobian it falls
    !> with the power 2 of the correction, or 1.5 where u = s^1.5 has its branch point, otherwise
    !> linearly
-   pure subroutine correct(self, residual, s, tolerance)
+   pure subroutine correct(self, jacobian, residual, s, tolerance)
       !> State of the iteration
       class(newton_t), intent(inout) :: self
+      !> Jacobian where `stale`, otherwise its factors; on return these
+      type(factors_t), intent(inout) :: jacobian
       !> Residual, on return the correction
       real(wp), intent(inout) :: residual(width)
       !> Solution
@@ -49,11 +49,11 @@ contains
       logical :: regular
 
       if (self%stale) then
-         call factorise(self%jacobian, regular)
+         call factorise(jacobian, regular)
          self%failed = .not. regular
          if (self%failed) return
       end if
-      call self%jacobian%solve(residual)
+      call jacobian%solve(residual)
       s = s + residual
       size = largest(residual)/largest(s)
       if (self%stale) then

@@ -15,15 +15,16 @@ module vcor_solver_panel
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
-   use vcor_numeric_linear, only : apply
+   use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
+   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_pairs, only : times
    use vcor_solver_modes, only : resolve_modes, start_t
-   use vcor_solver_newton, only : most_iterations, newton_t
+   use vcor_solver_newton, only : largest, most_iterations, newton_t
    implicit none
    private
 
    public :: panel_t
-   public :: solve_panel
+   public :: solve_panel, solve_near_panel, improve_panel
 
    !> Solution on a panel; index 0 is its start
    type :: panel_t
@@ -50,31 +51,49 @@ module vcor_solver_panel
       !> Whether Newton's iteration converged
       logical :: converged = .false.
    contains
-      !> Position of a time in the panel
+      !> Positions of times in the panel
       procedure :: theta
    end type panel_t
 
+   !> What the equations of a panel are made of; vectors over the eigenvalues as in `panel_map_t`
+   type :: equations_t
+      !> Eigenvalues of H [s]
+      real(wp) :: lambda(width)
+      !> S [N/m^1.5]
+      real(wp) :: stiffness(width)
+      !> V^-1 b [N]
+      real(wp) :: memory(width)
+      !> H S [N s/m^1.5]
+      real(wp) :: impulsive(width)
+      !> H^2 S/m [m^-0.5]
+      real(wp) :: inertial(width)
+      !> Impulse without a force in the panel [N s]
+      real(wp) :: free_impulse
+      !> Its integral [N s2]
+      real(wp) :: free_second_impulse(width)
+      !> Indentation with the memory as the only force in the panel [m]
+      real(wp) :: right(width)
+   end type equations_t
+
 contains
 
-   !> Position of a time in the panel: the root of the quadratic map in its stable form
+   !> Position of times in the panel: the root of the quadratic map in its stable form
    pure function theta(self, time)
       !> The panel
       class(panel_t), intent(in) :: self
-      !> Time [s], not before the panel's start
-      real(wp), intent(in) :: time
-      !> Position, 0 at the start and 1 at the end
-      real(wp) :: theta
+      !> Times [s], not before the panel's start
+      real(wp), intent(in) :: time(width)
+      !> Positions, 0 at the start and 1 at the end
+      real(wp) :: theta(width)
 
-      real(wp) :: offset
-
-      theta = 0.0_wp
-      offset = time - self%time(0)
-      if (offset > 0.0_wp) theta = 2.0_wp*offset/(self%map(1) &
-         + sqrt(self%map(1)**2 + 4.0_wp*self%map(2)*offset))
+      theta = max(time - self%time(0), 0.0_wp)
+      theta = 2.0_wp*theta/(self%map(1) + sqrt(self%map(1)**2 + 4.0_wp*self%map(2)*theta))
    end function theta
 
-   !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_panel(rule, map, scale, impact, kernel, start, panel, tolerance)
+   !> Set up the equations of a panel
+   pure subroutine set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      !> The equations
+      type(equations_t), intent(out) :: equations
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -87,16 +106,11 @@ contains
       type(exponential_sum_t), intent(in) :: kernel
       !> State at the start
       type(start_t), intent(in) :: start
-      !> The panel; on entry `indentation` holds a guess at the stages
+      !> The panel: its times and plate parameters are set, and all values at its start
       type(panel_t), intent(inout) :: panel
-      !> Wanted error of the indentation over its largest value
-      real(wp), intent(in) :: tolerance
 
-      complex(wp), dimension(width) :: lambda, stiffness, memory
-      real(wp), dimension(width) :: s, u, root, elapsed, alpha, right, change
-      real(wp) :: response(width, width)
-      type(newton_t) :: newton
-      integer :: n, i, j, iteration
+      real(wp) :: elapsed(width), impulse(width), inverse_mass
+      integer :: i, n
 
       n = rule%stages
       panel%stages = n
@@ -104,149 +118,275 @@ contains
       elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
       panel%time(0) = start%time
       panel%time(1:) = start%time + elapsed
-      alpha = 0.0_wp
+      panel%alpha(1:) = 0.0_wp
       do i = 1, n
-         alpha(i) = impact%plate%alpha(panel%time(i))
+         panel%alpha(i) = impact%plate%alpha(panel%time(i))
       end do
-      lambda = scale*map%eigenvalue
-      call resolve_modes(kernel, start, lambda(1:map%pairs), stiffness, memory)
-      memory = memory*map%left_one
-      call assemble(map, lambda, stiffness, memory, alpha, 1.0_wp/impact%mass, right, response)
-      right = right + impact%velocity*panel%time(1:) &
-         - (start%second_impulse + start%impulse*elapsed)/impact%mass - alpha*start%impulse
+      panel%indentation(0) = start%indentation
+      panel%force(0) = start%force
+      panel%impulse(0) = start%impulse
+      panel%second_impulse(0) = start%second_impulse
 
-      s = 0.0_wp
-      s(1:n) = panel%indentation(1:n)
-      right(n + 1:) = 0.0_wp
+      inverse_mass = 1.0_wp/impact%mass
+      associate (e => equations)
+         e%lambda = scale*map%eigenvalue
+         call resolve_modes(kernel, start, map%square, e%lambda, e%stiffness, e%memory)
+         e%memory = times(map%square, e%memory, map%left_one)
+         e%impulsive = times(map%square, e%lambda, e%stiffness)
+         e%inertial = inverse_mass*times(map%square, e%lambda, e%impulsive)
+         e%free_impulse = start%impulse
+         e%free_second_impulse = start%second_impulse + start%impulse*elapsed
+         impulse = times(map%square, e%lambda, e%memory)
+         e%right = impact%velocity*panel%time(1:) - (e%free_second_impulse &
+            - apply(map%right, times(map%square, e%lambda, impulse)))*inverse_mass &
+            - panel%alpha(1:)*(start%impulse - apply(map%right, impulse))
+         e%right(n + 1:) = 0.0_wp
+      end associate
+   end subroutine set_up
+
+   !> Solve the collocation equations on a panel by Newton's method
+   pure subroutine solve_panel(rule, map, scale, impact, kernel, start, tolerance, panel, factors)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted error of the indentation over its largest value
+      real(wp), intent(in) :: tolerance
+      !> The panel; on entry `indentation` holds a guess at the stages
+      type(panel_t), intent(inout) :: panel
+      !> Factors of the Jacobian, for panels next to this one
+      type(factors_t), intent(out) :: factors
+
+      type(equations_t) :: equations
+      real(wp), dimension(width) :: s, u, root, change
+      real(wp) :: response(width, width)
+      type(newton_t) :: newton
+      integer :: i, j, iteration
+
+      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      call assemble(map, equations, panel%alpha(1:), response)
+      s = panel%indentation(1:)
+      s(rule%stages + 1:) = 0.0_wp
       do iteration = 1, most_iterations
          root = sqrt(abs(s))
          u = s*root
-         change = right - s - apply(response, u)
+         change = equations%right - s - apply(response, u)
          if (newton%stale) then
             root = 1.5_wp*root
             do j = 1, width
                do i = 1, width
-                  newton%jacobian%matrix(i, j) = response(i, j)*root(j)
+                  factors%matrix(i, j) = response(i, j)*root(j)
                end do
-               newton%jacobian%matrix(j, j) = newton%jacobian%matrix(j, j) + 1.0_wp
+               factors%matrix(j, j) = factors%matrix(j, j) + 1.0_wp
             end do
          end if
-         call newton%correct(change, s, tolerance)
+         call newton%correct(factors, change, s, tolerance)
          if (newton%converged .or. newton%failed) exit
       end do
       panel%converged = newton%converged
       if (.not. panel%converged) return
-
-      panel%indentation(0) = start%indentation
       panel%indentation(1:) = s
-      panel%alpha(1:) = alpha
-      panel%force(0) = start%force
-      panel%impulse(0) = start%impulse
-      panel%impulse(1:) = start%impulse
-      panel%second_impulse(0) = start%second_impulse
-      panel%second_impulse(1:) = start%second_impulse + start%impulse*elapsed
-      call integrate(map, lambda, stiffness, memory, hertz(s), panel)
+      call integrate(map, equations, hertz(s), panel)
    end subroutine solve_panel
 
-   !> With f(H) = V f(lambda) V^-1:
-   !> right = (H^2/m + alpha H) b,  response = (H^2/m + alpha H) S
-   pure subroutine assemble(map, lambda, stiffness, memory, alpha, inverse_mass, right, response)
+   !> Solve the collocation equations on a panel with the Jacobian of one next to it, of another
+   !> length or another rule. No matrix is formed, so this costs half of a solution. With another
+   !> rule, what is wanted are the values at the end: force and impulses are left out elsewhere
+   pure subroutine solve_near_panel(rule, map, scale, impact, kernel, start, tolerance, factors, &
+                                    panel, to, from)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
-      !> Eigenvalues of H [s]
-      complex(wp), intent(in) :: lambda(width)
-      !> S [N/m^1.5]
-      complex(wp), intent(in) :: stiffness(width)
-      !> V^-1 b [N]
-      complex(wp), intent(in) :: memory(width)
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted error of the indentation at the end of the panel over its largest value
+      real(wp), intent(in) :: tolerance
+      !> Factors of the Jacobian of the other panel
+      type(factors_t), intent(in) :: factors
+      !> The panel; on entry `indentation` holds a guess at the stages. Not converged where the
+      !> Jacobian does not serve
+      type(panel_t), intent(inout) :: panel
+      !> Interpolation to the stages of another rule, of what is zero at the start; absent: both
+      !> panels have the same rule
+      real(wp), intent(in), optional :: to(width, width)
+      !> Interpolation from them
+      real(wp), intent(in), optional :: from(width, width)
+
+      ! what does not contract like this is better solved with a Jacobian of its own
+      real(wp), parameter :: slowest = 0.2_wp
+      integer, parameter :: most = 8
+      type(equations_t) :: equations
+      real(wp) :: change(width), s(width), size, last, rate
+      integer :: iteration
+
+      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      s = panel%indentation(1:)
+      s(rule%stages + 1:) = 0.0_wp
+      panel%converged = .false.
+      last = 0.0_wp
+      do iteration = 1, most
+         change = displaced(map, equations, panel%alpha(1:), s) - s
+         if (present(to)) change = apply(to, change)
+         call factors%solve(change)
+         if (present(from)) change = apply(from, change)
+         s = s + change
+         size = largest(change)
+         if (iteration > 1) then
+            rate = size/last
+            if (.not. rate <= slowest) return
+            panel%converged = abs(change(rule%stages))*rate <= tolerance*largest(s)
+            if (panel%converged) exit
+         end if
+         last = max(size, tiny(1.0_wp))
+      end do
+      if (.not. panel%converged) return
+      panel%indentation(1:) = s
+      if (present(to)) then
+         call integrate_to_end(map, equations, hertz(s), panel)
+      else
+         call integrate(map, equations, hertz(s), panel)
+         ! what is left of the error goes to the force, so that the motion is that of the impulse
+         panel%indentation(1:) = impact%velocity*panel%time(1:) &
+            - panel%second_impulse(1:)*(1.0_wp/impact%mass) - panel%alpha(1:)*panel%impulse(1:)
+      end if
+   end subroutine solve_near_panel
+
+   !> Indentation v0 t - J/m - alpha I that follows from the forces at an indentation s
+   pure function displaced(map, equations, alpha, s) result(displacement)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Equations of the panel
+      type(equations_t), intent(in) :: equations
       !> Plate parameter at the stages [m/(N s)]
       real(wp), intent(in) :: alpha(width)
-      !> 1/m [1/kg]
-      real(wp), intent(in) :: inverse_mass
-      !> Share of the memory in the indentation [m]
-      real(wp), intent(out) :: right(width)
+      !> Indentation at the stages [m]
+      real(wp), intent(in) :: s(width)
+      !> That which follows [m]
+      real(wp) :: displacement(width)
+
+      real(wp) :: x(width)
+
+      x = apply(map%left, s*sqrt(abs(s)))
+      displacement = equations%right - apply(map%right, times(map%square, equations%inertial, x)) &
+         - alpha*apply(map%right, times(map%square, equations%impulsive, x))
+   end function displaced
+
+   !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
+   !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
+   !> leave little of it. Force and impulses are those at the end of the panel only
+   pure subroutine improve_panel(rule, map, scale, impact, kernel, start, tolerance, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(exponential_sum_t), intent(in) :: kernel
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted error of the indentation over its largest value
+      real(wp), intent(in) :: tolerance
+      !> The panel; on entry `indentation` holds a guess at the stages. Not converged where the
+      !> second iteration still changes the indentation by more than the tolerance
+      type(panel_t), intent(inout) :: panel
+
+      type(equations_t) :: equations
+      real(wp) :: s(width)
+
+      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      s = displaced(map, equations, panel%alpha(1:), panel%indentation(1:))
+      panel%indentation(1:) = displaced(map, equations, panel%alpha(1:), s)
+      call integrate_to_end(map, equations, hertz(panel%indentation(1:)), panel)
+      panel%converged = largest(panel%indentation(1:) - s) <= tolerance*largest(s)
+   end subroutine improve_panel
+
+   !> The matrix (H^2/m + alpha H) S
+   pure subroutine assemble(map, equations, alpha, response)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Equations of the panel
+      type(equations_t), intent(in) :: equations
+      !> Plate parameter at the stages [m/(N s)]
+      real(wp), intent(in) :: alpha(width)
       !> Indentation that is missing per u at the stages [m^-0.5]
       real(wp), intent(out) :: response(width, width)
 
-      real(wp) :: column(width), re(width, width), im(width, width)
-      real(wp) :: x, y, c_re, c_im, d_re, d_im, f, g
-      complex(wp) :: first
+      real(wp) :: scaled(width, width), f, g
       integer :: i, j, m
 
-      right = 0.0_wp
-      do m = 1, map%pairs
-         first = lambda(m)*stiffness(m)
-         c_re = real(first, wp)
-         c_im = aimag(first)
-         first = inverse_mass*lambda(m)*first
-         d_re = real(first, wp)
-         d_im = aimag(first)
-         first = lambda(m)*memory(m)
-         x = real(first, wp)
-         y = aimag(first)
-         first = inverse_mass*lambda(m)*first
+      do m = 1, pairs
          do i = 1, width
-            f = real(first, wp) + alpha(i)*x
-            g = aimag(first) + alpha(i)*y
-            right(i) = right(i) + map%right_re(i, m)*f - map%right_im(i, m)*g
-            f = d_re + alpha(i)*c_re
-            g = d_im + alpha(i)*c_im
-            re(i, m) = map%right_re(i, m)*f - map%right_im(i, m)*g
-            im(i, m) = map%right_re(i, m)*g + map%right_im(i, m)*f
+            f = equations%inertial(m) + alpha(i)*equations%impulsive(m)
+            g = equations%inertial(pairs + m) + alpha(i)*equations%impulsive(pairs + m)
+            scaled(i, m) = map%right(i, m)*f + map%right(i, pairs + m)*g
+            scaled(i, pairs + m) = map%right(i, pairs + m)*f + map%square(m)*map%right(i, m)*g
          end do
       end do
       do j = 1, width
-         column = 0.0_wp
-         do m = 1, map%pairs
-            x = map%left_re(j, m)
-            y = map%left_im(j, m)
-            do i = 1, width
-               column(i) = column(i) + re(i, m)*x - im(i, m)*y
-            end do
-         end do
-         response(:, j) = column
+         response(:, j) = apply(scaled, map%left(:, j))
       end do
    end subroutine assemble
 
    !> F = S u - b and its integrals I = I_n + H F, J = J_n + H I_n + H^2 F
-   pure subroutine integrate(map, lambda, stiffness, memory, u, panel)
+   pure subroutine integrate(map, equations, u, panel)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
-      !> Eigenvalues of H [s]
-      complex(wp), intent(in) :: lambda(width)
-      !> S [N/m^1.5]
-      complex(wp), intent(in) :: stiffness(width)
-      !> V^-1 b [N]
-      complex(wp), intent(in) :: memory(width)
+      !> Equations of the panel
+      type(equations_t), intent(in) :: equations
       !> u at the stages [m^1.5]
       real(wp), intent(in) :: u(width)
-      !> The panel; on entry impulse and second impulse as they would be without a force
+      !> The panel
       type(panel_t), intent(inout) :: panel
 
-      complex(wp) :: force, impulse, second
-      real(wp) :: x, y
-      integer :: i, j, m
+      real(wp) :: x(width)
 
-      panel%force(1:) = 0.0_wp
-      do m = 1, map%pairs
-         x = 0.0_wp
-         y = 0.0_wp
-         do j = 1, width
-            x = x + map%left_re(j, m)*u(j)
-            y = y + map%left_im(j, m)*u(j)
-         end do
-         force = stiffness(m)*cmplx(x, y, wp) - memory(m)
-         impulse = lambda(m)*force
-         second = lambda(m)*impulse
-         do i = 1, width
-            x = map%right_re(i, m)
-            y = map%right_im(i, m)
-            panel%force(i) = panel%force(i) + x*real(force, wp) - y*aimag(force)
-            panel%impulse(i) = panel%impulse(i) + x*real(impulse, wp) - y*aimag(impulse)
-            panel%second_impulse(i) = panel%second_impulse(i) + x*real(second, wp) &
-               - y*aimag(second)
-         end do
-      end do
+      x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
+      panel%force(1:) = apply(map%right, x)
+      x = times(map%square, equations%lambda, x)
+      panel%impulse(1:) = equations%free_impulse + apply(map%right, x)
+      x = times(map%square, equations%lambda, x)
+      panel%second_impulse(1:) = equations%free_second_impulse + apply(map%right, x)
    end subroutine integrate
+
+   !> The same at the end of the panel only
+   pure subroutine integrate_to_end(map, equations, u, panel)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Equations of the panel
+      type(equations_t), intent(in) :: equations
+      !> u at the stages [m^1.5]
+      real(wp), intent(in) :: u(width)
+      !> The panel
+      type(panel_t), intent(inout) :: panel
+
+      real(wp) :: x(width)
+
+      associate (n => panel%stages)
+         x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
+         panel%force(n) = sum(map%right(n, :)*x)
+         x = times(map%square, equations%lambda, x)
+         panel%impulse(n) = equations%free_impulse + sum(map%right(n, :)*x)
+         x = times(map%square, equations%lambda, x)
+         panel%second_impulse(n) = equations%free_second_impulse(n) + sum(map%right(n, :)*x)
+      end associate
+   end subroutine integrate_to_end
 
 end module vcor_solver_panel

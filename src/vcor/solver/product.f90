@@ -178,7 +178,7 @@ contains
       frozen = impact%plate%frozen()
       two_terms = abs(self%second_coefficient) > 0.0_wp
       end_time = self%end_time
-      if (.not. end_time > 0.0_wp) end_time = impact%patience()
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
       room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1
       call make_room()
       stiffness = weights(room)

@@ -7,7 +7,7 @@ module vcor_solver_recording
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, width
-   use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, solve_step
+   use vcor_solver_collocator, only : collocator_t, guess, improve, plate_velocity
    use vcor_solver_modes, only : start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
@@ -39,20 +39,18 @@ contains
       allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
    end subroutine begin
 
-   !> Add a panel to the trajectory: the finer solution, which the other one has led there
-   subroutine append(self, impact, kernel, start, panel, fine, accuracy, trajectory)
+   !> Add a panel to the trajectory
+   subroutine append(self, impact, kernel, start, panel, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> State of the finer solution at the start of the panel
+      !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> The panel of the finer solution
-      type(panel_t), intent(in) :: fine
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
       !> The trajectory
@@ -60,50 +58,48 @@ contains
 
       integer :: n, first, j
 
-      n = fine%stages
+      n = panel%stages
       call trajectory%reserve(trajectory%final + n)
-      call trajectory%add_map(fine%map)
+      call trajectory%add_map(panel%map)
       first = trajectory%final + 1
       trajectory%final = trajectory%final + n
       trajectory%steps = trajectory%steps + 1
-      trajectory%weight(first:trajectory%final) = self%fine%weight(1:n) &
-         *(fine%map(1) + 2.0_wp*fine%map(2)*self%fine%node(1:n))
+      trajectory%weight(first:trajectory%final) = self%rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*self%rule%node(1:n))
       ! what an end was moved by to its zero goes to the node there
       trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
-         + (fine%time(n) - fine%time(0) - sum(fine%map))
+         + (panel%time(n) - panel%time(0) - sum(panel%map))
       do j = 1, n
          associate (state => trajectory%state(:, first + j - 1))
-            state(col_time) = fine%time(j)
-            state(col_indentation) = fine%indentation(j)
-            state(col_force) = fine%force(j)
-            state(col_impulse) = fine%impulse(j)
-            state(col_sphere) = impact%velocity*fine%time(j) &
-               - fine%second_impulse(j)/impact%mass
-            state(col_sphere_velocity) = impact%velocity - fine%impulse(j)/impact%mass
-            state(col_plate) = state(col_sphere) - fine%indentation(j)
-            state(col_plate_velocity) = plate_velocity(impact, fine, j)
+            state(col_time) = panel%time(j)
+            state(col_indentation) = panel%indentation(j)
+            state(col_force) = panel%force(j)
+            state(col_impulse) = panel%impulse(j)
+            state(col_sphere) = impact%velocity*panel%time(j) &
+               - panel%second_impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
+            state(col_plate) = state(col_sphere) - panel%indentation(j)
+            state(col_plate_velocity) = plate_velocity(impact, panel, j)
             state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
          end associate
       end do
       if (trajectory%status == contact_separated) return
       trajectory%last = trajectory%final
-      call find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
+      call find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
    end subroutine append
 
    !> Largest indentation and force so far
-   subroutine find_peaks(self, impact, kernel, start, panel, fine, accuracy, trajectory)
+   subroutine find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> State of the finer solution at the start of the panel
+      !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> The panel of the finer solution
-      type(panel_t), intent(in) :: fine
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
       !> The trajectory, the panel added
@@ -111,19 +107,17 @@ contains
 
       integer :: n
 
-      n = fine%stages
-      call look_for_peak(panel%indentation, fine%indentation, .true., &
+      n = panel%stages
+      call look_for_peak(panel%indentation, .true., &
          trajectory%max_indentation, trajectory%time_of_max_indentation)
-      call look_for_peak(panel%force, fine%force, .false., trajectory%max_force, &
+      call look_for_peak(panel%force, .false., trajectory%max_force, &
          trajectory%time_of_max_force)
 
    contains
 
       !> Larger value in the panel than so far, if there is one
-      subroutine look_for_peak(coarse, value, of_indentation, largest, time)
+      subroutine look_for_peak(value, of_indentation, largest, time)
          !> Values at the points of the panel
-         real(wp), intent(in) :: coarse(0:width)
-         !> Values at the points of the finer solution
          real(wp), intent(in) :: value(0:width)
          !> Whether they are those of the indentation, otherwise of the force
          logical, intent(in) :: of_indentation
@@ -135,9 +129,9 @@ contains
          real(wp) :: peak, peak_time
          integer :: j
 
-         if (sum(self%fine%derivative(0, 0:n)*value(0:n)) > 0.0_wp .and. &
-             sum(self%fine%derivative(n, 0:n)*value(0:n)) < 0.0_wp) then
-            call find_peak(coarse, value(0:n), of_indentation, peak, peak_time)
+         if (sum(self%rule%derivative(0, :)*value) > 0.0_wp .and. &
+             sum(self%rule%derivative(n, :)*value) < 0.0_wp) then
+            call find_peak(self%rule%slopes(value), of_indentation, peak, peak_time)
             if (peak > largest) then
                largest = peak
                time = peak_time
@@ -146,38 +140,45 @@ contains
          do j = 1, n
             if (value(j) > largest) then
                largest = value(j)
-               time = fine%time(j)
+               time = panel%time(j)
             end if
          end do
       end subroutine look_for_peak
 
-      !> Maximum inside the panel: where the polynomials of both solutions agree from them,
-      !> otherwise by solving the panel up to there, as it is more accurate at its end
-      subroutine find_peak(coarse, value, of_indentation, peak, time)
-         !> Values at the points of the panel
-         real(wp), intent(in) :: coarse(0:width)
-         !> Values at the points of the finer solution
-         real(wp), intent(in) :: value(0:)
-         !> Whether they are those of the indentation, otherwise of the force
+      !> Maximum inside the panel, by improving the panel up to there: the polynomials of the panel
+      !> are less accurate inside of it than at its end
+      subroutine find_peak(slope, of_indentation, peak, time)
+         !> Derivative by theta at the points of the panel
+         real(wp), intent(in) :: slope(0:width)
+         !> Whether it is that of the indentation, otherwise of the force
          logical, intent(in) :: of_indentation
          !> Maximum
          real(wp), intent(out) :: peak
          !> Its time [s]
          real(wp), intent(out) :: time
 
+         ! its square is what the maximum feels
+         real(wp), parameter :: tolerance = 1.0e-6_wp
          type(panel_t) :: cut
          type(step_t) :: step
          real(wp) :: theta
+         integer :: j
 
-         theta = self%fine%crossing(matmul(self%fine%derivative(0:n, 0:n), value), 0.0_wp, 1.0_wp)
-         time = theta*(fine%map(1) + fine%map(2)*theta)
-         peak = self%fine%interpolate(value, theta)
-         if (.not. abs(peak - self%rule%interpolate(coarse(0:panel%stages), theta)) &
-             <= accuracy*peak) then
-            step = step_to(start%time, time)
-            call guess(self%fine, impact, fine, start, step, cut)
-            call solve_step(self, self%fine, step, impact, kernel, start, cut)
-            if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
+         j = 1
+         do while (slope(j) > 0.0_wp .and. j < n)
+            j = j + 1
+         end do
+         theta = self%rule%crossing(slope, self%rule%point(j - 1), self%rule%point(j), tolerance)
+         time = theta*(panel%map(1) + panel%map(2)*theta)
+         step = step_to(start%time, time)
+         call guess(self%rule, impact, panel, start, step, cut)
+         call improve(self, step, impact, kernel, start, accuracy, cut)
+         if (cut%converged) then
+            peak = merge(cut%indentation(n), cut%force(n), of_indentation)
+         else if (of_indentation) then
+            peak = self%rule%interpolate(panel%indentation, theta)
+         else
+            peak = self%rule%interpolate(panel%force, theta)
          end if
          time = start%time + time
       end subroutine find_peak
