@@ -114,7 +114,10 @@ contains
       watch%done = count(summary%status /= point_pending)
       watch%done_before = watch%done
       watch%grid = job%sweep%grid
-      if (rank_count() > 1 .and. job%writes(1)) watch%rows%path = job%path//trim(endings(1))
+      if (rank_count() > 1 .and. job%writes(1)) then
+         watch%rows%path = job%path//trim(endings(1))
+         watch%rows%temporary = job%path//'_summary.part.csv'
+      end if
       watch%rows%threads = threads_of(request)
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
