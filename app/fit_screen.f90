@@ -10,6 +10,8 @@ module vcor_app_fit_screen
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
+   !> Root mean square misfit of a model that is not that of the data
+   real(wp), parameter :: poor = 0.1_wp
 
 contains
 
@@ -42,7 +44,10 @@ contains
          //short(samples%last_time())//' s'
       if (samples%dynamic) text = text//', from '//short(samples%at(1))//' to ' &
          //short(samples%at(size(samples%at)))//' rad/s'
-      text = text//nl//tail//nl
+      text = text//nl
+      if (fit%rms > poor) text = text//'  note: the model does not follow the data, its standard ' &
+         //'errors mean little'//nl
+      text = text//tail//nl
    end function fit_report
 
    !> Remarks before a group: what it was fitted to and how well

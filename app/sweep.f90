@@ -115,11 +115,24 @@ contains
       watch%done = count(summary%status /= point_pending)
       watch%done_before = watch%done
       watch%grid = job%sweep%grid
-      if (rank_count() > 1 .and. job%writes(1)) watch%rows%path = job%path//trim(endings(1))
+      if (rank_count() > 1 .and. job%writes(1)) then
+         watch%rows%path = job%path//trim(endings(1))
+         watch%rows%temporary = rows_path(job)
+      end if
       watch%rows%threads = threads_of(request)
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
+
+   !> Name of the summary as text until it is complete
+   function rows_path(job) result(path)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Its path
+      character(len=:), allocatable :: path
+
+      path = job%path//'_summary.part.csv'
+   end function rows_path
 
    !> After the points: write the results, or say what ended the sweep
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
@@ -198,7 +211,11 @@ contains
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
-         if (watch%keeps) call remove_file(watch%path)
+         if (watch%keeps) then
+            call remove_file(watch%path)
+            ! left by ranks that were killed, perhaps
+            call remove_file(rows_path(job))
+         end if
          if (size(request%names) > 0) then
             call write_numbers(request, table, error)
          else if (.not. request%quiet) then

@@ -2,7 +2,8 @@
 module vcor_app_verify_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_screen, only : short, significant
-   use vcor, only : contact_separated, model_t, attempt_case, attempt_count, attempt_first, attempt_halved, attempt_refined, &
+   use vcor, only : contact_separated, model_t, &
+      attempt_case, attempt_count, attempt_first, attempt_halved, attempt_refined, &
       comparison_t, error_of_best, integer_text, is_honest, law_t, status_name, verdict_t, &
       version, wp
    implicit none

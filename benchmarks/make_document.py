@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Write the tables of docs/performance.md, between its markers, and docs/performance.svg.
 
-    make_document.py FOLDER      with accuracy.csv, modes.csv and comparison.csv
+    make_document.py FOLDER      with accuracy.csv, modes.csv, comparison.csv; sweeps.csv if there
 
 Standard library only. Run by make_document.sh.
 """
@@ -108,6 +108,50 @@ def modes_table(rows):
     ]
     head = ["modes", "µs per impact", "panels", "COR", "estimated error"]
     return table(head, lines, set(range(len(head))))
+
+
+def points_table(rows):
+    """Time and memory of whole sweeps over their points, one thread, both files."""
+    lines = [
+        [
+            f"{int(row['points']):,}".replace(",", " "),
+            f"{float(row['cpu']):.2f}",
+            cost(str(1e6 * float(row["cpu"]) / int(row["points"]))),
+            f"{float(row['memory']):.0f}",
+            f"{float(row['csv']):.1f}",
+            f"{float(row['hdf5']):.1f}",
+        ]
+        for row in rows
+        if (row["files"], row["ranks"], row["threads"]) == ("both", "0", "1")
+    ]
+    head = ["points", "CPU time, s", "µs per point", "memory, MB", "CSV, MB", "HDF5, MB"]
+    return table(head, lines, range(6))
+
+
+def speedup_table(rows):
+    """Whole sweeps by two threads and two ranks, by the clock on the wall."""
+    one = {
+        (row["points"], row["files"], row["ranks"] != "0"): float(row["seconds"])
+        for row in rows
+        if row["threads"] == "1" and row["ranks"] in {"0", "1"}
+    }
+    lines = []
+    for row in rows:
+        key = (row["points"], row["files"], row["ranks"] != "0")
+        if row["ranks"] != "2" and row["threads"] != "2":
+            continue
+        lines.append(
+            [
+                f"{int(row['points']):,}".replace(",", " "),
+                row["files"],
+                "2 ranks" if row["ranks"] == "2" else "2 threads",
+                f"{one[key]:.2f}",
+                f"{float(row['seconds']):.2f}",
+                f"{one[key] / float(row['seconds']):.2f}",
+            ]
+        )
+    head = ["points", "files", "by", "one, s", "two, s", "times as fast"]
+    return table(head, lines, {0, 3, 4, 5})
 
 
 def first_line(*command):
@@ -294,6 +338,11 @@ def main():
         "accuracy": accuracy_table(accuracy),
         "modes": modes_table(modes),
     }
+    # whole sweeps, where they were measured
+    if (folder / "sweeps.csv").exists():
+        sweeps = read(folder / "sweeps.csv")
+        blocks["points"] = points_table(sweeps)
+        blocks["speedup"] = speedup_table(sweeps)
     text = DOCUMENT.read_text()
     for name, block in blocks.items():
         pattern = rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renews the tables and the figure of docs/performance.md: builds, measures (about two minutes on a
+# Renews the tables and the figure of docs/performance.md: builds, measures (about six minutes on a
 # quiet machine) and writes. The lines behind the tables are in build/release/benchmarks/*.csv.
 #
 #   benchmarks/make_document.sh [--write-only]      with the measurements that are there
@@ -18,6 +18,14 @@ case "${1-}" in
       cmake --build --preset release
       "$results/accuracy" "$results"
       benchmarks/compare.sh --csv "$results/comparison.csv"
+      # whole sweeps; by ranks too where there is MPI
+      ranks=()
+      if command -v mpirun >/dev/null; then
+         cmake --preset mpi
+         cmake --build --preset mpi --target vcor_program
+         ranks=(build/mpi/vcor)
+      fi
+      "$PYTHON" benchmarks/sweeps.py "$BUILD/vcor" "$results" "${ranks[@]}"
       ;;
    *) printf 'make_document: unknown argument %s\n' "$1" >&2; exit 1 ;;
 esac

@@ -21,8 +21,8 @@ module vcor_solver
       //"Volterra series (volterra_order = 2) has no meaning in it"
    !> Why the paper's scheme does not go with receding contact
    character(len=*), parameter :: receding_without_papers_scheme = &
-      "scheme = 'adams_bashforth' sums the force over all the past, law = 'receding' does not: use " &
-      //"method = 'ive', or 'direct' with scheme = 'product'"
+      "scheme = 'adams_bashforth' sums the force over all the past, law = 'receding' does not: " &
+      //"use method = 'ive', or 'direct' with scheme = 'product'"
    !> Why receding contact does not go on after the separation
    character(len=*), parameter :: receding_without_ghost = &
       "with law = 'receding' nothing is left of the contact at separation: " &

@@ -1,4 +1,4 @@
-"""The job scripts of the README, with what Slurm would do."""
+"""The job scripts of docs/sweeps.md, with what Slurm would do."""
 
 import os
 import shutil
@@ -28,7 +28,7 @@ def place(vcor):
 
 
 def block_with(word):
-    blocks = (ROOT / "README.md").read_text(encoding="utf-8").split("```sh\n")[1:]
+    blocks = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8").split("```sh\n")[1:]
     return next(block for block in blocks if word in block).split("```")[0]
 
 

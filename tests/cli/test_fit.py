@@ -266,6 +266,13 @@ def test_fixed_parameter(vcor):
     assert group(out)["beta"] == 1000.0
 
 
+def test_wrong_model(vcor):
+    """A model that is not that of the data is told."""
+    words = ["fit", "--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2", "--model"]
+    assert "does not follow the data" in vcor.succeeds(*words, "sls")
+    assert "does not follow the data" not in vcor.succeeds(*words, "power_law")
+
+
 # Sampled models
 
 
@@ -396,6 +403,7 @@ COMMANDS = [
     line.split()[1:]
     for block in re.findall(r"```sh\n(.*?)```", DOCUMENT, re.DOTALL)
     for line in block.splitlines()
+    if "soft_rubber_data" not in line  # the example has a test of its own
 ]
 
 
@@ -420,11 +428,11 @@ def test_the_document_has_commands():
     assert len(COMMANDS) == 14
 
 
-def test_the_example_of_the_readme(vcor):
-    """Its numbers are those of the README, and those of the material that the data are of."""
+def test_the_example_of_the_page(vcor):
+    """Its numbers are those of docs/fitting.md, and those of the material that the data are of."""
     words = ["--model", "mittag_leffler", "--density", "1100", "--name", "soft rubber"]
     out = vcor.succeeds("fit", ROOT / "examples" / "soft_rubber_data.csv", *words)
-    shown = (ROOT / "README.md").read_text()
+    shown = (ROOT / "docs" / "fitting.md").read_text()
     shown = shown[shown.index("57 points of time") : shown.index("band of the data    1.0E-07")]
     assert shown in out
     assert group(out)["exponent"] == pytest.approx(0.5, rel=1e-4)

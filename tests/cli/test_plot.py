@@ -239,9 +239,10 @@ def test_sweep_that_is_logarithmic(vcor):
     vcor.succeeds("plot", "case.h5", "--script")
     assert "set logscale x" in (vcor.folder / "case_sweep.gp").read_text()
     assert "sphere radius [mm]" in texts(vcor.folder / "case_sweep.svg")
-    vcor.succeeds("run", "--quiet", "case.nml", "--set", "sweep.spacing='linear'")
-    vcor.succeeds("plot", "case.h5", "--script")
-    assert "set logscale x" not in (vcor.folder / "case_sweep.gp").read_text()
+    words = ["--set", "sweep.spacing='linear'", "--set", "output.stem=even"]
+    vcor.succeeds("run", "--quiet", "case.nml", *words)
+    vcor.succeeds("plot", "even.h5", "--script")
+    assert "set logscale x" not in (vcor.folder / "even_sweep.gp").read_text()
 
 
 def test_values_in_any_order(vcor):
@@ -606,6 +607,25 @@ def test_what_others_wrote(bad):
     found = texts(bad.folder / "radius_sweep.svg")
     assert "sphere radius" in found and "cor" in found
     assert blocks(bad.folder / "radius_sweep.dat") == [[(1.0, 0.5), (2.0, 0.6)]]
+
+
+def test_other_types(vcor):
+    """Numbers of any width and byte order, whole ones, text of fixed length."""
+    for name, kind in (("a", ">f4"), ("b", "<f8"), ("c", "<i2")):
+        with h5py.File(vcor.folder / f"{name}.h5", "w") as file:
+            file.attrs["title"] = np.bytes_(f"title {name}")
+            file["summary/sphere.radius"] = np.array([1, 2, 4], dtype=kind)
+            file["summary/sphere.radius"].attrs["units"] = np.bytes_("m")
+            if kind != "<i2":
+                file["summary/sphere.radius"].make_scale()
+            file["summary/cor"] = np.array([3, 2, 1], dtype=kind)
+            file["summary/status"] = np.array([b"separated", b"x", b""])
+    vcor.succeeds("plot", "a.h5", "b.h5", "--script")
+    found = texts(vcor.folder / "a_sweep.svg")
+    assert "title a" in found and "title b" in found and "sphere radius [m]" in found
+    line = [(1.0, 3.0), (2.0, 2.0), (4.0, 1.0)]
+    assert blocks(vcor.folder / "a_sweep.dat") == [line, line]
+    vcor.refuses("plot", "c.h5", code=INPUT, at="c.h5", says="single impact")
 
 
 def test_quiet(vcor, results):

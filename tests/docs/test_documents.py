@@ -98,8 +98,9 @@ def shell(folder, text):
         cwd=folder,
         env=env,
     )
-    trouble = [line for line in done.stderr.splitlines() if not line.startswith("vcor: warning:")]
-    assert (done.returncode, trouble) == (0, []), text
+    # warnings stand on the page that has the command: its own test compares them
+    errors = [line for line in done.stderr.splitlines() if not line.startswith("vcor: warning:")]
+    assert (done.returncode, errors) == (0, []), text
     return done.stdout
 
 
@@ -166,6 +167,8 @@ def test_the_sweep_of_the_page(folder):
     assert len(scripts) >= 5
     env = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
     for script in scripts:
+        if ".part." in script:
+            continue  # of a sweep that runs: tests/export
         # a figure wants a screen and Matplotlib
         text = re.sub(r"\.plot\(.*\)", "", script)
         done = subprocess.run(

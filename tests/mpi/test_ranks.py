@@ -160,6 +160,10 @@ def test_killed_rank(long, victim):
         assert not Path(f"/proc/{rank}/exe").exists()
     done, points = done_in(long.folder / "out" / PART)
     assert 0 < done < points
+    assert {path.name for path in (long.folder / "out").iterdir()} <= {
+        PART,
+        "case_summary.part.csv",
+    }
     assert run(long, 3, "case.nml", "--output", "out", "--resume").code == NUMERICAL
     same_files(long.folder / "out", long.folder / "ref")
 

@@ -113,8 +113,8 @@ contains
    end subroutine test_order
 
    !> The method of dimensionality reduction: the contact as a row of independent elements of width
-   !> dx and stiffness E' dx under the profile x^2/R. Each comes into contact when s = x^2/R, follows
-   !> the SLS law as long as its force is positive, and then has lost contact for good.
+   !> dx and stiffness E' dx under the profile x^2/R. Each comes into contact when s = x^2/R,
+   !> follows the SLS law as long as its force is positive, and then has lost contact for good.
    !> V. L. Popov and M. Hess, Method of Dimensionality Reduction in Contact Mechanics and Friction
    !> (2015), section 7; motion by the leapfrog method
    subroutine test_reduced_dimension()
@@ -352,8 +352,8 @@ contains
             call new_sls(prony, e, 0.3_wp*1.0e3_wp, random%log_between(400.0_wp, 3.0e3_wp), error)
             call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
          case default
-            call new_prony(prony, random%log_between(0.05_wp, 1.0_wp)*e, e*[0.5_wp, 1.0_wp, 2.0_wp], &
-               [random%log_between(10.0_wp, 300.0_wp), random%log_between(300.0_wp, 3.0e3_wp), &
+            call new_prony(prony, random%log_between(0.05_wp, 1.0_wp)*e, &
+               e*[0.5_wp, 1.0_wp, 2.0_wp], [random%log_between(10.0_wp, 300.0_wp), random%log_between(300.0_wp, 3.0e3_wp), &
                random%log_between(3.0e3_wp, 1.0e5_wp)], 0.0_wp, error)
             call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
          end select

@@ -59,8 +59,8 @@ contains
 
       if (.not. (moves(course%indentation) .and. moves(course%velocity) &
          .and. moves(course%force))) then
-         call raise(error, error_input, result%path//': the time history in this file is not that ' &
-            //'of an impact: nothing moves, or numbers are missing')
+         call raise(error, error_input, result%path//': the time history in this file is not ' &
+            //'that of an impact: nothing moves, or numbers are missing')
          return
       end if
 

@@ -104,7 +104,8 @@ contains
                call add_curve(figure%panels(2), one%frequency, factor*one%storage, line_solid, i)
                call add_curve(figure%panels(3), one%frequency, factor*one%loss, line_solid, i)
                call add_curve(figure%panels(4), one%frequency, one%tangent, line_solid, i)
-               figure%panels(4)%y%upper = max(figure%panels(4)%y%upper, room*largest_of(one%tangent))
+               figure%panels(4)%y%upper = max(figure%panels(4)%y%upper, &
+                  room*largest_of(one%tangent))
             end associate
          end do
          do i = 1, size(results)

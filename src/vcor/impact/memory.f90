@@ -3,7 +3,9 @@
 !> The plate is linear, so the elastic deflection U' = A F/sqrt(E'_b) becomes by the correspondence
 !> principle, in the Laplace domain with Q_b = s L{E'_b},
 !>
-!>     s U = A F/sqrt(Q_b),   U'(t) = alpha F + int_0^t psi(t - x) F(x) dx,   alpha = A/sqrt(Q_b(oo))
+!>     s U = A F/sqrt(Q_b),   U'(t) = alpha F + int_0^t psi(t - x) F(x) dx
+!>
+!> and alpha = A/sqrt(Q_b(oo)).
 !>
 !> A s/sqrt(Q_b) has all that makes the complex modulus of a material, and as such it is built here:
 !> psi is its relaxation modulus, alpha its dashpot. 1/sqrt(Q_b) is a Stieltjes function, so
@@ -227,8 +229,8 @@ contains
       end do
       if (.not. zeros > n) return
 
-      ! beyond the last pole l = z + exp(y), and y runs away doubly exponentially at both ends, as in
-      ! `vcor_material_spectrum`
+      ! beyond the last pole l = z + exp(y), and y runs away doubly exponentially at both ends, as
+      ! in `vcor_material_spectrum`
       zero = pole(near(zeros)) + offset(zeros)
       before = (pole(near(zeros)) - pole(zeros)) + offset(zeros)
       if (.not. before > 0.0_wp) before = 1.0_wp/window

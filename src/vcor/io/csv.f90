@@ -76,7 +76,7 @@ contains
    end subroutine write_csv
 
    !> Begin a file: what describes the table. Nothing is seen under its name before its end
-   subroutine begin_csv(file, filename, table, error)
+   subroutine begin_csv(file, filename, table, error, temporary)
       !> The file
       type(csv_file_t), intent(out) :: file
       !> Its name; replaced if it is there
@@ -85,13 +85,15 @@ contains
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until its end, for a file that grows for long
+      character(len=*), intent(in), optional :: temporary
       type(writer_t), allocatable :: writer
 
       call check_table(table, error)
       if (allocated(error)) return
       ! Not on the stack, for the sake of its buffer
       allocate(writer)
-      call create_file(writer%file, filename, error)
+      call create_file(writer%file, filename, error, temporary)
       if (allocated(error)) return
       call put_head(writer, table, error)
       if (allocated(error)) return

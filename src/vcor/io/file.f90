@@ -51,28 +51,33 @@ module vcor_io_file
 contains
 
    !> Begin a file: nothing is seen under its real name before `commit`
-   subroutine create_file(file, path, error)
+   subroutine create_file(file, path, error, temporary)
       !> The open file
       type(output_file_t), intent(out) :: file
       !> Its real name; the directory must be there
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until `commit`, in the same folder, for what grows for so long that it may well be
+      !> left behind: what has that name is replaced. Without it a name is found that nothing has
+      character(len=*), intent(in), optional :: temporary
 
       ! One thread at a time: the length of a text that a function returns is static
 !$omp critical (vcor_file)
-      call begin(file, path, error)
+      call begin(file, path, error, temporary)
 !$omp end critical (vcor_file)
    end subroutine create_file
 
    !> Begin a file
-   subroutine begin(file, path, error)
+   subroutine begin(file, path, error, given)
       !> The open file
       type(output_file_t), intent(inout) :: file
       !> Its real name
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until `commit`, if that is given
+      character(len=*), intent(in), optional :: given
       character(len=:), allocatable :: temporary
       integer(c_int) :: reason
       integer :: count
@@ -80,6 +85,16 @@ contains
       call check_name(path, error)
       if (allocated(error)) return
       file%path = trim(path)
+      if (present(given)) then
+         file%stream = c_fopen(c_text(given), c_text("wb"))
+         reason = last_errno()
+         if (c_associated(file%stream)) then
+            file%temporary = given
+         else
+            call raise_system(error, "cannot write "//quoted_path(given), reason)
+         end if
+         return
+      end if
 
       do count = 1, most_temporaries
          temporary = temporary_path(file%path, count)

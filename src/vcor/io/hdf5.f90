@@ -25,14 +25,16 @@ module vcor_io_hdf5
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, &
       & c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
-   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
+   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, &
+      & h5dget_space_f, h5dwrite_f, &
       & h5f_acc_trunc_f, h5f_close_strong_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, &
       & h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, &
       & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
       & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
       & h5pcreate_f, h5pset_chunk_f, h5pset_deflate_f, h5pset_fapl_core_f, &
       & h5pset_fclose_degree_f, h5pset_link_creation_order_f, h5pset_obj_track_times_f, &
-      & h5pset_shuffle_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
+      & h5pset_shuffle_f, h5s_scalar_f, h5s_select_set_f, h5sclose_f, h5screate_f, &
+      & h5screate_simple_f, h5sselect_hyperslab_f, &
       & h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, &
       & h5t_std_i32le, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
@@ -71,6 +73,8 @@ module vcor_io_hdf5
    integer, parameter :: longest_plain = 50000
    !> Numbers that are compressed together; half a megabyte, which HDF5 holds in its cache
    integer, parameter :: chunk_length = 65536
+   !> Texts that are handed to HDF5 at once
+   integer, parameter :: texts_at_once = 65536
    !> How hard to compress: more makes the file 1 % smaller still
    integer, parameter :: compression = 1
    !> First bytes of an HDF5 file
@@ -354,7 +358,7 @@ contains
          case (integer_column)
             call h5dwrite_f(dataset, memory_type, c_loc(column%integers), status)
          case default
-            call write_texts(column, dataset, memory_type, status)
+            call write_texts(column, backwards, dataset, memory_type, status)
          end select
          call note(writer, status, "write '"//column%name//"'")
       end if
@@ -414,10 +418,12 @@ contains
       call note(writer, status, "compress")
    end subroutine prepare_compression
 
-   !> Write the values of a text column
-   subroutine write_texts(column, dataset, memory_type, status)
+   !> Write the values of a text column, some at a time: HDF5 wants an address for each
+   subroutine write_texts(column, lengths, dataset, memory_type, status)
       !> Text column
       type(column_t), intent(in) :: column
+      !> Lengths of its dimensions, the fastest first
+      integer(hsize_t), intent(in) :: lengths(:)
       !> Dataset to write to
       integer(hid_t), intent(in) :: dataset
       !> Type of text
@@ -426,14 +432,36 @@ contains
       integer, intent(out) :: status
       character(len=column%width+1, kind=c_char), allocatable, target :: texts(:)
       type(c_ptr), allocatable, target :: places(:)
-      integer :: i
+      integer(hid_t) :: file_space, memory_space
+      integer(hsize_t) :: start(size(lengths)), part(size(lengths)), counted(1)
+      integer :: first, ignored, i, n, rows
 
-      allocate(texts(column%length), places(column%length))
-      do i = 1, column%length
-         texts(i) = text_value(column, i)//c_null_char
-         places(i) = c_loc(texts(i))
+      ! whole rows of the slowest dimension
+      n = size(lengths)
+      rows = int(product(lengths(:n-1)))
+      part = lengths
+      part(n) = min(lengths(n), max(1_hsize_t, int(texts_at_once/max(rows, 1), hsize_t)))
+      allocate(texts(product(part)), places(product(part)))
+      start = 0_hsize_t
+      call h5dget_space_f(dataset, file_space, status)
+      do while (status >= 0 .and. start(n) < lengths(n))
+         part(n) = min(part(n), lengths(n) - start(n))
+         first = int(start(n))*rows
+         do i = 1, int(product(part))
+            texts(i) = column%texts((first + i - 1)*column%width + 1:(first + i)*column%width)
+            texts(i)(len_trim(texts(i))+1:len_trim(texts(i))+1) = c_null_char
+            places(i) = c_loc(texts(i))
+         end do
+         counted = product(part)
+         call h5screate_simple_f(1, counted, memory_space, status)
+         if (status >= 0) &
+            & call h5sselect_hyperslab_f(file_space, h5s_select_set_f, start, part, status)
+         if (status >= 0) call h5dwrite_f(dataset, memory_type, c_loc(places), status, &
+            & memory_space, file_space)
+         call h5sclose_f(memory_space, ignored)
+         start(n) = start(n) + part(n)
       end do
-      call h5dwrite_f(dataset, memory_type, c_loc(places), status)
+      call h5sclose_f(file_space, ignored)
    end subroutine write_texts
 
    !> Write a text attribute

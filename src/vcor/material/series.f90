@@ -4,7 +4,8 @@
 !>     1/Q = 1/Q_a + 1/Q_b,   Q = s L{E}(s)
 !>
 !> Two Prony series make a Prony series. Its rates are the zeros of P = Q_a + Q_b, one between each
-!> rate of both and the next, with those that both have, and the modulus that belongs to the rate l is Q_a^2/(l P') at s = -l.
+!> rate of both and the next, with those that both have, and the modulus that belongs to the rate l
+!> is Q_a^2/(l P') at s = -l.
 !> All other moduli are known by their transform, and as exponentials through their spectrum.
 module vcor_material_series
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite

@@ -4,8 +4,8 @@
 !> (see `vcor_impact_problem`). For a kernel G_0 + sum_k G_k exp(-l_k t) both are known from what
 !> had not relaxed at t1,
 !>
-!>     F = G_0 u(t1) + sum_k G_k p_k(t1) exp(-l_k (t - t1)),    p_k = int_0^t1 exp(-l_k (t1 - x)) u' dx
-!>     N = G_0 s(t1) + sum_k G_k w_k(t1) exp(-l_k (t - t1)),    w_k = int_0^t1 exp(-l_k (t1 - x)) s' dx
+!>   F = G_0 u(t1) + sum_k G_k p_k(t1) exp(-l_k (t - t1)),  p_k = int_0^t1 exp(-l_k (t1 - x)) u' dx
+!>   N = G_0 s(t1) + sum_k G_k w_k(t1) exp(-l_k (t - t1)),  w_k = int_0^t1 exp(-l_k (t1 - x)) s' dx
 !>
 !> and the condition is that N is the same integral over all the past, int_0^t k(t - x) s'(x) dx. As
 !> dF/dt1 = k(t - t1) u'(t1) and dN/dt1 = k(t - t1) s'(t1), F is a function of N with the slope

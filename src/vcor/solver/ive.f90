@@ -46,8 +46,8 @@ module vcor_solver_ive
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
-   !> First step over the usual one where the contact recedes: the rebound needs the approach between
-   !> the ends of its panels, too
+   !> First step over the usual one where the contact recedes: the rebound needs the approach
+   !> between the ends of its panels, too
    real(wp), parameter :: receding_reach = 0.8_wp
    !> What the rebound feels of the difference of the two solutions between the ends of the panels,
    !> measured
@@ -232,8 +232,8 @@ contains
          if (panel%converged .and. recedes) then
             velocity = trajectory%state(col_velocity, trajectory%final)
             turns = is_turning(impact, panel)
-            if (turns) call land_on_largest(self%collocator, impact, kernel, start, velocity, step, &
-               panel, factors)
+            if (turns) call land_on_largest(self%collocator, impact, kernel, start, velocity, &
+               step, panel, factors)
          end if
          ends = .false.
          if (panel%converged .and. trajectory%status /= contact_separated .and. .not. recedes) &

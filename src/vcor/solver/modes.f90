@@ -29,7 +29,7 @@ module vcor_solver_modes
       real(wp) :: impulse = 0.0_wp
       !> Integral of the impulse J [N s2]
       real(wp) :: second_impulse = 0.0_wp
-      !> Deflection U of a frozen plate, or the part of it that a hereditary plate's memory makes [m]
+      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
       real(wp) :: deflection = 0.0_wp
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift = 0.0_wp
@@ -87,8 +87,8 @@ contains
       memory = b
    end subroutine resolve_modes
 
-   !> What the memory of a hereditary plate makes of the impulse H F in the panel and of its own past,
-   !> as functions of the eigenvalues of H: velocity R H F + c 1 with R = sum_j w_j (1 + l_j H)^-1
+   !> What the memory of a hereditary plate makes of the impulse H F in the panel and of its own
+   !> past, as functions of the eigenvalues of H: velocity R H F + c 1 with R = sum_j w_j (1 + l_j H)^-1
    pure subroutine resolve_plate(start, map, lambda, response, past)
       !> State at the start of the panel
       type(start_t), intent(in) :: start

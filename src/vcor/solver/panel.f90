@@ -44,7 +44,7 @@ module vcor_solver_panel
       real(wp) :: second_impulse(0:width) = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(0:width) = 0.0_wp
-      !> Deflection U of a frozen plate, or the part of it that a hereditary plate's memory makes [m]
+      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
       real(wp) :: deflection(0:width) = 0.0_wp
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift(0:width) = 0.0_wp

@@ -103,7 +103,10 @@ contains
          end if
          if (ends) then
             call close_contact(panel, taken)
-            if (panel%converged) end_found = start%time + taken
+            if (panel%converged) then
+               end_found = start%time + taken
+               if (end_found > end_time) cycle
+            end if
          else
             call guess(panel, kind, taken)
             call solve(1, kind, taken, panel)
@@ -113,10 +116,9 @@ contains
                   ! the end is closer than expected
                   call set_rate(panel)
                   refused = huge(1.0_wp)
-                  if (-start%t1/rate < closing_share*taken) then
-                     length = taken
-                     cycle
-                  end if
+                  length = taken
+                  if (-start%t1/rate > closing_share*taken) length = 0.5_wp*taken
+                  cycle
                end if
             end if
          end if

@@ -260,8 +260,8 @@ contains
    contains
 
       !> Where the map stands still at the end of the panel, collocation there says nothing about
-      !> internal variables that have settled: what they make of condition and drift is taken from the
-      !> other points. The end has no weight in the integrals
+      !> internal variables that have settled: what they make of condition and drift is taken from
+      !> the other points. The end has no weight in the integrals
       subroutine extrapolate_to_end()
 
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))

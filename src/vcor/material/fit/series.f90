@@ -27,6 +27,8 @@ module vcor_material_fit_series
    real(wp), parameter :: per_decade = 8.0_wp
    !> Largest misfit that no data beat
    real(wp), parameter :: good_enough = 5.0e-4_wp
+   !> Largest misfit that may become that small, as a factor
+   real(wp), parameter :: close = 10.0_wp
    !> One term more that reduces the residual to this part completes a series that the data are
    real(wp), parameter :: completes = 1.0e-3_wp
    !> Steps that do not pay before the search ends: one may be a poor start
@@ -289,6 +291,9 @@ contains
          better = .false.
          if (terms < 1 .or. terms > most) return
          call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
+         ! nearly there: worth a closer look, before longer ones are tried
+         if (.not. is_good(trial) .and. maxval(abs(trial%residuals)) <= close*good_enough) &
+            call refine(trial, samples, fixed, fine, last_patience)
          value = criterion(trial)
          ! of those that are good enough the shortest
          if (is_good(trial)) value = -0.5_wp*huge(value)*(1.0_wp - 1.0e-3_wp*real(terms, wp))
