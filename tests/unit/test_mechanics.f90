@@ -353,8 +353,9 @@ contains
             call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
          case default
             call new_prony(prony, random%log_between(0.05_wp, 1.0_wp)*e, &
-               e*[0.5_wp, 1.0_wp, 2.0_wp], [random%log_between(10.0_wp, 300.0_wp), random%log_between(300.0_wp, 3.0e3_wp), &
-               random%log_between(3.0e3_wp, 1.0e5_wp)], 0.0_wp, error)
+               e*[0.5_wp, 1.0_wp, 2.0_wp], [random%log_between(10.0_wp, 300.0_wp), &
+               random%log_between(300.0_wp, 3.0e3_wp), random%log_between(3.0e3_wp, 1.0e5_wp)], &
+               0.0_wp, error)
             call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
          end select
          call success(error, "a random material is built")

@@ -35,8 +35,8 @@ contains
    end function first_without_force
 
    !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by
-   !> the polynomial of the panel is good enough: the two laws of the force part with the fourth power
-   !> of the time since the maximum
+   !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
+   !> power of the time since the maximum
    subroutine land_on_largest(self, impact, kernel, start, start_velocity, step, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self

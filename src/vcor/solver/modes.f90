@@ -88,7 +88,8 @@ contains
    end subroutine resolve_modes
 
    !> What the memory of a hereditary plate makes of the impulse H F in the panel and of its own
-   !> past, as functions of the eigenvalues of H: velocity R H F + c 1 with R = sum_j w_j (1 + l_j H)^-1
+   !> past, as functions of the eigenvalues of H: the velocity is R H F + c 1 with
+   !> R = sum_j w_j (1 + l_j H)^-1
    pure subroutine resolve_plate(start, map, lambda, response, past)
       !> State at the start of the panel
       type(start_t), intent(in) :: start

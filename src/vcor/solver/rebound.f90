@@ -127,7 +127,7 @@ contains
             call solve(2, merge(closing, kind, ends), taken, companion)
          end if
          if (.not. (panel%converged .and. companion%converged)) then
-            length = 0.5_wp*taken
+            length = 0.5_wp*min(taken, rest)
             cycle
          end if
 
