@@ -318,10 +318,13 @@ contains
          logical, intent(out) :: better
 
          real(wp) :: value
+         logical :: guided
 
          better = .false.
          if (terms < 1 .or. terms > most) return
-         if (best < huge(best) .and. least_guide <= size(series%rates)) then
+         guided = allocated(series%rates)
+         if (guided) guided = size(series%rates) >= least_guide
+         if (guided) then
             call fit_terms(trial, terms, spectrum, samples, fixed, first_patience, series)
          else
             call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
