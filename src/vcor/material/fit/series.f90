@@ -28,7 +28,9 @@ module vcor_material_fit_series
    !> Largest misfit that no data beat
    real(wp), parameter :: good_enough = 5.0e-4_wp
    !> Largest misfit that may become that small, as a factor
-   real(wp), parameter :: close = 10.0_wp
+   real(wp), parameter :: close = 4.0_wp
+   !> Fewest terms of a series whose rates are a start for others
+   integer, parameter :: least_guide = 4
    !> One term more that reduces the residual to this part completes a series that the data are
    real(wp), parameter :: completes = 1.0e-3_wp
    !> Steps that do not pay before the search ends: one may be a poor start
@@ -37,10 +39,13 @@ module vcor_material_fit_series
    real(wp), parameter :: around = 4.0_wp
    !> Most terms
    integer, parameter :: most_terms = 60
+   !> Most terms per decade of the data, and a few more: t^-1/2 to 0.05 % takes 2.3 per decade
+   real(wp), parameter :: terms_per_decade = 3.0_wp
+   integer, parameter :: few_more = 5
    !> Reduction of the sum of squares that counts as none, while the number is searched and at last
    real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-7_wp
    !> Most evaluations, while the number is searched and at last
-   integer, parameter :: first_patience = 60, last_patience = 500
+   integer, parameter :: first_patience = 60, last_patience = 300
    !> Part of the largest modulus that starts a term which least squares do without
    real(wp), parameter :: little = 1.0e-3_wp
    !> Part of the smallest modulus of the samples below which a term is none
@@ -84,6 +89,7 @@ contains
          ! what the data do not support is not given: then take a term less
          if (.not. allocated(error) .or. terms > 0 .or. n == 1) exit
          n = n - 1
+         spectrum = series
          call fit_terms(series, n, spectrum, samples, fixed, last_patience)
       end do
    end subroutine fit_series
@@ -103,7 +109,8 @@ contains
       type(series_t) :: trial
 
       do while (is_good(series) .and. size(series%rates) > 1)
-         call fit_terms(trial, size(series%rates) - 1, spectrum, samples, fixed, last_patience)
+         call fit_terms(trial, size(series%rates) - 1, spectrum, samples, fixed, last_patience, &
+            series)
          call refine(trial, samples, fixed, fine, last_patience)
          if (.not. is_good(trial)) exit
          ! data that are this series
@@ -185,7 +192,7 @@ contains
    end subroutine merge_terms
 
    !> Fit a number of terms, from both starts
-   subroutine fit_terms(series, terms, spectrum, samples, fixed, most)
+   subroutine fit_terms(series, terms, spectrum, samples, fixed, most, guide)
       !> The better series
       type(series_t), intent(out) :: series
       !> Number of terms
@@ -198,6 +205,8 @@ contains
       real(wp), intent(in) :: fixed
       !> Most evaluations
       integer, intent(in) :: most
+      !> A series of another number of terms, whose rates are a better start than equal steps
+      type(series_t), intent(in), optional :: guide
 
       type(series_t) :: other
       integer :: i
@@ -207,6 +216,7 @@ contains
          last => log(around/samples%first_time()))
          series%rates = first + (last - first)*[(real(2*i - 1, wp), i=1, terms)]/real(2*terms, wp)
       end associate
+      if (present(guide)) series%rates = spread_rates(guide%rates, terms)
       call start_from_rates(series, samples, fixed)
       call refine(series, samples, fixed, coarse, most)
       if (size(spectrum%rates) < terms) return
@@ -219,6 +229,26 @@ contains
       call refine(other, samples, fixed, coarse, most)
       if (norm2(other%residuals) < norm2(series%residuals)) series = other
    end subroutine fit_terms
+
+   !> Rates of another number of terms with the same distribution
+   pure function spread_rates(rates, terms) result(others)
+      !> Logarithms of rates, increasing, shape (n), n >= 2
+      real(wp), intent(in) :: rates(:)
+      !> Number of terms
+      integer, intent(in) :: terms
+      !> Logarithms of their rates, shape (terms)
+      real(wp) :: others(terms)
+
+      real(wp) :: place
+      integer :: i, k
+
+      do i = 1, terms
+         ! terms stand in the middle of equal parts of the spectrum
+         place = 0.5_wp + (real(i, wp) - 0.5_wp)*real(size(rates), wp)/real(terms, wp)
+         k = max(1, min(size(rates) - 1, int(place)))
+         others(i) = rates(k) + (place - real(k, wp))*(rates(k + 1) - rates(k))
+      end do
+   end function spread_rates
 
    !> Moduli for the rates of a series
    subroutine start_from_rates(series, samples, fixed)
@@ -252,7 +282,8 @@ contains
       integer :: n, most, width, in_vain
       logical :: better
 
-      most = min(most_terms, (samples%count() - 2)/2)
+      most = min(most_terms, (samples%count() - 2)/2, few_more &
+         + ceiling(terms_per_decade*log10(samples%last_time()/samples%first_time())))
       best = huge(best)
       in_vain = 0
       n = 1
@@ -287,10 +318,17 @@ contains
          logical, intent(out) :: better
 
          real(wp) :: value
+         logical :: guided
 
          better = .false.
          if (terms < 1 .or. terms > most) return
-         call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
+         guided = allocated(series%rates)
+         if (guided) guided = size(series%rates) >= least_guide
+         if (guided) then
+            call fit_terms(trial, terms, spectrum, samples, fixed, first_patience, series)
+         else
+            call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
+         end if
          ! nearly there: worth a closer look, before longer ones are tried
          if (.not. is_good(trial) .and. maxval(abs(trial%residuals)) <= close*good_enough) &
             call refine(trial, samples, fixed, fine, last_patience)
