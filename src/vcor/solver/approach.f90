@@ -46,8 +46,10 @@ module vcor_solver_approach
       integer :: count = 0
       !> Time of its end, the largest indentation [s]
       real(wp) :: end = 0.0_wp
-      !> Part r_k = s - w_k of the indentation that has relaxed at its end [m], shape (modes)
-      real(wp), allocatable :: r(:)
+      !> w_k at its end [m], shape (modes)
+      real(wp), allocatable :: w(:)
+      !> p_k at its end [m^1.5], shape (modes)
+      real(wp), allocatable, private :: p(:)
       !> Number of stages of the panels
       integer, private :: stages = 0
       !> Their points
@@ -68,7 +70,7 @@ module vcor_solver_approach
 contains
 
    !> Add a panel
-   subroutine add(self, rule, map, scale, kernel, q, panel, start_rate, rate)
+   subroutine add(self, rule, map, scale, kernel, panel, start_rate, rate)
       !> The approach
       class(approach_t), intent(inout) :: self
       !> Collocation rule
@@ -79,8 +81,6 @@ contains
       real(wp), intent(in) :: scale
       !> The kernel
       type(exponential_sum_t), intent(in) :: kernel
-      !> Internal variables at the start of the panel [m^1.5], shape (modes)
-      real(wp), intent(in) :: q(:)
       !> The panel
       type(panel_t), intent(in) :: panel
       !> Rate of the indentation at the start [m/s]
@@ -97,8 +97,9 @@ contains
          self%stages = stages
          self%point = rule%point
          self%barycentric = rule%barycentric
-         allocate (self%stretch(4), self%r(size(kernel%rates)))
-         self%r = 0.0_wp
+         allocate (self%stretch(4), self%w(size(kernel%rates)), self%p(size(kernel%rates)))
+         self%w = 0.0_wp
+         self%p = 0.0_wp
       else if (self%count == size(self%stretch)) then
          allocate (longer(2*self%count))
          longer(:self%count) = self%stretch
@@ -112,17 +113,20 @@ contains
          stretch%s = panel%indentation
          stretch%rate(0) = start_rate
          stretch%rate(1:stages) = rate(1:stages)
-         allocate (stretch%w(0:width, size(q)), stretch%p(0:width, size(q)))
-         s = apply(map%left, panel%indentation(1:))
-         u = apply(map%left, hertz(panel%indentation(1:)))
-         do k = 1, size(q)
+         allocate (stretch%w(0:width, size(self%w)), stretch%p(0:width, size(self%p)))
+         ! from what is gained in the panel: the modes that settle at once leave no digits of s
+         s = apply(map%left, panel%indentation(1:) - panel%indentation(0))
+         u = apply(map%left, hertz(panel%indentation(1:)) - hertz(panel%indentation(0)))
+         do k = 1, size(self%w)
             decay = constant(1.0_wp) + kernel%rates(k)*scale*map%eigenvalue
-            stretch%w(0, k) = panel%indentation(0) - self%r(k)
-            stretch%p(0, k) = hertz(panel%indentation(0)) - q(k)
+            stretch%w(0, k) = self%w(k)
+            stretch%p(0, k) = self%p(k)
             stretch%w(1:, k) = apply(map%right, &
-               ratio(map%square, s - self%r(k)*map%left_one, decay))
-            stretch%p(1:, k) = apply(map%right, ratio(map%square, u - q(k)*map%left_one, decay))
-            self%r(k) = panel%indentation(stages) - stretch%w(stages, k)
+               ratio(map%square, s + self%w(k)*map%left_one, decay))
+            stretch%p(1:, k) = apply(map%right, &
+               ratio(map%square, u + self%p(k)*map%left_one, decay))
+            self%w(k) = stretch%w(stages, k)
+            self%p(k) = stretch%p(stages, k)
          end do
       end associate
    end subroutine add

@@ -291,7 +291,7 @@ contains
          if (recedes) then
             inner = max(inner, difference_inside(self%collocator, panel, coarse))
             call stretches%add(self%collocator%rule, self%collocator%rule%map(step%index), &
-               step%map_scale(), kernel, start%q, panel, velocity, &
+               step%map_scale(), kernel, panel, velocity, &
                trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
          end if
          if (ends) then

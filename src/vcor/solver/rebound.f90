@@ -64,6 +64,8 @@ contains
       ! reduce it: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
+      ! t1 at the end, extrapolated, over that at the start of the last panel
+      real(wp), parameter :: near_zero = 0.3_wp
       ! first panel over the expected rebound at accuracy 1e-8, and its power of the accuracy
       real(wp), parameter :: first_share = 0.5_wp, growth_of_first = 0.12_wp, usual = 1.0e-8_wp
       ! a panel as long as this over the rest of the rebound is to be the last one; others leave a
@@ -103,6 +105,8 @@ contains
          end if
          if (ends) then
             call close_contact(panel, taken)
+            ! rounding in a condition next to zero is no end: t1 has to get there, too
+            panel%converged = panel%converged .and. abs(panel%t1(n)) <= near_zero*start%t1
             if (panel%converged) then
                end_found = start%time + taken
                if (end_found > end_time) cycle

@@ -2,10 +2,10 @@
 !>
 !> The force is a function F(N) of the condition N = int_0^t k(t - x) s'(x) dx, known from the
 !> approach (`vcor_solver_approach`). With the matrices of the panel as in `vcor_solver_panel`,
-!> N = S s - b + eta s' with the internal variables r_k of s itself in b, and s = s_0 - R F,
+!> N = G_0 s_n + S (s - s_n) + b + eta s' with what has not relaxed of s_n in b, and s = s_0 - R F,
 !> s' = v_0 - Q F with what F does to the motion in R and Q. What is left is
 !>
-!>     N + T F(N) = S s_0 - b + eta v_0,    T = S R + eta Q
+!>     N + T F(N) = G_0 s_n + S (s_0 - s_n) + b + eta v_0,    T = S R + eta Q
 !>
 !> for the stage values of N. A dashpot gives no force once the contact shrinks, but takes part in
 !> the condition.
@@ -48,8 +48,8 @@ module vcor_solver_rebound_panel
       real(wp) :: deflection = 0.0_wp
       !> What the velocity of the plate falls behind alpha F [m/s]
       real(wp) :: drift = 0.0_wp
-      !> Internal variables r_k of the indentation [m], shape (modes)
-      real(wp), allocatable :: r(:)
+      !> What has not relaxed of the indentation, w_k [m], shape (modes)
+      real(wp), allocatable :: w(:)
       !> Memory P_j of a hereditary plate [N s], shape (modes of the plate)
       real(wp), allocatable :: p(:)
    end type rebound_start_t
@@ -79,14 +79,14 @@ contains
       rebound%indentation = start%indentation
       rebound%force = start%force
       rebound%condition = kernel%equilibrium*start%indentation &
-         + sum(kernel%moduli*(start%indentation - approach%r))
+         + sum(kernel%moduli*approach%w)
       rebound%largest_condition = rebound%condition
       rebound%t1 = start%time
       rebound%impulse = start%impulse
       rebound%second_impulse = start%second_impulse
       rebound%deflection = start%deflection
       rebound%drift = start%drift
-      allocate (rebound%r, source=approach%r)
+      allocate (rebound%w, source=approach%w)
       allocate (rebound%p, source=start%p)
    end subroutine turn_round
 
@@ -119,7 +119,7 @@ contains
       real(wp), parameter :: inner = 0.1_wp
       ! what rounding may leave of a correction
       real(wp), parameter :: noise = 1.0e-9_wp
-      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost, known_s, known_v
+      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost, known_s, known_v, gained
       real(wp), dimension(width) :: known, condition, force, slope, change
       real(wp), dimension(width, width) :: h, r, s, q, t
       type(factors_t) :: factors
@@ -144,7 +144,7 @@ contains
       panel%alpha(1:) = alpha
 
       h = scale*map%matrix
-      call sum_modes(kernel%moduli, kernel%rates, start%r, map, scale, share, b)
+      call sum_modes(kernel%moduli, kernel%rates, start%w, map, scale, share, b)
       s = function_of_h(map, share + constant(kernel%equilibrium))
 
       ! s = known_s - R F, s' = known_v - Q F
@@ -152,8 +152,11 @@ contains
          - (start%second_impulse + start%impulse*elapsed)/impact%mass
       known_v = impact%velocity - start%impulse/impact%mass
       lost = 0.0_wp
+      ! s - s_n, from which the condition is made: modes that settle at once leave no digits of s
+      gained = (impact%velocity - start%impulse/impact%mass)*elapsed
       if (frozen) then
          known_s = known_s - start%deflection + start%drift*elapsed
+         gained = gained + start%drift*elapsed
          known_v = known_v + start%drift
          do j = 1, width
             q(:, j) = h(:, j)*(1.0_wp/impact%mass - alpha_rate(j))
@@ -165,6 +168,8 @@ contains
          end do
       else
          known_s = known_s - alpha*start%impulse
+         gained = gained - (alpha - merge(memory%viscosity, impact%plate%alpha(start%time), &
+            remembers))*start%impulse
          known_v = known_v - alpha_rate*start%impulse
          q = h/impact%mass
          if (remembers) then
@@ -172,6 +177,7 @@ contains
             call sum_modes(memory%moduli, memory%rates, start%p, map, scale, share, lost)
             q = q + matmul(function_of_h(map, share), h)
             known_s = known_s - start%deflection - apply(h, lost)
+            gained = gained - apply(h, lost)
             known_v = known_v - lost
          end if
          r = matmul(h, q)
@@ -184,7 +190,7 @@ contains
          end do
       end if
       t = matmul(s, r)
-      known = apply(s, known_s) - b
+      known = kernel%equilibrium*start%indentation + apply(s, gained) + b
       if (kernel%viscosity > 0.0_wp) then
          t = t + kernel%viscosity*q
          known = known + kernel%viscosity*known_v
@@ -267,7 +273,8 @@ contains
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          panel%condition(n) = kernel%equilibrium*panel%indentation(n) &
             + kernel%viscosity*(known_v(n) - sum(q(n, :)*force)) &
-            + lags_at_end(rule, map, scale, kernel, start%r, panel%indentation)
+            + lags_at_end(rule, map, scale, kernel, -start%w, &
+            panel%indentation - start%indentation)
          if (remembers) panel%drift(n) = &
             -lags_at_end(rule, map, scale, memory, -start%p, panel%impulse - start%impulse)
       end subroutine extrapolate_to_end
@@ -314,7 +321,10 @@ contains
       integer :: n
 
       n = rule%stages
-      call advance_modes(rule, map, scale, kernel, panel%indentation(1:), start%r)
+      increment = panel%indentation(1:) - panel%indentation(0)
+      start%w = -start%w
+      call advance_modes(rule, map, scale, kernel, increment, start%w)
+      start%w = increment(n) - start%w
       if (size(start%p) > 0) then
          ! P = (1 + l H)^-1 (P_n + H F), the lag of H F behind its own modes
          increment = panel%impulse(1:) - panel%impulse(0)
