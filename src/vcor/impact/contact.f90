@@ -282,7 +282,8 @@ contains
       !> The sum, its `error` told
       type(exponential_sum_t), intent(out) :: terms
 
-      real(wp), parameter :: poor = 1.0e-7_wp
+      ! what is far from the accuracy asked for, and could be better
+      real(wp), parameter :: poor = 1.0e-7_wp, far = 30.0_wp
       type(exponential_sum_t) :: one
 
       if (allocated(self%second)) then
@@ -291,7 +292,7 @@ contains
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
          ! a spectrum with peaks that no rule resolves
-         if (terms%error > poor .and. .not. self%first%discrete) then
+         if (terms%error > max(poor, far*accuracy) .and. .not. self%first%discrete) then
             call fit_pair(self, window, one)
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
