@@ -119,7 +119,8 @@ contains
       real(wp), parameter :: inner = 0.1_wp
       ! what rounding may leave of a correction
       real(wp), parameter :: noise = 1.0e-9_wp
-      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost, known_s, known_v, gained
+      real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost
+      real(wp), dimension(width) :: known_s, known_v, gained
       real(wp), dimension(width) :: known, condition, force, slope, change
       real(wp), dimension(width, width) :: h, r, s, q, t
       type(factors_t) :: factors
