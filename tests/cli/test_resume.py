@@ -191,6 +191,8 @@ def test_in_use(long):
     """Two at work on one sweep would take each other's points."""
     process = begin(long)
     wait_for(long.folder / "out" / PART, process)
+    while done_in(long.folder / "out" / PART)[0] == 0:  # it is at work, not only begun
+        assert process.poll() is None, process.communicate()
     process.send_signal(signal.SIGSTOP)
     for more in ([], ["--resume"]):
         long.refuses("run", "case.nml", "--output", "out", *more, code=FILE, says="in use")
