@@ -1,10 +1,11 @@
 """Files that are no case: the file's fault, not a key's."""
 
 import os
+import shutil
 
 import pytest
 from cases import SLS, edit
-from program import FILE, INPUT, program
+from program import FILE, INPUT
 
 COMMANDS = ["run", "check"]
 
@@ -65,7 +66,7 @@ def test_zero_byte(vcor):
 
 
 def test_program_as_a_case(vcor):
-    vcor.refuses("run", program(), code=INPUT, says=":1: ")
+    vcor.refuses("run", shutil.which("true"), code=INPUT, says=":1: ")
 
 
 def test_not_utf8(vcor):

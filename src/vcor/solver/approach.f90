@@ -224,6 +224,8 @@ contains
       integer, parameter :: most_iterations = 60
       ! t1 over the time of the approach, and its bracket, that are nothing
       real(wp), parameter :: nothing = 1.0e-14_wp
+      ! where a relaxed fluid answers with no force any indentation may be asked for [m]
+      real(wp), parameter :: farthest = 1.0e60_wp
       real(wp) :: lower, upper, found, rate, firmness, s, lacking
       integer :: iteration
 
@@ -232,9 +234,11 @@ contains
       if (.not. condition > 0.0_wp .or. .not. (t1 > lower .and. t1 < upper)) then
          ! next to the end N = k(t) s with s = v0 t1
          firmness = kernel%equilibrium + sum(kernel%moduli*exp(-min(kernel%rates*t, 600.0_wp)))
-         t1 = condition/(firmness*velocity)
-         force = firmness*hertz(condition/firmness)
-         slope = 1.5_wp*sqrt(abs(condition/firmness))
+         s = sign(farthest, condition)
+         if (abs(condition) < farthest*firmness) s = condition/firmness
+         t1 = s/velocity
+         force = firmness*hertz(s)
+         slope = 1.5_wp*sqrt(abs(s))
          if (.not. t1 > nothing*upper) return
          t1 = min(t1, 0.99_wp*upper)
       end if
@@ -250,8 +254,13 @@ contains
          else
             upper = t1
          end if
-         if (rate > 0.0_wp) t1 = t1 + lacking/(firmness*rate)
-         if (.not. (rate > 0.0_wp .and. t1 > lower .and. t1 < upper)) t1 = 0.5_wp*(lower + upper)
+         ! Newton's step, or half of the bracket where that leads out of it
+         if (abs(lacking) < upper*firmness*rate) then
+            t1 = t1 + lacking/(firmness*rate)
+         else
+            t1 = lower
+         end if
+         if (.not. (t1 > lower .and. t1 < upper)) t1 = 0.5_wp*(lower + upper)
          if (upper - lower <= nothing*self%end) exit
       end do
    end subroutine find_force

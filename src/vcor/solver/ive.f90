@@ -262,12 +262,12 @@ contains
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
             if (shallow) force_error = 100.0_wp*force_error
-            excess = max(excess, force_error/abs(slope_at_end(self%collocator%rule, panel)) &
-               /(panel%time(n)*time_tolerance))
+            excess = max(excess, share(force_error, &
+               abs(slope_at_end(self%collocator%rule, panel))*(panel%time(n)*time_tolerance)))
          else if (maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
-            excess = max(excess, force_error/(largest_force*peak_tolerance))
+            excess = max(excess, share(force_error, largest_force*peak_tolerance))
          else
-            excess = max(excess, force_error/(largest_force*force_tolerance))
+            excess = max(excess, share(force_error, largest_force*force_tolerance))
          end if
          ! what a shorter panel did not reduce has been handed down by the panels before
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
@@ -329,6 +329,22 @@ contains
          //'of the contact: the accuracy asked for is out of reach')
 
    contains
+
+      !> Error over what it may be, at most `immense`: the forces of a fluid may be next to nothing
+      pure function share(actual, allowed)
+         !> Error, >= 0
+         real(wp), intent(in) :: actual
+         !> What it may be, >= 0
+         real(wp), intent(in) :: allowed
+         !> Ratio
+         real(wp) :: share
+
+         real(wp), parameter :: immense = 1.0e30_wp
+
+         share = 0.0_wp
+         if (actual > 0.0_wp) share = immense
+         if (actual < immense*allowed) share = actual/allowed
+      end function share
 
       !> By how much the difference of the two solutions grows over the panel
       pure function growth_of(one, other) result(difference)

@@ -45,6 +45,8 @@ contains
 
       ! a Jacobian made this close contracts the error at least tenfold
       real(wp), parameter :: close = 0.05_wp, slow = 0.1_wp
+      ! a correction over the solution that leads nowhere
+      real(wp), parameter :: wildest = 1.0e6_wp
       real(wp) :: size, rate, left
       logical :: regular
 
@@ -55,6 +57,8 @@ contains
       end if
       call jacobian%solve(residual)
       s = s + residual
+      self%failed = .not. largest(residual) < wildest*largest(s)
+      if (self%failed) return
       size = largest(residual)/largest(s)
       if (self%stale) then
          left = size*sqrt(size)

@@ -93,7 +93,7 @@ contains
       real(wp) :: theta(width)
 
       theta = max(time - self%time(0), 0.0_wp)
-      theta = 2.0_wp*theta/(self%map(1) &
+      theta = 2.0_wp*theta/max(tiny(1.0_wp), self%map(1) &
          + sqrt(max(self%map(1)**2 + 4.0_wp*self%map(2)*theta, 0.0_wp)))
    end function theta
 
@@ -264,8 +264,10 @@ contains
          if (present(to)) change = apply(to, change)
          call factors%solve(change)
          if (present(from)) change = apply(from, change)
-         s = s + change
          size = largest(change)
+         ! a guess that is no guess
+         if (.not. size <= largest(s)) return
+         s = s + change
          if (iteration > 1) then
             rate = size/last
             if (.not. rate <= slowest) return

@@ -93,7 +93,9 @@ contains
       error_sum = 0.0_wp
 
       do trial = 1, most_trials
-         rest = -start%t1/rate
+         ! while t1 stands still nothing tells when the contact ends
+         rest = huge(1.0_wp)
+         if (rate < 0.0_wp) rest = -start%t1/rate
          if (end_found > start%time) rest = end_found - start%time
          ends = length >= closing_share*rest
          taken = min(length, longest_share*rest)
@@ -121,7 +123,7 @@ contains
                   call set_rate(panel)
                   refused = huge(1.0_wp)
                   length = taken
-                  if (-start%t1/rate > closing_share*taken) length = 0.5_wp*taken
+                  if (-start%t1 < closing_share*taken*rate) length = 0.5_wp*taken
                   cycle
                end if
             end if

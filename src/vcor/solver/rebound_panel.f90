@@ -119,6 +119,8 @@ contains
       real(wp), parameter :: inner = 0.1_wp
       ! what rounding may leave of a correction
       real(wp), parameter :: noise = 1.0e-9_wp
+      ! a correction over the largest condition that leads nowhere
+      real(wp), parameter :: wildest = 1.0e3_wp
       real(wp), dimension(width) :: elapsed, alpha, alpha_rate, share, b, lost
       real(wp), dimension(width) :: known_s, known_v, gained
       real(wp), dimension(width) :: known, condition, force, slope, change
@@ -227,6 +229,7 @@ contains
          call factorise(factors, regular)
          if (.not. regular) return
          call factors%solve(change)
+         if (.not. maxval(abs(change)) <= wildest*start%largest_condition) return
          condition = condition + change
          ! the force is extrapolated by its slope, whose error is of second order
          force = force + slope*change
