@@ -26,6 +26,8 @@ module vcor_impact_contact
    !> series are one material; otherwise it is the pair
    type :: contact_modulus_t
       private
+      !> Whether it is that of two bodies in series
+      logical :: series = .false.
       !> The material, or the first of the pair
       class(material_t), allocatable :: first
       !> The second material of a pair, otherwise not allocated
@@ -97,6 +99,7 @@ contains
          if (allocated(error)) return
          allocate (self%first, source=elastic)
       else if (series) then
+         self%series = .true.
          call new_series(self%first, sphere, sphere%plane_strain_factor(), plate, &
             plate%plane_strain_factor(), error)
       else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
@@ -292,7 +295,8 @@ contains
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
          ! a spectrum with peaks that no rule resolves
-         if (terms%error > max(poor, far*accuracy) .and. .not. self%first%discrete) then
+         if (self%series .and. .not. self%first%discrete .and. terms%error > max(poor, far*accuracy)) &
+            then
             call fit_pair(self, window, one)
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
