@@ -295,8 +295,8 @@ contains
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
          ! a spectrum with peaks that no rule resolves
-         if (self%series .and. .not. self%first%discrete .and. terms%error > max(poor, far*accuracy)) &
-            then
+         if (self%series .and. .not. self%first%discrete .and. &
+             terms%error > max(poor, far*accuracy)) then
             call fit_pair(self, window, one)
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
