@@ -19,17 +19,19 @@ module vcor_numeric_settling
    !> Nodes of Gauss's rule, and the largest a for which they give all digits
    integer, parameter :: nodes = 24
    real(wp), parameter :: largest = 36.0_wp
+   !> Highest degree of a polynomial
+   integer, parameter :: highest = 8
 
    !> Rule for polynomials that are given at some points
    type :: settling_t
       private
       !> y^2 at the nodes
       real(wp) :: square(nodes) = 0.0_wp
-      !> From the values at the points to -dx/dy times the weight at the nodes, shape
-      !> (nodes, 0:n)
-      real(wp), allocatable :: slope(:, :)
+      !> From the values at the points to -dx/dy times the weight at the nodes; zero beyond the
+      !> points
+      real(wp) :: slope(nodes, 0:highest) = 0.0_wp
       !> From the values at the points to -c_k Gamma(k/2 + 1) of x = sum_k c_k y^k, shape (n, 0:n)
-      real(wp), allocatable :: power(:, :)
+      real(wp) :: power(highest, 0:highest) = 0.0_wp
    contains
       !> Sum over many exponentials
       procedure :: total
@@ -41,17 +43,17 @@ contains
    pure subroutine new_settling(self, point)
       !> The rule
       type(settling_t), intent(out) :: self
-      !> Points theta = 1 - y of the polynomials, all different, shape (0:n)
+      !> Points theta = 1 - y of the polynomials, all different, shape (0:n), n <= 8
       real(wp), intent(in) :: point(0:)
 
-      real(wp) :: y(nodes), weight(nodes), own(0:ubound(point, 1)), basis(0:ubound(point, 1))
+      real(wp), dimension(nodes) :: y, weight
+      real(wp), dimension(0:ubound(point, 1)) :: own, basis
       integer :: n, i, j, k
 
       n = ubound(point, 1)
       call gauss_nodes(y, weight)
       self%square = y**2
       own = 1.0_wp - point
-      allocate (self%slope(nodes, 0:n), self%power(n, 0:n))
       do i = 0, n
          do k = 1, nodes
             self%slope(k, i) = -weight(k)*slope_of_basis(own, i, y(k))
@@ -95,13 +97,15 @@ contains
    end function slope_of_basis
 
    !> Sum of G_k w_k at the end
-   pure function total(self, moduli, products, start, x)
+   pure function total(self, moduli, rates, scale, start, x)
       !> The rule
       class(settling_t), intent(in) :: self
       !> Moduli G_k, shape (modes)
       real(wp), intent(in) :: moduli(:)
-      !> Products a_k of rate and D, >= 0, shape (modes)
-      real(wp), intent(in) :: products(:)
+      !> Rates l_k [1/s], >= 0, shape (modes)
+      real(wp), intent(in) :: rates(:)
+      !> Duration D of the panel [s]
+      real(wp), intent(in) :: scale
       !> w_k at the start, shape (modes)
       real(wp), intent(in) :: start(:)
       !> x at the points, shape (0:n)
@@ -109,19 +113,25 @@ contains
       !> Sum
       real(wp) :: total
 
-      real(wp) :: slope(nodes), power(ubound(x, 1)), root, w
+      real(wp) :: slope(nodes), decay(nodes), power(highest), root, a, w
       integer :: i, k
 
-      slope = matmul(self%slope, x)
-      power = matmul(self%power, x)
+      slope = 0.0_wp
+      power = 0.0_wp
+      do i = 0, ubound(x, 1)
+         slope = slope + self%slope(:, i)*x(i)
+         power = power + self%power(:, i)*x(i)
+      end do
       total = 0.0_wp
       do k = 1, size(moduli)
-         if (products(k) <= largest) then
-            w = sum(slope*exp(-products(k)*self%square)) + start(k)*exp(-products(k))
+         a = rates(k)*scale
+         if (a <= largest) then
+            decay = exp(-a*self%square)
+            w = sum(slope*decay) + start(k)*exp(-a)
          else
-            root = 1.0_wp/sqrt(products(k))
+            root = 1.0_wp/sqrt(a)
             w = 0.0_wp
-            do i = size(power), 1, -1
+            do i = highest, 1, -1
                w = (w + power(i))*root
             end do
          end if

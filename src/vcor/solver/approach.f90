@@ -38,6 +38,11 @@ module vcor_solver_approach
       real(wp), allocatable :: past(:, :)
    end type stretch_t
 
+   !> exp(-this) is nothing
+   real(wp), parameter :: nothing = 42.0_wp
+   !> Modes are evaluated in blocks of this size at most, which spares an allocation
+   integer, parameter :: block = 32
+
    !> The approach
    type :: approach_t
       !> Time of its end, the largest indentation [s]
@@ -150,57 +155,71 @@ contains
       !> dN/dt1 [N/(m^0.5 s)]
       real(wp), intent(out) :: rate
 
-      ! exp(-this) is nothing
-      real(wp), parameter :: nothing = 42.0_wp
-      real(wp), dimension(0:width) :: basis, before
-      real(wp) :: past(0:2*width + 1), share(size(contact%rates))
-      real(wp) :: theta, offset, s, after, velocity
-      integer :: i, j, k, active
+      real(wp) :: basis(0:width), past(0:2*width + 1), share(block)
+      real(wp) :: theta, offset, elapsed, s, velocity
+      integer :: i, j, k, n, active
 
+      elapsed = t - max(t1, 0.0_wp)
       do active = size(contact%rates), 1, -1
-         if (contact%rates(active)*(t - max(t1, 0.0_wp)) <= nothing) exit
+         if (contact%rates(active)*elapsed <= nothing) exit
       end do
-      share(:active) = contact%moduli(:active) &
-         *exp(-contact%rates(:active)*(t - max(t1, 0.0_wp)))
-      rate = contact%equilibrium + sum(share(:active))
-      if (.not. t1 > 0.0_wp) then
-         velocity = self%stretch(1)%rate(0)
-         s = velocity*t1
-         condition = rate*s
-         force = rate*hertz(s)
-         slope = 1.5_wp*sqrt(abs(s))
-         rate = rate*velocity
-         return
-      end if
-
       do j = self%count, 2, -1
          if (t1 >= self%stretch(j)%start) exit
       end do
       associate (stretch => self%stretch(j))
-         offset = t1 - stretch%start
-         theta = 2.0_wp*offset/(stretch%map(1) &
-            + sqrt(stretch%map(1)**2 + 4.0_wp*stretch%map(2)*offset))
-         basis = 0.0_wp
-         before(0) = 1.0_wp
-         do i = 1, self%stages
-            before(i) = before(i - 1)*(theta - self%point(i - 1))
-         end do
-         after = 1.0_wp
-         do i = self%stages, 0, -1
-            basis(i) = self%barycentric(i)*before(i)*after
-            after = after*(theta - self%point(i))
-         end do
          past = 0.0_wp
-         do k = 1, active
-            past = past + share(k)*stretch%past(:, k)
+         rate = contact%equilibrium
+         do k = 0, active - 1, block
+            n = min(block, active - k)
+            share(:n) = contact%moduli(k + 1:k + n)*exp(-contact%rates(k + 1:k + n)*elapsed)
+            do i = 1, n
+               rate = rate + share(i)
+               past = past + share(i)*stretch%past(:, k + i)
+            end do
          end do
-         s = sum(basis*stretch%s)
-         condition = contact%equilibrium*s + sum(basis*past(:width))
-         force = contact%equilibrium*hertz(s) + sum(basis*past(width + 1:))
-         slope = 1.5_wp*sqrt(abs(s))
-         rate = rate*sum(basis*stretch%rate)
+         if (t1 > 0.0_wp) then
+            offset = t1 - stretch%start
+            theta = 2.0_wp*offset/(stretch%map(1) &
+               + sqrt(stretch%map(1)**2 + 4.0_wp*stretch%map(2)*offset))
+            basis = basis_at(self, theta)
+            s = sum(basis*stretch%s)
+            condition = contact%equilibrium*s + sum(basis*past(:width))
+            force = contact%equilibrium*hertz(s) + sum(basis*past(width + 1:))
+            velocity = sum(basis*stretch%rate)
+         else
+            velocity = stretch%rate(0)
+            s = velocity*t1
+            condition = rate*s
+            force = rate*hertz(s)
+         end if
       end associate
+      slope = 1.5_wp*sqrt(abs(s))
+      rate = rate*velocity
    end subroutine evaluate
+
+   !> Lagrange's polynomials at a position in a panel
+   pure function basis_at(self, theta) result(basis)
+      !> The approach
+      class(approach_t), intent(in) :: self
+      !> Position
+      real(wp), intent(in) :: theta
+      !> Their values
+      real(wp) :: basis(0:width)
+
+      real(wp) :: before, after
+      integer :: i
+
+      before = 1.0_wp
+      do i = 0, width
+         basis(i) = self%barycentric(i)*before
+         before = before*(theta - self%point(i))
+      end do
+      after = 1.0_wp
+      do i = self%stages, 0, -1
+         basis(i) = basis(i)*after
+         after = after*(theta - self%point(i))
+      end do
+   end function basis_at
 
    !> The t1 at which the condition has changed by a given amount, next to a known one: N is about a
    !> parabola with its vertex at the end of the approach, where s' is zero

@@ -19,6 +19,7 @@
 module vcor_solver_rebound_panel
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : closing, collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_numeric_pairs, only : constant, times
@@ -194,7 +195,7 @@ contains
    end subroutine set_up
 
    !> What forces in the panel take of the condition: T F
-   pure function response(map, equations, viscosity, force) result(taken)
+   pure function response(map, equations, viscosity, force, numbers) result(taken)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Equations of the panel
@@ -203,33 +204,38 @@ contains
       real(wp), intent(in) :: viscosity
       !> Forces at the stages [N]
       real(wp), intent(in) :: force(width)
+      !> What `left` makes of them
+      real(wp), intent(in) :: numbers(width)
       !> Condition [N/m^0.5]
       real(wp) :: taken(width)
 
       associate (e => equations)
-         taken = apply(map%right, times(map%square, e%stiffness, lost_indentation(map, e, force)))
-         if (e%damped) taken = taken + viscosity*lost_velocity(map, e, force)
+         taken = apply(map%right, &
+            times(map%square, e%stiffness, lost_indentation(map, e, force, numbers)))
+         if (e%damped) taken = taken + viscosity*lost_velocity(map, e, force, numbers)
       end associate
    end function response
 
-   !> What forces in the panel take of the indentation, R F, in the numbers of the pairs
-   pure function lost_indentation(map, equations, force) result(x)
+   !> What forces in the panel take of the indentation, R F, as `left` makes it of the stages
+   pure function lost_indentation(map, equations, force, numbers) result(x)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Equations of the panel
       type(equations_t), intent(in) :: equations
       !> Forces at the stages [N]
       real(wp), intent(in) :: force(width)
-      !> Indentation [m], as `left` makes it of the stages
+      !> What `left` makes of them
+      real(wp), intent(in) :: numbers(width)
+      !> Indentation [m]
       real(wp) :: x(width)
 
       real(wp) :: impulse(width)
 
       associate (e => equations)
          if (e%frozen) then
-            x = times(map%square, e%lambda, apply(map%left, lost_velocity(map, e, force)))
+            x = times(map%square, e%lambda, apply(map%left, lost_velocity(map, e, force, numbers)))
          else
-            impulse = times(map%square, e%lambda, apply(map%left, force))
+            impulse = times(map%square, e%lambda, numbers)
             x = times(map%square, e%lambda, times(map%square, e%mobility, impulse))
             if (e%varies) then
                x = x + apply(map%left, e%alpha*apply(map%right, impulse))
@@ -242,13 +248,15 @@ contains
 
    !> What forces in the panel take of the rate of the indentation, Q F. A frozen plate has
    !> U' = alpha F - int alpha' F dt, others U' = alpha F + alpha' I and what they remember
-   pure function lost_velocity(map, equations, force) result(velocity)
+   pure function lost_velocity(map, equations, force, numbers) result(velocity)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Equations of the panel
       type(equations_t), intent(in) :: equations
       !> Forces at the stages [N]
       real(wp), intent(in) :: force(width)
+      !> What `left` makes of them
+      real(wp), intent(in) :: numbers(width)
       !> Velocity [m/s]
       real(wp) :: velocity(width)
 
@@ -256,7 +264,7 @@ contains
 
       associate (e => equations)
          velocity = e%alpha*force
-         impulse = times(map%square, e%lambda, apply(map%left, force))
+         impulse = times(map%square, e%lambda, numbers)
          velocity = velocity + apply(map%right, times(map%square, e%mobility, impulse))
          if (e%frozen) then
             velocity = velocity - apply(map%right, &
@@ -299,12 +307,14 @@ contains
             slope(i), rate(i))
       end do
       associate (viscosity => modes%contact%viscosity)
-         change = equations%condition - condition - response(map, equations, viscosity, force)
+         change = equations%condition - condition &
+            - response(map, equations, viscosity, force, apply(map%left, force))
          if (newton%stale) then
             do j = 1, width
                unit = 0.0_wp
                unit(j) = slope(j)
-               factors%matrix(:, j) = response(map, equations, viscosity, unit)
+               factors%matrix(:, j) = response(map, equations, viscosity, unit, &
+                  slope(j)*map%left(:, j))
                if (equations%closes) factors%matrix(n, j) = 0.0_wp
                factors%matrix(j, j) = factors%matrix(j, j) + 1.0_wp
             end do
@@ -329,16 +339,17 @@ contains
       !> The panel
       type(rebound_panel_t), intent(inout) :: panel
 
-      real(wp), dimension(width) :: impulse, x
+      real(wp), dimension(width) :: numbers, impulse, x
 
       associate (e => equations, force => panel%force(1:))
-         impulse = times(map%square, e%lambda, apply(map%left, force))
+         numbers = apply(map%left, force)
+         impulse = times(map%square, e%lambda, numbers)
          panel%impulse(1:) = panel%impulse(0) + apply(map%right, impulse)
          panel%second_impulse(1:) = panel%second_impulse(0) &
             + panel%impulse(0)*(panel%time(1:) - panel%time(0)) &
             + apply(map%right, times(map%square, e%lambda, impulse))
          panel%indentation(1:) = panel%indentation(0) + e%gain &
-            - apply(map%right, lost_indentation(map, e, force))
+            - apply(map%right, lost_indentation(map, e, force, numbers))
          if (e%frozen) then
             x = times(map%square, e%lambda, apply(map%left, e%alpha_rate*force))
             panel%drift(1:) = panel%drift(0) + apply(map%right, x)
@@ -392,7 +403,10 @@ contains
       panel%converged = newton%converged
       if (.not. panel%converged) return
       call integrate(map, equations, panel)
-      if (equations%closes) call settle(rule, scale, impact, modes, start, panel)
+      if (equations%closes) then
+         call settle_drift(rule, scale, modes%plate, start, panel)
+         call settle_condition(rule, scale, impact, modes%contact, start, panel)
+      end if
    end subroutine solve_rebound_panel
 
    !> Solve the last panel and find its duration, at the end of which N is zero
@@ -441,7 +455,8 @@ contains
             call correct(map, equations, modes, approach, tolerance, newton, factors, panel)
             if (newton%failed) return
             call integrate(map, equations, panel)
-            call settle(rule, length, impact, modes, start, panel)
+            if (equations%damped) call settle_drift(rule, length, modes%plate, start, panel)
+            call settle_condition(rule, length, impact, modes%contact, start, panel)
             ! N is linear in (1 - theta)^2 at the end
             rate = -0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))/length
             if (.not. rate < 0.0_wp) return
@@ -454,40 +469,57 @@ contains
                ! rounding in the condition of stiff internal variables ends it, too
                .or. iteration > 3 .and. abs(correction) <= noticeable*length &
                .and. abs(correction) >= 0.25_wp*abs(last_correction))
-            if (panel%converged) return
+            if (panel%converged) exit
             length = length + correction
             ! the motion does not know how long the panel is
             elapsed = length*rule%node*(map%slope + map%bend*rule%node)
             panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time + elapsed), beyond))
          end do
       end associate
+      if (panel%converged) call settle_drift(rule, length, modes%plate, start, panel)
    end subroutine close_contact
 
    !> Where time stands still at the end of the panel, collocation there says nothing about internal
-   !> variables that settle in it: what they make of condition and drift is integrated. The end has
-   !> no weight in the integrals of the panel
-   pure subroutine settle(rule, scale, impact, modes, start, panel)
+   !> variables that settle in it: what they make of the drift of a hereditary plate is integrated
+   pure subroutine settle_drift(rule, scale, plate, start, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> Memory of the plate
+      type(exponential_sum_t), intent(in) :: plate
+      !> State at the start
+      type(rebound_start_t), intent(in) :: start
+      !> The panel
+      type(rebound_panel_t), intent(inout) :: panel
+
+      associate (n => rule%stages)
+         if (size(plate%rates) > 0) panel%drift(n) = -rule%settling%total(plate%moduli, &
+            plate%rates, scale, start%p, panel%impulse(:n))
+      end associate
+   end subroutine settle_drift
+
+   !> The same for the condition. The end has no weight in the integrals of the panel
+   pure subroutine settle_condition(rule, scale, impact, contact, start, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Modes of contact and plate
-      type(modes_t), intent(in) :: modes
+      !> Kernel of the contact
+      type(exponential_sum_t), intent(in) :: contact
       !> State at the start
       type(rebound_start_t), intent(in) :: start
-      !> The panel
+      !> The panel, its drift known
       type(rebound_panel_t), intent(inout) :: panel
 
       real(wp) :: velocity
 
-      associate (n => rule%stages, contact => modes%contact, plate => modes%plate)
-         if (size(plate%rates) > 0) panel%drift(n) = -rule%settling%total(plate%moduli, &
-            scale*plate%rates, start%p, panel%impulse(:n))
+      associate (n => rule%stages)
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
-            + rule%settling%total(contact%moduli, scale*contact%rates, start%w, &
+            + rule%settling%total(contact%moduli, contact%rates, scale, start%w, &
             panel%indentation(:n))
          if (contact%viscosity > 0.0_wp) then
             velocity = impact%velocity - panel%impulse(n)/impact%mass
@@ -500,7 +532,7 @@ contains
             panel%condition(n) = panel%condition(n) + contact%viscosity*velocity
          end if
       end associate
-   end subroutine settle
+   end subroutine settle_condition
 
    !> Make the end of a panel the start of the next one
    pure subroutine advance_rebound(rule, map, scale, modes, panel, start)
