@@ -47,9 +47,9 @@ module vcor_solver_ive
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
-   !> First step over the usual one where the contact recedes: the rebound needs the approach
-   !> between the ends of its panels, too
-   real(wp), parameter :: receding_reach = 0.8_wp
+   !> First step over the usual one where the contact recedes and the kernel does not relax within
+   !> it: two panels make the approach
+   real(wp), parameter :: receding_reach = 1.1_wp
    !> What the rebound feels of the difference of the two solutions between the ends of the panels,
    !> measured
    real(wp), parameter :: share_of_inner = 5.0e-3_wp
@@ -201,9 +201,10 @@ contains
       coarse_start = start
       recedes = impact%law == law_receding
       inner = 0.0_wp
-      step%reach = merge(short_step, long_step, any(modes%contact%rates*time_scale > fast)) &
-         *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
+      step%reach = long_step
       if (recedes) step%reach = receding_reach*step%reach
+      if (any(modes%contact%rates*time_scale > fast)) step%reach = short_step
+      step%reach = step%reach*(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%rule, impact, trajectory)
