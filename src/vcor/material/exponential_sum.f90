@@ -37,8 +37,9 @@ contains
       type(exponential_sum_t) :: product
 
       product%equilibrium = factor*self%equilibrium
-      allocate (product%moduli, source=factor*self%moduli)
-      allocate (product%rates, source=self%rates)
+      allocate (product%moduli(size(self%moduli)), product%rates(size(self%rates)))
+      product%moduli(:) = factor*self%moduli
+      product%rates(:) = self%rates
       product%viscosity = factor*self%viscosity
       product%error = self%error
    end function scaled

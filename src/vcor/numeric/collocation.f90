@@ -57,6 +57,8 @@ module vcor_numeric_collocation
       real(wp) :: right(width, width) = 0.0_wp
       !> From the stages to the numbers of the pairs
       real(wp) :: left(width, width) = 0.0_wp
+      !> Row of `right` for the last stage
+      real(wp) :: last(width) = 0.0_wp
       !> V^-1 applied to a vector of ones
       real(wp) :: left_one(width) = 0.0_wp
    end type panel_map_t
@@ -238,6 +240,7 @@ contains
          map%left(m, 1:n) = inverse(other, :)
       end if
       map%left_one = sum(map%left, 2)
+      map%last = map%right(n, :)
 
    contains
 

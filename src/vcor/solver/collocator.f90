@@ -278,10 +278,10 @@ contains
          ! q is what u - q does not lack of u
          u = hertz(panel%indentation(1:))
          start%q = -start%q
-         call advance_lags(rule, map, step%map_scale(), modes%contact, u, start%q)
+         call advance_lags(map, step%map_scale(), modes%contact, u, start%q)
          start%q = u(rule%stages) - start%q
          impulse = panel%impulse(1:) - start%impulse
-         call advance_lags(rule, map, step%map_scale(), modes%plate, impulse, start%p)
+         call advance_lags(map, step%map_scale(), modes%plate, impulse, start%p)
          call move_to_end(panel, start)
       end associate
    end subroutine advance

@@ -9,7 +9,7 @@ module vcor_solver_modes
    use vcor_impact_problem, only : hertz
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
+   use vcor_numeric_collocation, only : pairs, panel_map_t, width
    use vcor_numeric_linear, only : apply
    use vcor_numeric_pairs, only : constant, ratio, times
    implicit none
@@ -118,9 +118,7 @@ contains
 
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
    !> stage for x = 0 at the start
-   pure subroutine advance_lags(rule, map, scale, terms, x, p)
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
+   pure subroutine advance_lags(map, scale, terms, x, p)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
@@ -162,7 +160,7 @@ contains
          !> The shares, all of a first
          real(wp) :: share(width)
 
-         associate (last => map%right(rule%stages, :))
+         associate (last => map%last)
             share(:pairs) = last(:pairs)*x(:pairs) + last(pairs + 1:)*x(pairs + 1:)
             share(pairs + 1:) = map%square*last(:pairs)*x(pairs + 1:) + last(pairs + 1:)*x(:pairs)
          end associate

@@ -410,11 +410,11 @@ contains
 
       associate (n => panel%stages)
          x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
-         panel%force(n) = sum(map%right(n, :)*x)
+         panel%force(n) = sum(map%last*x)
          x = times(map%square, equations%lambda, x)
-         panel%impulse(n) = equations%free_impulse + sum(map%right(n, :)*x)
+         panel%impulse(n) = equations%free_impulse + sum(map%last*x)
          x = times(map%square, equations%lambda, x)
-         panel%second_impulse(n) = equations%free_second_impulse(n) + sum(map%right(n, :)*x)
+         panel%second_impulse(n) = equations%free_second_impulse(n) + sum(map%last*x)
       end associate
    end subroutine integrate_to_end
 

@@ -552,9 +552,9 @@ contains
       real(wp) :: increment(width)
 
       increment = panel%indentation(1:) - panel%indentation(0)
-      call advance_lags(rule, map, scale, modes%contact, increment, start%w)
+      call advance_lags(map, scale, modes%contact, increment, start%w)
       increment = panel%impulse(1:) - panel%impulse(0)
-      call advance_lags(rule, map, scale, modes%plate, increment, start%p)
+      call advance_lags(map, scale, modes%plate, increment, start%p)
       call move_to_end(panel, start)
       start%condition = panel%condition(rule%stages)
       start%t1 = panel%t1(rule%stages)
