@@ -340,8 +340,9 @@ contains
       call note(writer, status, "make the dimensions of '"//column%name//"'")
       if (allocated(writer%fault)) return
       creation = writer%dataset_creation
-      if (writer%compresses .and. pays(column) .and. .not. writer%is_plain) &
-         & call prepare_compression(writer, backwards, creation)
+      if (writer%compresses .and. .not. writer%is_plain) then
+         if (pays(column)) call prepare_compression(writer, backwards, creation)
+      end if
       call h5dcreate_f(group, link_name(column%name), file_type, space, dataset, status, &
          & dcpl_id=creation)
       call note(writer, status, "create '"//column%name//"'")
@@ -374,20 +375,23 @@ contains
       !> Whether it is
       logical :: pays
       integer(c_int64_t), parameter :: bits = 0_c_int64_t
-      integer :: n, repeated
+      integer :: i, n, repeated
 
       pays = .false.
       n = column%length
       if (n <= longest_plain) return
+      repeated = 0
       select case (column%kind)
       case (real_column)
          ! as bits: NaN is not equal to itself
-         repeated = count(transfer(column%reals(2:), bits, n - 1) &
-            & == transfer(column%reals(:n-1), bits, n - 1))
+         do i = 2, n
+            if (transfer(column%reals(i), bits) == transfer(column%reals(i-1), bits)) &
+               & repeated = repeated + 1
+         end do
       case (integer_column)
          repeated = count(column%integers(2:) == column%integers(:n-1))
       case default
-         repeated = 0
+         continue
       end select
       pays = repeated > n/2
    end function pays
