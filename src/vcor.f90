@@ -23,7 +23,6 @@ module vcor
       write_stdout, write_terminal
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
-   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
       read_identity, remarks_of
    use vcor_io_moduli_tables, only : moduli_tables
@@ -115,7 +114,7 @@ module vcor
    public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
-   public :: reader_t, open_hdf5, remark_t, write_summary
+   public :: remark_t, write_summary
    public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound

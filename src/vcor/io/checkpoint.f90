@@ -19,7 +19,8 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : move_file, quoted_path, remove_file
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
+   use vcor_io_hdf5_dataset, only : find_place, read_numbers
+   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
    use vcor_io_number, only : integer_text
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_lockf, c_pwrite, &
@@ -175,44 +176,63 @@ contains
       !> What it should be about; nothing but this is read without it
       type(identity_t), intent(in), optional :: expected
 
-      type(reader_t) :: reader
-      type(error_t), allocatable :: trouble
       integer, allocatable :: checks(:)
-      integer :: i, n
+      integer :: i
       logical :: is_ours
 
-      n = 0
-      call open_hdf5(reader, path, error)
+      call read_identity(path, identity, is_ours, error)
       if (allocated(error)) return
-      call read_identity(reader, identity, is_ours)
       if (.not. is_ours .or. identity%part%points == 0) then
          call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
-      else if (present(expected)) then
-         call check_same(path, identity, expected, error)
-         if (.not. allocated(error) .and. (identity%part%number /= expected%part%number .or. &
-            identity%part%points /= expected%part%points)) call raise(error, error_file, &
-            quoted_path(path)//' has other points of the sweep')
-         n = size(summary%status)
-         if (.not. allocated(error)) then
-            do i = 1, size(quantities)
-               call reader%get_reals(dataset(i), summary%values(i)%at)
-            end do
-            allocate (checks(n))
-            call reader%get_integers(dataset(steps_column), summary%steps)
-            call reader%get_integers(dataset(status_column), summary%status)
-            call reader%get_integers(dataset(check_column), checks)
-         end if
+         return
       end if
-      call reader%close(trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
-      if (allocated(error) .or. .not. allocated(checks)) return
-      do i = 1, n
+      if (.not. present(expected)) return
+      call check_same(path, identity, expected, error)
+      if (allocated(error)) return
+      if (identity%part%number /= expected%part%number &
+         .or. identity%part%points /= expected%part%points) then
+         call raise(error, error_file, quoted_path(path)//' has other points of the sweep')
+         return
+      end if
+      allocate (checks(size(summary%status)))
+      call read_columns(path, summary, checks, error)
+      if (allocated(error)) return
+      do i = 1, size(checks)
          if (checks(i) == check_of(summary, i)) cycle
          summary%status(i) = point_pending
          summary%steps(i) = 0
          call forget(summary, i)
       end do
    end subroutine read_points
+
+   !> Read all columns of a file
+   subroutine read_columns(path, summary, checks, error)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> Outcomes, with room for all of its points
+      type(summary_t), intent(inout) :: summary
+      !> Check sums, shape (points)
+      integer, intent(inout) :: checks(:)
+      !> Error of code `error_file` if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(reader_t) :: reader
+      integer :: i
+
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      do i = 1, size(quantities)
+         call read_numbers(reader, dataset(i), summary%values(i)%at, error)
+         if (allocated(error)) exit
+      end do
+      if (.not. allocated(error)) &
+         call read_numbers(reader, dataset(steps_column), summary%steps, error)
+      if (.not. allocated(error)) &
+         call read_numbers(reader, dataset(status_column), summary%status, error)
+      if (.not. allocated(error)) call read_numbers(reader, dataset(check_column), checks, error)
+      call close_hdf5(reader)
+      if (allocated(error)) error%code = error_file
+   end subroutine read_columns
 
    !> Take the numbers of a point away
    pure subroutine forget(summary, place)
@@ -265,10 +285,14 @@ contains
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, columns
-         self%offsets(i) = reader%place(dataset(i))
+         call find_place(reader, dataset(i), self%offsets(i), error)
+         if (allocated(error)) exit
       end do
-      call reader%close(error)
-      if (allocated(error)) return
+      call close_hdf5(reader)
+      if (allocated(error)) then
+         error%code = error_file
+         return
+      end if
 
       self%stream = c_fopen(c_text(path), c_text('rb+'))
       reason = last_errno()
