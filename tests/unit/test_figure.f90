@@ -4,9 +4,10 @@ program test_figure
    use vcor_error, only : error_file, error_input, error_t
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
+   use vcor_io_column, only : integer_column, real_column, text_column, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, plain
-   use vcor_io_file, only : join_path, make_directory, quoted_path, write_file
+   use vcor_io_file, only : write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_gnuplot_axis, only : in_quotes, number
    use vcor_io_hdf5, only : named_table_t, write_hdf5
@@ -14,9 +15,10 @@ program test_figure
    use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
       open_hdf5, reader_t, text_attribute
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_getpid
-   use vcor_io_table, only : add_column, add_dimension, add_fact, integer_column, new_table, &
-      real_column, table_t, text_column, text_value
+   use vcor_io_table, only : add_fact, new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension
    use vcor_kinds, only : wp
    use vcor_numeric_contour, only : find_loops, loop_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &

@@ -17,16 +17,18 @@ module vcor_io_checkpoint
       c_ptr, c_size_t
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : move_file, quoted_path, remove_file
+   use vcor_io_file, only : move_file, remove_file
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_hdf5_dataset, only : find_place, read_numbers
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : quoted_path
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_lockf, c_pwrite, &
       c_text, errno_interrupted, errno_locked, last_errno, lock_alone, system_reason
    use vcor_io_results, only : unit_of
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
    use vcor_study_grid, only : grid_t
    use vcor_study_partition, only : part_t

@@ -19,10 +19,11 @@
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
-   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
+   use vcor_io_column, only : column_t
    use vcor_io_csv_rows, only : field, new_row_writer, row_writer_t
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
    use vcor_io_number, only : real_text
-   use vcor_io_table, only : check_table, column_t, row_count, table_t
+   use vcor_io_table, only : check_table, row_count, table_t
    implicit none
    private
 

@@ -39,10 +39,11 @@ module vcor_io_hdf5
       & h5t_std_i32le, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : quoted_path, write_file
+   use vcor_io_column, only : column_t, integer_column, real_column, text_value
+   use vcor_io_file, only : write_file
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
-   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
-      & text_value
+   use vcor_io_path, only : quoted_path
+   use vcor_io_table, only : check_table, table_t
    use vcor_kinds, only : wp
    implicit none
    private

@@ -10,9 +10,9 @@ module vcor_io_hdf5_dataset
       & h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string_f, &
       & h5tclose_f, h5tget_class_f, hid_t
    use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_io_column, only : column_t, integer_column, real_column, text_column
    use vcor_io_hdf5_reader, only : reader_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths, read_texts
-   use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp
    use vcor_study_text, only : integer_text, shortened
    implicit none

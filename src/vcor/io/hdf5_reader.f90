@@ -20,9 +20,9 @@ module vcor_io_hdf5_reader
       & h5iget_type_f, h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, h5sclose_f, h5t_native_double, &
       & hid_t, hsize_t
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_io_file, only : directory_exists, file_exists
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths
+   use vcor_io_path, only : directory_exists, file_exists
    use vcor_kinds, only : wp
    use vcor_study_text, only : printable, shortened
    implicit none

@@ -4,10 +4,10 @@ module vcor_io_identity
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_data_file, only : data_file
-   use vcor_io_file, only : quoted_path
    use vcor_io_hdf5, only : remark_t
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t, text_attribute
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_study_case, only : case_t
    use vcor_study_partition, only : new_part, part_t

@@ -1,7 +1,8 @@
 !> Outcomes and trajectories as tables
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
    use vcor_study_grid, only : grid_t
    use vcor_study_quantity, only : history_quantities, quantities, status_label
