@@ -12,8 +12,8 @@ module vcor
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
-   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint, &
-      read_points
+   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint
+   use vcor_io_checkpoint_points, only : read_points
    use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path

@@ -79,8 +79,8 @@ contains
       end if
       call h5sclose_f(space, ignored)
       call h5dclose_f(set, ignored)
-      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
-         & //"' cannot be read as numbers or text")
+      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"// &
+         & shortened(path)//"' cannot be read as numbers or text")
    end subroutine read_dataset
 
    !> Read the values of a dataset

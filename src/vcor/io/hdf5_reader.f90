@@ -91,8 +91,8 @@ contains
             & //"file of results")
       else
          call h5fopen_f(trim(filename), h5f_acc_rdonly_f, reader%file, status)
-         if (status < 0) call raise(error, error_file, reader%path//": HDF5 cannot open it: it is " &
-            & //"damaged, or being written")
+         if (status < 0) call raise(error, error_file, reader%path//": HDF5 cannot open it: it " &
+            & //"is damaged, or being written")
       end if
       if (allocated(error)) call end_hdf5(reader%handler)
    end subroutine open_hdf5
