@@ -171,16 +171,18 @@ contains
    end subroutine discard
 
    !> Write a whole file at once
-   subroutine write_file(path, text, error)
+   subroutine write_file(path, text, error, temporary)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: path
       !> What to write, byte by byte: nothing is added
       character(len=*), intent(in) :: text
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until it is complete, as in `create_file`
+      character(len=*), intent(in), optional :: temporary
       type(output_file_t) :: file
 
-      call create_file(file, path, error)
+      call create_file(file, path, error, temporary)
       if (allocated(error)) return
       call put(file, text, error)
       if (allocated(error)) return

@@ -49,7 +49,7 @@ contains
    !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error, remarks, plain, more)
+   subroutine write_hdf5(filename, summary, history, error, remarks, plain, more, temporary)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -64,6 +64,8 @@ contains
       logical, intent(in), optional :: plain
       !> Further tables, each with its name
       type(named_table_t), intent(in), optional :: more(:)
+      !> Its name until it is complete, as in `create_file`
+      character(len=*), intent(in), optional :: temporary
       type(writer_t) :: writer
       type(handler_t) :: handler
       integer :: i
@@ -83,7 +85,7 @@ contains
       if (.not. allocated(writer%fault)) then
          if (present(plain)) writer%is_plain = plain
          call build(writer, summary, history, remarks, more)
-         call write_image(writer, filename, error)
+         call write_image(writer, filename, error, temporary)
          call close_image(writer)
          call end_hdf5(handler)
       end if

@@ -189,13 +189,15 @@ contains
    end subroutine put_number
 
    !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
-   subroutine write_image(writer, filename, error)
+   subroutine write_image(writer, filename, error, temporary)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until it is complete, as in `create_file`
+      character(len=*), intent(in), optional :: temporary
       character(len=1, kind=c_char), pointer :: bytes(:)
       type(c_ptr) :: handle
       type(c_ptr), pointer :: place
@@ -220,11 +222,11 @@ contains
          return
       end if
       call c_f_pointer(place, bytes, [length])
-      call write_bytes(length, bytes, writer, filename, error)
+      call write_bytes(length, bytes, writer, filename, error, temporary)
    end subroutine write_image
 
    !> Write bytes as one text
-   subroutine write_bytes(length, bytes, writer, filename, error)
+   subroutine write_bytes(length, bytes, writer, filename, error, temporary)
       !> Number of bytes
       integer(size_t), intent(in) :: length
       !> The bytes
@@ -235,9 +237,11 @@ contains
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Its name until it is complete, as in `create_file`
+      character(len=*), intent(in), optional :: temporary
 
       if (bytes(1)(:len(signature)) == signature) then
-         call write_file(filename, bytes(1), error)
+         call write_file(filename, bytes(1), error, temporary)
       else
          call note(writer, -1, "give the bytes of the file")
       end if
