@@ -6,7 +6,7 @@
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : lines_in, split, start_of, take_line
-   use vcor_io_file, only : join_path
+   use vcor_io_path, only : join_path
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp

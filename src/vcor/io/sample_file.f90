@@ -15,9 +15,9 @@ module vcor_io_sample_file
    use vcor_kinds, only : wp
    use vcor_material_fit_samples, only : samples_t
    use vcor_material_table, only : largest_value, smallest_value
-   use vcor_study_keys, only : contains_word
    use vcor_study_text, only : integer_text, printable, real_text, shortened
    use vcor_study_units, only : time_units, unit_size
+   use vcor_study_words, only : contains_word
    implicit none
    private
 
