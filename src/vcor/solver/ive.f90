@@ -27,7 +27,8 @@ module vcor_solver_ive
    use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_rebound, only : follow_rebound
-   use vcor_solver_rebound_panel, only : rebound_start_t, turn_round
+   use vcor_solver_rebound_equations, only : rebound_start_t
+   use vcor_solver_rebound_panel, only : turn_round
    use vcor_solver_recording, only : append, begin
    use vcor_solver_step, only : step_t, step_to
    use vcor_solver_type, only : solver_t
@@ -134,7 +135,8 @@ contains
          window = growth*window
       end do
       if (trajectory%status == contact_separated) &
-         trajectory%cor_error = trajectory%cor_error + sensitivity*(modes%contact%error + modes%plate%error)
+         trajectory%cor_error = trajectory%cor_error &
+         + sensitivity*(modes%contact%error + modes%plate%error)
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error

@@ -50,8 +50,9 @@ module vcor_solver_modes
 
 contains
 
-   !> What the modes of a sum make of a function in the panel, and of their own past, as functions of
-   !> the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c of sum_k G_k q_k (1 + l_k H)^-1 1
+   !> What the modes of a sum make of a function in the panel, and of their own past, as functions
+   !> of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c with
+   !> c 1 = sum_k G_k q_k (1 + l_k H)^-1 1
    pure subroutine resolve(terms, q, map, lambda, response, past)
       !> The sum
       type(exponential_sum_t), intent(in) :: terms

@@ -14,8 +14,8 @@ module vcor_solver_rebound
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : collocator_t
    use vcor_solver_modes, only : modes_t
-   use vcor_solver_rebound_panel, only : advance_rebound, close_contact, rebound_panel_t, &
-      rebound_start_t, solve_rebound_panel
+   use vcor_solver_rebound_equations, only : rebound_panel_t, rebound_start_t
+   use vcor_solver_rebound_panel, only : advance_rebound, close_contact, solve_rebound_panel
    use vcor_solver_recording, only : record
    implicit none
    private
@@ -73,8 +73,8 @@ contains
       ! growth of t1 that is rounding, over the time of the approach, and its rate
       real(wp), parameter :: noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
-      real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end, end_found
-      real(wp) :: error_now, error_sum, alpha_rate, tolerance
+      real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end
+      real(wp) :: end_found, error_now, error_sum, alpha_rate, tolerance
       integer :: trial, n, kind, closings
       logical :: ends, last, inherited
 
