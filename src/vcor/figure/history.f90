@@ -222,10 +222,9 @@ contains
                text = ''
                if (ieee_is_finite(courses(i)%hysteresis_energy)) &
                   text = 'energy loss '//energy(courses(i)%hysteresis_energy)
-               if (size(courses) > 1 .and. text /= '') then
-                  text = fitted(legends(i)%text, column_room - len(text) - 2)//', '//text
-               else if (size(courses) > 1) then
-                  text = fitted(legends(i)%text, column_room)
+               if (size(courses) > 1 .or. legends(i)%given) then
+                  if (text /= '') text = ', '//text
+                  text = fitted(legends(i)%text, column_room - len(text))//text
                end if
                call add_curve(panel, length_factor*courses(i)%indentation(:n), &
                   force_factor*courses(i)%force(:n), line_solid, i, text)

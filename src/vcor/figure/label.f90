@@ -11,7 +11,7 @@ module vcor_figure_label
 contains
 
    !> A unit with a prefix, such that the largest of some numbers has one to three digits before the
-   !> point, or none
+   !> point, or none; a power of ten for pure numbers that are all very small
    pure subroutine suit_unit(unit, largest, factor, name)
       !> SI unit
       character(len=*), intent(in) :: unit
@@ -22,8 +22,12 @@ contains
       !> The unit with its prefix
       character(len=:), allocatable, intent(out) :: name
 
-      character(len=*), parameter :: prefixes(-4:3) = [character(len=2) :: 'p', 'n', 'µ', 'm', '', &
-         'k', 'M', 'G']
+      character(len=*), parameter :: prefixes(-6:3) = [character(len=2) :: 'a', 'f', 'p', 'n', &
+         'µ', 'm', '', 'k', 'M', 'G']
+      ! Pure numbers below are told in powers of ten, frequencies from there on with a prefix: their
+      ! digits would not find room beside an axis
+      real(wp), parameter :: small = 1.0e-3_wp, many = 1.0e5_wp
+      character(len=12) :: exponent
       integer :: power
       real(wp) :: magnitude
 
@@ -38,6 +42,15 @@ contains
       case ('kg')
          magnitude = 1000.0_wp*largest
          name = 'g'
+      case ('rad/s')
+         if (largest < many) return
+      case ('', '1')
+         if (largest >= small) return
+         power = floor(log10(largest*1.001_wp))
+         factor = 10.0_wp**(-power)
+         write (exponent, '(i0)') power
+         name = '10^{'//trim(exponent)//'}'
+         return
       case default
          return
       end select

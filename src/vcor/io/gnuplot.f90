@@ -77,7 +77,7 @@ contains
       if (size(figure%panels) > 1) call buffer%add("set multiplot"//nl)
       first = 0
       do i = 1, size(figure%panels)
-         call put_panel(buffer, figure%panels(i), frames(i), first)
+         call put_panel(buffer, figure%panels(i), frames(i), width, first)
          first = first + figure%panels(i)%curve_count
       end do
       if (size(figure%panels) > 1) call buffer%add(nl//"unset multiplot"//nl)
@@ -147,13 +147,15 @@ contains
    end function terminal
 
    !> One panel
-   subroutine put_panel(buffer, panel, frame, first)
+   subroutine put_panel(buffer, panel, frame, width, first)
       !> The script
       type(buffer_t), intent(inout) :: buffer
       !> The panel
       type(panel_t), intent(in) :: panel
       !> Its place
       type(frame_t), intent(in) :: frame
+      !> Width of the figure [cm]
+      real(wp), intent(in) :: width
       !> Number of curves in the panels before
       integer, intent(in) :: first
       integer :: i
@@ -170,11 +172,11 @@ contains
       else
          call buffer%add("unset key"//nl)
       end if
-      call put_axis(buffer, "x", panel%x, across(panel))
-      call put_axis(buffer, "y", panel%y, along(panel, .false.))
+      call put_axis(buffer, "x", panel%x, across(panel), (frame%right - frame%left)*width)
+      call put_axis(buffer, "y", panel%y, along(panel, .false.), 0.0_wp)
       if (panel%right%label /= "") then
          call buffer%add("set ytics nomirror"//nl//"set y2tics scale 0.6"//nl)
-         call put_axis(buffer, "y2", panel%right, along(panel, .true.))
+         call put_axis(buffer, "y2", panel%right, along(panel, .true.), 0.0_wp)
       else
          call buffer%add("set ytics mirror"//nl//"unset y2tics"//nl//"unset y2label"//nl)
       end if
