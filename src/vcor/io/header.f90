@@ -334,7 +334,7 @@ contains
          //"the "//what//", expected one of "//join_words(known)//near)
    end subroutine check_unit
 
-   !> The unit that somebody may have meant, in upper and lower case as it should be
+   !> The unit that somebody may have meant
    pure function nearest_unit(unit, known) result(near)
       !> The unit
       character(len=*), intent(in) :: unit
@@ -343,14 +343,10 @@ contains
       !> The nearest one; empty when none is near, or the unit is one of something else
       character(len=:), allocatable :: near
 
-      integer :: place
-
       near = ""
       if (len_trim(unit) < 2 .or. contains_word(time_units//" "//frequency_units//" " &
          //modulus_units, unit)) return
-      near = nearest_name(trim(unit), lower(known))
-      place = index(" "//lower(known)//" ", " "//near//" ")
-      if (near /= "") near = known(place:place + len(near) - 1)
+      near = nearest_name(trim(unit), known)
    end function nearest_unit
 
 end module vcor_io_header
