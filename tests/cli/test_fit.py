@@ -121,6 +121,16 @@ def test_loss_tangent(vcor, name):
     is_the_sls(fitted(vcor, text, "--poisson-ratio", "0.4"))
 
 
+@pytest.mark.parametrize("head", ["T,t,E\nC,s,MPa\n", "T,t [s],E [MPa]\n"])
+def test_temperature_is_no_time(vcor, head):
+    """As other tools write it, in a column beside the others."""
+    text = columns(20 + 0 * TIMES, TIMES, sls(TIMES) / 1e6, head=head)
+    is_the_sls(fitted(vcor, text))
+    is_the_sls(fitted(vcor, columns(TIMES, sls(TIMES), head="T [s],E [Pa]\n")))
+    vcor.write(columns(TIMES, sls(TIMES), head="T,E\n"), "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:1", says=["'T'", "t or time"])
+
+
 def test_units_by_option(vcor):
     is_the_sls(fitted(vcor, columns(TIMES * 1e3, sls(TIMES) / 1e6), "--units", "ms,MPa"))
     omega = np.logspace(1, 5, 41)

@@ -55,7 +55,7 @@ module vcor_io_header
 
    !> One column
    type :: column_name_t
-      !> Its name, lower case, `_` for blanks
+      !> Its name, lower case but for T, `_` for blanks
       character(len=longest_word) :: name = ""
       !> Its unit; blank where it is not told
       character(len=longest_word) :: unit = ""
@@ -227,6 +227,8 @@ contains
       do i = 1, len(name)
          if (name(i:i) == " ") name(i:i) = "_"
       end do
+      ! T is the temperature
+      if (name == "t" .and. index(cell, "T") == 1) name = "T"
       column%name = name
    end subroutine take_apart
 
