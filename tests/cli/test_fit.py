@@ -218,6 +218,21 @@ def test_modulus_the_wrong_way(vcor, text):
     vcor.refuses("fit", "data.csv", code=INPUT, says="does not fall with time")
 
 
+@pytest.mark.parametrize("seed", [9, 10, 11, 13, 123, 159])
+def test_as_many_terms_as_there_are(vcor, seed):
+    """In spite of noise: a step of the search that stops short must not end it. With these seeds it
+    was ended by three terms."""
+    random = np.random.default_rng(seed)
+    taus = 10 ** (-5 + np.cumsum(random.uniform(0.7, 1.5, 4)))
+    moduli = 10 ** random.uniform(6, 7.5, 4)
+    times = np.logspace(np.log10(taus[0]) - 1, np.log10(taus[-1]) + 1, 80)
+    modulus = 3.0e6 + np.exp(-times[:, None] / taus) @ moduli
+    vcor.write(columns(times, modulus * (1 + 0.004 * random.standard_normal(80))), "data.csv")
+    out = vcor.succeeds("fit", "data.csv")
+    assert len(group(out)["times"]) == 4
+    assert float(re.search(r"rms misfit +(\S+) %", out)[1]) < 0.4
+
+
 def test_too_many_terms(vcor):
     vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
     vcor.refuses("fit", "data.csv", "--terms", "4", code=NUMERICAL, says="--terms")
