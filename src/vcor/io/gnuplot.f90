@@ -67,6 +67,8 @@ contains
          call buffer%add(terminal(formats(first:first+2), width, height)//nl)
          first = first + 4
       end do
+      ! Rows of a legend are nearer to each other in the other formats
+      call buffer%add("row = GPVAL_TERM eq 'svg' ? 1 : 1.25"//nl)
       call buffer%add("set output here."//in_quotes(name//"."//format)//nl//nl)
       do i = 1, style_count
          call buffer%add("set style line "//integer_text(i)//" lc rgb '"//colours(i) &
@@ -167,8 +169,8 @@ contains
          & //"set tmargin at screen "//short(frame%top)//nl)
       if (title_count(panel) > 0) then
          call buffer%add("set key at screen "//short(frame%legend_left)//", screen " &
-            & //short(frame%legend_top)//" left top vertical Left reverse samplen 2.2 maxrows " &
-            & //integer_text(frame%legend_rows)//nl)
+            & //short(frame%legend_top)//" left top vertical Left reverse samplen 2.2 spacing " &
+            & //"row maxrows "//integer_text(frame%legend_rows)//nl)
       else
          call buffer%add("unset key"//nl)
       end if
