@@ -101,7 +101,7 @@ def test_history(vcor, results, plot):
 def test_history_without_ghost_lines(plot):
     figure = plot("sls.h5", "--kind", "history")
     assert plots(figure) == 6
-    assert "COR 0.432" in texts(figure)
+    assert "COR 0.4320" in texts(figure)
 
 
 def test_several_histories(plot):

@@ -6,7 +6,7 @@ module vcor_figure_label
    private
 
    public :: suit_unit, with_unit, quantity_label, parameter_label, number_text, is_geometric
-   public :: largest_of
+   public :: largest_of, rounded_text
 
 contains
 
@@ -134,6 +134,26 @@ contains
       !> Its text
       character(len=:), allocatable :: text
 
+      integer :: mark
+
+      text = rounded_text(value, digits)
+      mark = index(text, '×')
+      if (mark == 0) then
+         text = without_zeros(text)
+      else
+         text = without_zeros(text(:mark - 1))//text(mark:)
+      end if
+   end function number_text
+
+   !> A number that was rounded to so many significant digits
+   pure function rounded_text(value, digits) result(text)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Digits, 1 .. 15
+      integer, intent(in) :: digits
+      !> Its text
+      character(len=:), allocatable :: text
+
       character(len=40) :: buffer
       character(len=12) :: form
       integer :: decimals, power
@@ -152,14 +172,15 @@ contains
       if (power < -4 .or. power > max(5, digits)) then
          text = trim(adjustl(buffer(:34)))
          write (form, '(i0)') power
-         text = without_zeros(text)//'×10^{'//trim(form)//'}'
+         text = text//'×10^{'//trim(form)//'}'
          return
       end if
       decimals = max(0, digits - 1 - power)
       write (form, '(a, i0, a)') '(f40.', decimals, ')'
       write (buffer, form) value
-      text = without_zeros(trim(adjustl(buffer)))
-   end function number_text
+      text = trim(adjustl(buffer))
+      if (text(len(text):) == '.') text = text(:len(text) - 1)
+   end function rounded_text
 
    !> A number without zeros after the last digit that counts
    pure function without_zeros(number) result(text)
