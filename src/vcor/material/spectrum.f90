@@ -21,7 +21,7 @@ module vcor_material_spectrum
    implicit none
    private
 
-   public :: sum_of_spectrum, sum_of_resolved_spectrum
+   public :: sum_of_spectrum, sum_of_resolved_spectrum, rule_for_spectrum
 
    !> Where exp(-l t) becomes 1 - l t + .., as l times the window
    real(wp), parameter :: slow = 0.5_wp
@@ -34,7 +34,7 @@ module vcor_material_spectrum
 contains
 
    !> Sum of exponentials for a material with a continuous spectrum
-   pure subroutine sum_of_spectrum(material, window, accuracy, terms, peak, distance, refinement)
+   pure subroutine sum_of_spectrum(material, window, accuracy, terms, peak, distance)
       !> The material; its rubbery modulus is E_0
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s], > 0
@@ -47,11 +47,33 @@ contains
       real(wp), intent(in), optional :: peak
       !> Distance d of the poles from the peak in ln(l), > 0
       real(wp), intent(in), optional :: distance
-      !> Number of times that the step is halved and the runs begin farther out; absent: 0
-      integer, intent(in), optional :: refinement
 
-      ! how much farther out, as ln of the rate
-      real(wp), parameter :: farther_below = 3.0_wp, farther_above = 5.0_wp
+      call rule_for_spectrum(material, window, accuracy, terms, peak, distance)
+      terms%error = largest_error(material, window, terms)
+   end subroutine sum_of_spectrum
+
+   !> The rule by itself, its error not known
+   pure subroutine rule_for_spectrum(material, window, accuracy, terms, peak, distance, finer, &
+                                     below, above)
+      !> The material; its rubbery modulus is E_0
+      class(material_t), intent(in) :: material
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+      !> ln of the rate [1/s] at which the spectrum has its peak; absent: it is a power of the rate
+      real(wp), intent(in), optional :: peak
+      !> Distance d of the poles from the peak in ln(l), > 0
+      real(wp), intent(in), optional :: distance
+      !> What the step is divided by; absent: 1
+      real(wp), intent(in), optional :: finer
+      !> How much farther out the run to slow rates begins, as ln of the rate; absent: 0
+      real(wp), intent(in), optional :: below
+      !> The same for the run to fast rates
+      real(wp), intent(in), optional :: above
+
       ! beyond all rates that can be computed with
       real(wp), parameter :: farthest = 650.0_wp, fewest_digits = 1.0e-2_wp
       real(wp) :: h, x, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift
@@ -61,11 +83,9 @@ contains
       h = -pi**2/log(min(accuracy, fewest_digits))
       turn_low = log(slow)
       turn_high = -log(min(accuracy, fewest_digits))/3.0_wp
-      if (present(refinement)) then
-         h = h*0.5_wp**refinement
-         turn_low = turn_low - farther_below*real(refinement, wp)
-         turn_high = turn_high + farther_above*real(refinement, wp)
-      end if
+      if (present(finer)) h = h/finer
+      if (present(below)) turn_low = turn_low - below
+      if (present(above)) turn_high = turn_high + above
       shift = -log(window)
       c = 0.0_wp
       d = 1.0_wp
@@ -110,8 +130,7 @@ contains
       end do
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
-      terms%error = largest_error(material, window, terms)
-   end subroutine sum_of_spectrum
+   end subroutine rule_for_spectrum
 
    !> Sum of exponentials for a material whose spectrum has its features where it pleases: refined
    !> until the modulus and its integral are met. Where that does not happen the best sum is
@@ -131,13 +150,17 @@ contains
       ! numerical inversion leaves that much
       real(wp), parameter :: share_of_integral = 0.3_wp, rounding = 3.0e-12_wp
       real(wp), parameter :: part(2) = [1.0_wp, 0.01_wp]
+      ! how much farther out the runs begin with each refinement, as ln of the rate
+      real(wp), parameter :: below = 3.0_wp, above = 5.0_wp
       type(exponential_sum_t) :: sum_now
       real(wp) :: expected, found
       integer :: i, refinement
 
       terms%error = huge(1.0_wp)
       do refinement = 0, most_refinements
-         call sum_of_spectrum(material, window, accuracy, sum_now, refinement=refinement)
+         call rule_for_spectrum(material, window, accuracy, sum_now, finer=2.0_wp**refinement, &
+            below=below*real(refinement, wp), above=above*real(refinement, wp))
+         sum_now%error = largest_error(material, window, sum_now)
          do i = 1, size(part)
             expected = material%integral(part(i)*window)
             found = sum_now%viscosity + sum_now%equilibrium*part(i)*window + sum(sum_now%moduli &

@@ -17,6 +17,7 @@ module vcor_numeric_collocation
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgeev, dgesv
    use vcor_numeric_legendre, only : legendre, radau_nodes
+   use vcor_numeric_settling, only : new_settling, settling_t
    implicit none
    private
 
@@ -76,6 +77,8 @@ module vcor_numeric_collocation
       real(wp) :: end_weight(0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
+      !> What settles at the end of the map `closing`
+      type(settling_t) :: settling
       !> Maps by index n >= 0, for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
       !> `closing` for one in sqrt(time left), shape (closing:)
       type(panel_map_t), allocatable :: map(:)
@@ -115,6 +118,7 @@ contains
       self%end_weight(0:stages - 1) = barycentric_weights(self%point(0:stages - 1)) &
          /(1.0_wp - self%point(0:stages - 1))
       self%end_weight = self%end_weight/sum(self%end_weight)
+      call new_settling(self%settling, self%point(0:stages))
       call integration_matrix(self%node(1:stages), matrix, error)
       if (allocated(error)) return
       self%weight(1:stages) = matrix(stages, :)

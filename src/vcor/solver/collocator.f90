@@ -4,12 +4,11 @@ module vcor_solver_collocator
    use vcor_error, only : error_t
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, new_collocation, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_solver_general_panel, only : solve_general_panel
-   use vcor_solver_modes, only : advance_modes, start_t
-   use vcor_solver_panel, only : improve_panel, panel_t, solve_near_panel, &
+   use vcor_solver_modes, only : advance_lags, modes_t, start_t
+   use vcor_solver_panel, only : improve_panel, move_to_end, panel_t, solve_near_panel, &
       solve_panel
    use vcor_solver_step, only : step_t
    implicit none
@@ -120,15 +119,15 @@ contains
    end subroutine guess
 
    !> Solve the panel of a step
-   pure subroutine solve_step(self, step, impact, kernel, start, panel, factors)
+   pure subroutine solve_step(self, step, impact, modes, start, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
       type(step_t), intent(in) :: step
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel; on entry its indentation is guessed
@@ -138,15 +137,15 @@ contains
 
       if (is_general(self, impact)) then
          call solve_general_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
-            kernel, self%second_coefficient, start, panel, self%tolerance)
+            modes, self%second_coefficient, start, panel, self%tolerance)
       else
-         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, kernel, &
+         call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, modes, &
             start, self%tolerance, panel, factors)
       end if
    end subroutine solve_step
 
    !> Solve a panel next to one that has been solved: of the same start and a somewhat other length
-   pure subroutine solve_near_step(self, step, impact, kernel, start, tolerance, panel, &
+   pure subroutine solve_near_step(self, step, impact, modes, start, tolerance, panel, &
                                    factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
@@ -154,8 +153,8 @@ contains
       type(step_t), intent(in) :: step
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation over its largest value
@@ -170,23 +169,23 @@ contains
       if (.not. is_general(self, impact)) then
          guessed = panel
          call solve_near_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
-            kernel, start, tolerance, factors, panel)
+            modes, start, tolerance, factors, panel)
          if (panel%converged) return
          panel = guessed
       end if
-      call solve_step(self, step, impact, kernel, start, panel, factors)
+      call solve_step(self, step, impact, modes, start, panel, factors)
    end subroutine solve_near_step
 
    !> Improve a guess at a panel to an accuracy that is less than that of the solution
-   pure subroutine improve(self, step, impact, kernel, start, tolerance, panel)
+   pure subroutine improve(self, step, impact, modes, start, tolerance, panel)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
       type(step_t), intent(in) :: step
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation over its largest value
@@ -200,23 +199,23 @@ contains
       if (.not. is_general(self, impact)) then
          guessed = panel
          call improve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
-            kernel, start, tolerance, panel)
+            modes, start, tolerance, panel)
          if (panel%converged) return
          panel = guessed
       end if
-      call solve_step(self, step, impact, kernel, start, panel, factors)
+      call solve_step(self, step, impact, modes, start, panel, factors)
    end subroutine improve
 
    !> Solve the companion of a panel, from its own start
-   pure subroutine accompany(self, step, impact, kernel, start, panel, factors, companion)
+   pure subroutine accompany(self, step, impact, modes, start, panel, factors, companion)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
       type(step_t), intent(in) :: step
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State of the companion at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
@@ -234,16 +233,16 @@ contains
          companion%indentation(1:) = self%to_coarse(:, 0)*panel%indentation(0) &
             + apply(self%to_coarse(:, 1:), panel%indentation(1:))
          if (is_general(self, impact)) then
-            call solve_general_panel(rule, map, scale, impact, kernel, self%second_coefficient, &
+            call solve_general_panel(rule, map, scale, impact, modes, self%second_coefficient, &
                start, companion, self%tolerance)
             return
          end if
-         call solve_near_panel(rule, map, scale, impact, kernel, start, self%coarse_tolerance, &
+         call solve_near_panel(rule, map, scale, impact, modes, start, self%coarse_tolerance, &
             factors, companion, self%from_coarse, self%to_coarse(:, 1:))
          if (companion%converged) return
          companion%indentation(1:) = self%to_coarse(:, 0)*panel%indentation(0) &
             + apply(self%to_coarse(:, 1:), panel%indentation(1:))
-         call solve_panel(rule, map, scale, impact, kernel, start, self%tolerance, companion, &
+         call solve_panel(rule, map, scale, impact, modes, start, self%tolerance, companion, &
             own_factors)
       end associate
    end subroutine accompany
@@ -261,38 +260,29 @@ contains
    end function is_general
 
    !> Make the end of a panel the start of the next one
-   subroutine advance(rule, step, kernel, panel, start)
+   subroutine advance(rule, step, modes, panel, start)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Step
       type(step_t), intent(in) :: step
-      !> The kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> The panel
       type(panel_t), intent(in) :: panel
       !> State at the start of the panel, on return that at its end
       type(start_t), intent(inout) :: start
 
-      real(wp) :: increment(width)
+      real(wp) :: u(width), impulse(width)
 
-      associate (n => rule%stages)
-         call advance_modes(rule, rule%map(step%index), step%map_scale(), kernel, &
-            hertz(panel%indentation(1:)), start%q)
-         if (size(start%p) > 0) then
-            ! P = (1 + l H)^-1 (P_n + H F), the lag of H F behind its own modes
-            increment = panel%impulse(1:) - start%impulse
-            start%p = -start%p
-            call advance_modes(rule, rule%map(step%index), step%map_scale(), start%plate, &
-               increment, start%p)
-            start%p = increment(n) - start%p
-         end if
-         start%time = panel%time(n)
-         start%indentation = panel%indentation(n)
-         start%force = panel%force(n)
-         start%impulse = panel%impulse(n)
-         start%second_impulse = panel%second_impulse(n)
-         start%deflection = panel%deflection(n)
-         start%drift = panel%drift(n)
+      associate (map => rule%map(step%index))
+         ! q is what u - q does not lack of u
+         u = hertz(panel%indentation(1:))
+         start%q = -start%q
+         call advance_lags(rule, map, step%map_scale(), modes%contact, u, start%q)
+         start%q = u(rule%stages) - start%q
+         impulse = panel%impulse(1:) - start%impulse
+         call advance_lags(rule, map, step%map_scale(), modes%plate, impulse, start%p)
+         call move_to_end(panel, start)
       end associate
    end subroutine advance
 

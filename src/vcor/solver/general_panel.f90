@@ -17,18 +17,18 @@ module vcor_solver_general_panel
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_numeric_pairs, only : constant, ratio, times
-   use vcor_solver_modes, only : resolve_modes, resolve_plate, start_t
+   use vcor_solver_modes, only : modes_t, resolve, resolve_contact, start_t
    use vcor_solver_newton, only : most_iterations, newton_t
    use vcor_solver_panel, only : panel_t
    implicit none
    private
 
-   public :: solve_general_panel, function_of_h
+   public :: solve_general_panel
 
 contains
 
    !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_general_panel(rule, map, scale, impact, kernel, coefficient, start, &
+   pure subroutine solve_general_panel(rule, map, scale, impact, modes, coefficient, start, &
                                        panel, tolerance)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
@@ -38,8 +38,8 @@ contains
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp), intent(in) :: coefficient
       !> State at the start
@@ -53,7 +53,7 @@ contains
       real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
       real(wp), dimension(width) :: impulse, drift, share, past
       real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian, plate
-      real(wp) :: lag(width, width, size(kernel%rates))
+      real(wp) :: lag(width, width, size(modes%contact%rates))
       integer :: n, iteration, j, k
       type(newton_t) :: newton
       type(factors_t) :: factors
@@ -68,20 +68,20 @@ contains
       time = start%time + elapsed
       alpha = 0.0_wp
       alpha(1:n) = impact%plate%alpha(time(1:n))
-      if (remembers) alpha(1:n) = start%plate%viscosity
+      if (remembers) alpha(1:n) = modes%plate%viscosity
       alpha_rate = 0.0_wp
       if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(time(1:n))
 
       h = scale*map%matrix
       lambda = scale*map%eigenvalue
-      call resolve_modes(kernel, start, map%square, lambda, stiffness, memory)
+      call resolve_contact(modes%contact, start, map, lambda, stiffness, memory)
       s_matrix = function_of_h(map, stiffness)
-      b = apply(map%right, times(map%square, memory, map%left_one))
+      b = apply(map%right, memory)
       lag = 0.0_wp
       if (abs(coefficient) > 0.0_wp) then
-         do k = 1, size(kernel%rates)
+         do k = 1, size(lag, 3)
             lag(:, :, k) = function_of_h(map, ratio(map%square, constant(1.0_wp), &
-               constant(1.0_wp) + kernel%rates(k)*lambda))
+               constant(1.0_wp) + modes%contact%rates(k)*lambda))
          end do
       end if
 
@@ -100,7 +100,7 @@ contains
          end do
          if (remembers) then
             ! U has V with V' = R H F + c beside alpha I
-            call resolve_plate(start, map, lambda, share, memory)
+            call resolve(modes%plate, start%p, map, lambda, share, memory)
             past = apply(map%right, memory)
             plate = matmul(function_of_h(map, share), h)
             response = response + matmul(h, plate)
@@ -115,7 +115,7 @@ contains
          u = hertz(s)
          force = matmul(s_matrix, u) - b
          slope = s_matrix
-         call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
+         call add_second_term(modes%contact, coefficient, u, start%q, lag, force, slope)
          change = right - s - matmul(response, force)
          if (newton%stale) then
             jacobian = matmul(response, slope)
@@ -134,7 +134,7 @@ contains
       u = hertz(s)
       force = matmul(s_matrix, u) - b
       slope = s_matrix
-      call add_second_term(kernel, coefficient, u, start%q, lag, force, slope)
+      call add_second_term(modes%contact, coefficient, u, start%q, lag, force, slope)
       impulse = start%impulse + matmul(h, force)
       drift = start%drift + matmul(h, alpha_rate*force)
       if (remembers) drift = -past - apply(plate, force)

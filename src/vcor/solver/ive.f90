@@ -18,14 +18,13 @@ module vcor_solver_ive
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
       new_collocator, plate_velocity, relative_velocity, solve_step
    use vcor_solver_landing, only : first_without_force, land, land_on_largest
-   use vcor_solver_modes, only : start_t
+   use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_rebound, only : follow_rebound
    use vcor_solver_rebound_panel, only : rebound_start_t, turn_round
@@ -43,6 +42,8 @@ module vcor_solver_ive
    !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
    !> and better, and at most
    real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.05_wp
+   !> The same of the memory of a plate, over that: the plate takes a part of the motion only
+   real(wp), parameter :: plate_share = 10.0_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -107,7 +108,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
-      type(exponential_sum_t) :: kernel, memory
+      type(modes_t) :: modes
       real(wp) :: share, end_time, window, time_scale
       logical :: complete
 
@@ -117,44 +118,38 @@ contains
       if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
       window = margin*hertz_contact_time*time_scale
       do
-         call impact%kernel_exponentials(window, share*self%accuracy, kernel)
+         call impact%kernel_exponentials(window, share*self%accuracy, modes%contact)
          if (impact%plate%hereditary()) then
-            call impact%plate%memory_exponentials(window, share*self%accuracy, memory)
-         else
-            memory = no_memory()
+            call impact%plate%memory_exponentials(window, plate_share*share*self%accuracy, &
+               modes%plate)
+         else if (.not. allocated(modes%plate%rates)) then
+            allocate (modes%plate%moduli(0), modes%plate%rates(0))
          end if
          ! a sum that is the kernel itself holds for ever, ghost lines beyond the end included
-         if (.not. (kernel%error > 0.0_wp .or. impact%plate%hereditary())) window = huge(1.0_wp)
-         call follow(self, impact, kernel, memory, time_scale, end_time, window, trajectory, &
-            complete, error)
+         if (.not. (modes%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
+            window = huge(1.0_wp)
+         call follow(self, impact, modes, time_scale, end_time, window, trajectory, complete, &
+            error)
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
       if (trajectory%status == contact_separated) &
-         trajectory%cor_error = trajectory%cor_error + sensitivity*(kernel%error + memory%error)
-      if (kernel%error > 0.0_wp) trajectory%kernel_terms = size(kernel%rates)
-      trajectory%kernel_error = kernel%error
+         trajectory%cor_error = trajectory%cor_error + sensitivity*(modes%contact%error + modes%plate%error)
+      associate (contact => modes%contact)
+         if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
+         trajectory%kernel_error = contact%error
+      end associate
    end subroutine solve
 
-   !> A memory without terms
-   pure function no_memory() result(memory)
-      !> The memory
-      type(exponential_sum_t) :: memory
-
-      allocate (memory%moduli(0), memory%rates(0))
-   end function no_memory
-
    !> Follow the contact with the kernel as a sum of exponentials
-   subroutine follow(self, impact, kernel, memory, time_scale, patience, window, trajectory, &
+   subroutine follow(self, impact, modes, time_scale, patience, window, trajectory, &
                      complete, error)
       !> The solver
       class(ive_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
-      !> Memory of a hereditary plate
-      type(exponential_sum_t), intent(in) :: memory
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> Time scale of the contact [s]
       real(wp), intent(in) :: time_scale
       !> End of the computation if the contact lasts [s]
@@ -196,22 +191,21 @@ contains
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
       accuracy = self%accuracy
-      if (any(kernel%moduli < 0.0_wp)) accuracy = max(accuracy, sensitivity*kernel%error)
+      if (any(modes%contact%moduli < 0.0_wp)) &
+         accuracy = max(accuracy, sensitivity*modes%contact%error)
       complete = .true.
       end_time = patience
-      allocate (start%q(size(kernel%rates)))
+      allocate (start%q(size(modes%contact%rates)), start%p(size(modes%plate%rates)))
       start%q = 0.0_wp
-      allocate (start%p(size(memory%rates)))
       start%p = 0.0_wp
-      start%plate = memory
       coarse_start = start
       recedes = impact%law == law_receding
       inner = 0.0_wp
-      step%reach = merge(short_step, long_step, any(kernel%rates*time_scale > fast)) &
+      step%reach = merge(short_step, long_step, any(modes%contact%rates*time_scale > fast)) &
          *(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
       if (recedes) step%reach = receding_reach*step%reach
       step%length = step%reach
-      if (kernel%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
+      if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%rule, impact, trajectory)
       largest_force = 0.0_wp
       refused = huge(1.0_wp)
@@ -227,18 +221,18 @@ contains
          last = start%time + step%duration() >= end_time
          if (last) step = step_to(start%time, end_time - start%time)
          call guess(self%collocator%rule, impact, previous, start, step, panel)
-         call solve_step(self%collocator, step, impact, kernel, start, panel, factors)
+         call solve_step(self%collocator, step, impact, modes, start, panel, factors)
          turns = .false.
          if (panel%converged .and. recedes) then
             velocity = trajectory%state(col_velocity, trajectory%final)
             turns = is_turning(impact, panel)
-            if (turns) call land_on_largest(self%collocator, impact, kernel, start, velocity, &
+            if (turns) call land_on_largest(self%collocator, impact, modes, start, velocity, &
                step, panel, factors)
          end if
          ends = .false.
          if (panel%converged .and. trajectory%status /= contact_separated .and. .not. recedes) &
             ends = first_without_force(panel) > 0
-         if (ends) call land(self%collocator, impact, kernel, start, accuracy, step, panel, &
+         if (ends) call land(self%collocator, impact, modes, start, accuracy, step, panel, &
             factors)
          if (.not. panel%converged) then
             call step%shorten(0.5_wp*step%duration())
@@ -246,7 +240,7 @@ contains
          end if
          previous = panel
 
-         call accompany(self%collocator, step, impact, kernel, coarse_start, panel, factors, &
+         call accompany(self%collocator, step, impact, modes, coarse_start, panel, factors, &
             coarse)
          if (.not. coarse%converged) then
             call step%shorten(0.5_wp*step%duration())
@@ -256,6 +250,8 @@ contains
          excess = (growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity) &
             + growth_of(panel%indentation, coarse%indentation)/(impact%velocity*time_scale)) &
             /(panel_share*accuracy)
+         if (impact%plate%drifts()) excess = excess + growth_of(panel%drift, coarse%drift) &
+            /(impact%velocity*panel_share*accuracy)
          force_error = max(0.0_wp, min(growth_of(panel%force, coarse%force), &
             abs(panel%force(n) - coarse%force(n - 1))) - rounding*largest_force)
          if (ends) then
@@ -285,13 +281,13 @@ contains
                trajectory%steps + 1, elastic)
             call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, recorded)
          end if
-         call append(self%collocator, impact, kernel, start, recorded, accuracy, trajectory)
+         call append(self%collocator, impact, modes, start, recorded, accuracy, trajectory)
          complete = .not. panel%time(n) > window
          if (.not. complete) return
          if (recedes) then
             inner = max(inner, difference_inside(self%collocator, panel, coarse))
             call stretches%add(self%collocator%rule, self%collocator%rule%map(step%index), &
-               step%map_scale(), kernel, panel, velocity, &
+               step%map_scale(), modes%contact, panel, velocity, &
                trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
          end if
          if (ends) then
@@ -309,19 +305,18 @@ contains
             return
          end if
 
-         call advance(self%collocator%rule, step, kernel, panel, start)
+         call advance(self%collocator%rule, step, modes, panel, start)
          if (turns) then
-            call turn_round(kernel, start, stretches, rebound)
-            call follow_rebound([self%collocator%rule, self%collocator%coarse], impact, kernel, &
-               memory, stretches, rebound, accuracy, self%collocator%coarse_tolerance, end_time, &
-               trajectory, error)
+            call turn_round(modes, start, stretches, rebound)
+            call follow_rebound(self%collocator, impact, modes, stretches, rebound, accuracy, &
+               end_time, trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
             trajectory%cor_error = trajectory%cor_error + share_of_inner*inner &
                /(impact%velocity*time_scale) + (abs(panel%impulse(n) - coarse%impulse(n - 1)) &
                /impact%mass + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
             return
          end if
-         call advance(self%collocator%coarse, step, kernel, coarse, coarse_start)
+         call advance(self%collocator%coarse, step, modes, coarse, coarse_start)
          call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp))), &
             most_steps)
       end do

@@ -2,12 +2,11 @@
 module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : width
    use vcor_numeric_linear, only : factors_t
    use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, relative_velocity, &
       solve_near_step
-   use vcor_solver_modes, only : start_t
+   use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
@@ -37,13 +36,13 @@ contains
    !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by
    !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
    !> power of the time since the maximum
-   subroutine land_on_largest(self, impact, kernel, start, start_velocity, step, panel, factors)
+   subroutine land_on_largest(self, impact, modes, start, start_velocity, step, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Rate of the indentation there [m/s]
@@ -71,17 +70,17 @@ contains
       theta = self%rule%crossing(velocity, self%rule%point(j - 1), self%rule%point(j), closest)
       step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
       call guess(self%rule, impact, longer, start, step, panel)
-      call solve_near_step(self, step, impact, kernel, start, self%tolerance, panel, factors)
+      call solve_near_step(self, step, impact, modes, start, self%tolerance, panel, factors)
    end subroutine land_on_largest
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
-   subroutine land(self, impact, kernel, start, accuracy, step, panel, factors)
+   subroutine land(self, impact, modes, start, accuracy, step, panel, factors)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Wanted accuracy of the coefficient of restitution
@@ -119,7 +118,9 @@ contains
       ! kappa u(s) = M with s and M linear in time, the slope of M from the polynomials of the panel
       ! and then from the last two iterations
       tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
-      kappa = kernel%equilibrium + sum(kernel%moduli/(1.0_wp + kernel%rates*step%duration()))
+      associate (contact => modes%contact)
+         kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*step%duration()))
+      end associate
       memory_rate = slope_at(kappa*hertz(crossing%indentation) - crossing%force) &
          /(crossing%map(1) + 2.0_wp*crossing%map(2)*theta)
       old_memory = 0.0_wp
@@ -130,7 +131,7 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_near_step(self, step, impact, kernel, start, &
+         call solve_near_step(self, step, impact, modes, start, &
             merge(tolerance, self%near_tolerance, iteration == 1), panel, factors)
          if (.not. panel%converged) return
          last = panel

@@ -15,7 +15,16 @@ module vcor_solver_modes
    implicit none
    private
 
-   public :: start_t, resolve_modes, resolve_plate, advance_modes, sum_modes, lags_at_end
+   public :: modes_t, start_t, resolve, resolve_contact, advance_lags
+
+   !> Sums of exponentials that the hereditary integrals of an impact are made of
+   type :: modes_t
+      !> Kernel of the contact [N/m^1.5]
+      type(exponential_sum_t) :: contact
+      !> Memory of a hereditary plate: weights w_j and rates l_j, alpha as its viscosity [m/(N s)];
+      !> without terms for other plates
+      type(exponential_sum_t) :: plate
+   end type modes_t
 
    !> State at the start of a panel
    type :: start_t
@@ -37,124 +46,110 @@ module vcor_solver_modes
       real(wp), allocatable :: q(:)
       !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate)
       real(wp), allocatable :: p(:)
-      !> Weights w_j and rates l_j of that memory, without alpha; of no length without one
-      type(exponential_sum_t) :: plate
    end type start_t
 
 contains
 
-   !> S and b of F = S u - b as functions of the eigenvalues of H
-   pure subroutine resolve_modes(kernel, start, square, lambda, stiffness, memory)
-      !> The kernel
-      type(exponential_sum_t), intent(in) :: kernel
-      !> State at the start of the panel
-      type(start_t), intent(in) :: start
-      !> j^2 of the pairs
-      real(wp), intent(in) :: square(pairs)
+   !> What the modes of a sum make of a function in the panel, and of their own past, as functions of
+   !> the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c of sum_k G_k q_k (1 + l_k H)^-1 1
+   pure subroutine resolve(terms, q, map, lambda, response, past)
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Values q_k at the start of the panel, shape (modes)
+      real(wp), intent(in) :: q(:)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
       !> Eigenvalues of H [s]
       real(wp), intent(in) :: lambda(width)
-      !> S [N/m^1.5]
-      real(wp), intent(out) :: stiffness(width)
-      !> b without the vector of ones [N]
-      real(wp), intent(out) :: memory(width)
+      !> R
+      real(wp), intent(out) :: response(width)
+      !> c, the vector of ones in it
+      real(wp), intent(out) :: past(width)
 
-      real(wp) :: a, d, share, s(width), b(width), dashpot(width)
+      real(wp) :: a, d, share, r(width), c(width), square(pairs)
       integer :: k, m
 
-      s = constant(kernel%equilibrium)
-      b = 0.0_wp
-      do k = 1, size(kernel%rates)
-         associate (rate => kernel%rates(k), modulus => kernel%moduli(k), q => start%q(k))
+      r = constant(terms%equilibrium)
+      c = 0.0_wp
+      square = map%square
+      do k = 1, size(q)
+         associate (rate => terms%rates(k), modulus => terms%moduli(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
                d = rate*lambda(pairs + m)
                share = modulus/(a*a - square(m)*(d*d))
                a = a*share
                d = d*share
-               s(m) = s(m) + a
-               s(pairs + m) = s(pairs + m) - d
-               b(m) = b(m) + a*q
-               b(pairs + m) = b(pairs + m) - d*q
+               r(m) = r(m) + a
+               r(pairs + m) = r(pairs + m) - d
+               c(m) = c(m) + a*q(k)
+               c(pairs + m) = c(pairs + m) - d*q(k)
             end do
          end associate
       end do
-      if (kernel%viscosity > 0.0_wp) then
-         dashpot = ratio(square, constant(kernel%viscosity), lambda)
-         s = s + dashpot
-         b = b + dashpot*hertz(start%indentation)
-      end if
-      stiffness = s
-      memory = b
-   end subroutine resolve_modes
+      response = r
+      past = times(square, c, map%left_one)
+   end subroutine resolve
 
-   !> What the memory of a hereditary plate makes of the impulse H F in the panel and of its own
-   !> past, as functions of the eigenvalues of H: the velocity is R H F + c 1 with
-   !> R = sum_j w_j (1 + l_j H)^-1
-   pure subroutine resolve_plate(start, map, lambda, response, past)
+   !> S and b of F = S u - b as functions of the eigenvalues of H
+   pure subroutine resolve_contact(contact, start, map, lambda, stiffness, memory)
+      !> Kernel of the contact
+      type(exponential_sum_t), intent(in) :: contact
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Eigenvalues of H [s]
       real(wp), intent(in) :: lambda(width)
-      !> R [m/(N s2)]
-      real(wp), intent(out) :: response(width)
-      !> c, the vector of ones in it [m/s]
-      real(wp), intent(out) :: past(width)
+      !> S [N/m^1.5]
+      real(wp), intent(out) :: stiffness(width)
+      !> b, the vector of ones in it [N]
+      real(wp), intent(out) :: memory(width)
 
-      real(wp) :: a, d, share
-      integer :: k, m
+      real(wp) :: dashpot(width)
 
-      response = 0.0_wp
-      past = 0.0_wp
-      do k = 1, size(start%p)
-         do m = 1, pairs
-            a = 1.0_wp + start%plate%rates(k)*lambda(m)
-            d = start%plate%rates(k)*lambda(pairs + m)
-            share = start%plate%moduli(k)/(a*a - map%square(m)*(d*d))
-            a = a*share
-            d = d*share
-            response(m) = response(m) + a
-            response(pairs + m) = response(pairs + m) - d
-            past(m) = past(m) + a*start%p(k)
-            past(pairs + m) = past(pairs + m) - d*start%p(k)
-         end do
-      end do
-      past = times(map%square, past, map%left_one)
-   end subroutine resolve_plate
+      call resolve(contact, start%q, map, lambda, stiffness, memory)
+      if (contact%viscosity > 0.0_wp) then
+         dashpot = ratio(map%square, constant(contact%viscosity), lambda)
+         stiffness = stiffness + dashpot
+         memory = memory + times(map%square, dashpot, map%left_one)*hertz(start%indentation)
+      end if
+   end subroutine resolve_contact
 
-   !> Internal variables at the end of a panel: q = u - (1 + l H)^-1 (u - q_n) at the last stage
-   pure subroutine advance_modes(rule, map, scale, kernel, u, q)
+   !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
+   !> stage for x = 0 at the start
+   pure subroutine advance_lags(rule, map, scale, terms, x, p)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
-      !> The kernel
-      type(exponential_sum_t), intent(in) :: kernel
-      !> What they follow, at the stages: u [m^1.5]
-      real(wp), intent(in) :: u(width)
-      !> Internal variables: at the start on entry, at the end on return [m^1.5], shape (modes)
-      real(wp), intent(inout) :: q(:)
+      !> Sum with the rates l
+      type(exponential_sum_t), intent(in) :: terms
+      !> What is gained since the start, at the stages
+      real(wp), intent(in) :: x(width)
+      !> What has not relaxed: at the start on entry, at the end on return, shape (modes)
+      real(wp), intent(inout) :: p(:)
 
-      real(wp), dimension(width) :: lambda, from_u, from_q
+      real(wp), dimension(width) :: lambda, from_x, from_p
       real(wp) :: a, d, lag(pairs)
       integer :: m, k
 
+      if (size(p) == 0) return
       lambda = scale*map%eigenvalue
-      from_u = at_end(apply(map%left, u))
-      from_q = at_end(map%left_one)
-      do k = 1, size(q)
-         associate (rate => kernel%rates(k))
+      from_x = at_end(apply(map%left, x))
+      from_p = at_end(map%left_one)
+      do k = 1, size(p)
+         associate (rate => terms%rates(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
                d = rate*lambda(pairs + m)
-               lag(m) = ((from_u(m) - q(k)*from_q(m))*a &
-                  - (from_u(pairs + m) - q(k)*from_q(pairs + m))*d)/(a*a - map%square(m)*(d*d))
+               lag(m) = ((from_x(m) + p(k)*from_p(m))*a &
+                  - (from_x(pairs + m) + p(k)*from_p(pairs + m))*d)/(a*a - map%square(m)*(d*d))
             end do
          end associate
-         q(k) = u(rule%stages) - ((lag(1) + lag(2)) + (lag(3) + lag(4)))
+         p(k) = (lag(1) + lag(2)) + (lag(3) + lag(4))
       end do
 
    contains
@@ -172,88 +167,6 @@ contains
             share(pairs + 1:) = map%square*last(:pairs)*x(pairs + 1:) + last(pairs + 1:)*x(:pairs)
          end associate
       end function at_end
-   end subroutine advance_modes
-
-   !> Sum of G_k/(1 + l_k H) as a function of the eigenvalues, and the vector sum of
-   !> G_k q_k (1 + l_k H)^-1 1
-   pure subroutine sum_modes(moduli, rates, q, map, scale, share, vector)
-      !> G_k, shape (modes)
-      real(wp), intent(in) :: moduli(:)
-      !> l_k [1/s], shape (modes)
-      real(wp), intent(in) :: rates(:)
-      !> Values q_k at the start of the panel, shape (modes)
-      real(wp), intent(in) :: q(:)
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Scale of the map [s]
-      real(wp), intent(in) :: scale
-      !> The function
-      real(wp), intent(out) :: share(width)
-      !> The vector
-      real(wp), intent(out) :: vector(width)
-
-      real(wp), dimension(width) :: one, lambda, with_q
-      integer :: k
-
-      lambda = scale*map%eigenvalue
-      share = 0.0_wp
-      with_q = 0.0_wp
-      do k = 1, size(q)
-         one = moduli(k)*ratio(map%square, constant(1.0_wp), &
-            constant(1.0_wp) + rates(k)*lambda)
-         share = share + one
-         with_q = with_q + q(k)*one
-      end do
-      vector = apply(map%right, times(map%square, with_q, map%left_one))
-   end subroutine sum_modes
-
-   !> Sum of G_k (1 + l_k H)^-1 (x - q_k) at the end of a panel whose map stands still there. What
-   !> collocation at the end says about modes that have settled is lost in that; they are
-   !> extrapolated from the other points
-   pure function lags_at_end(rule, map, scale, terms, q, x) result(total)
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Scale of the map [s]
-      real(wp), intent(in) :: scale
-      !> G_k and l_k
-      type(exponential_sum_t), intent(in) :: terms
-      !> q_k at the start of the panel, shape (modes)
-      real(wp), intent(in) :: q(:)
-      !> x at the start and at the stages
-      real(wp), intent(in) :: x(0:width)
-      !> Sum
-      real(wp) :: total
-
-      ! product of rate and length from which a mode counts as settled
-      real(wp), parameter :: settled = 30.0_wp
-      real(wp) :: part(width)
-      logical :: chosen(size(q))
-
-      chosen = terms%rates*scale > settled
-      part = lags(.not. chosen)
-      total = part(rule%stages)
-      if (.not. any(chosen)) return
-      part = lags(chosen)
-      total = total + rule%end_weight(0)*sum(terms%moduli*(x(0) - q), mask=chosen) &
-         + sum(rule%end_weight(1:rule%stages - 1)*part(1:rule%stages - 1))
-
-   contains
-
-      !> The sum over some modes at the stages
-      pure function lags(mask) result(part)
-         !> The modes, shape (modes)
-         logical, intent(in) :: mask(:)
-         !> The sum
-         real(wp) :: part(width)
-
-         real(wp) :: f(width), with_q(width)
-
-         call sum_modes(pack(terms%moduli, mask), pack(terms%rates, mask), pack(q, mask), map, &
-            scale, f, with_q)
-         part = apply(map%right, times(map%square, f, apply(map%left, x(1:)))) - with_q
-      end function lags
-   end function lags_at_end
+   end subroutine advance_lags
 
 end module vcor_solver_modes

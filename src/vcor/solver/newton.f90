@@ -15,8 +15,12 @@ module vcor_solver_newton
    type :: newton_t
       !> Whether the next correction needs a new Jacobian
       logical :: stale = .true.
+      !> What errors are counted against; 0: the largest component of the solution
+      real(wp) :: unit = 0.0_wp
+      !> Correction over that which ends the iteration once it does not fall any more: rounding
+      real(wp) :: noise = 0.0_wp
       !> Size of the last correction
-      real(wp), private :: last = 0.0_wp
+      real(wp) :: last = 0.0_wp
       !> Whether the equations are solved
       logical :: converged = .false.
       !> Whether they cannot be
@@ -47,7 +51,7 @@ contains
       real(wp), parameter :: close = 0.05_wp, slow = 0.1_wp
       ! a correction over the solution that leads nowhere
       real(wp), parameter :: wildest = 1.0e6_wp
-      real(wp) :: size, rate, left
+      real(wp) :: unit, size, rate, left
       logical :: regular
 
       if (self%stale) then
@@ -57,9 +61,11 @@ contains
       end if
       call jacobian%solve(residual)
       s = s + residual
-      self%failed = .not. largest(residual) < wildest*largest(s)
+      unit = self%unit
+      if (.not. unit > 0.0_wp) unit = largest(s)
+      self%failed = .not. largest(residual) < wildest*unit
       if (self%failed) return
-      size = largest(residual)/largest(s)
+      size = largest(residual)/unit
       if (self%stale) then
          left = size*sqrt(size)
          self%stale = size > close
@@ -68,8 +74,9 @@ contains
          left = size*rate/(1.0_wp - 0.5_wp*rate)
          self%stale = rate > slow
       end if
+      self%converged = left <= tolerance &
+         .or. size <= self%noise .and. .not. size < 0.5_wp*self%last
       self%last = size
-      self%converged = left <= tolerance
    end subroutine correct
 
    !> Largest magnitude

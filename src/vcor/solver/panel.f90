@@ -14,17 +14,16 @@
 module vcor_solver_panel
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
    use vcor_numeric_linear, only : apply, factors_t
    use vcor_numeric_pairs, only : times
-   use vcor_solver_modes, only : resolve_modes, resolve_plate, start_t
+   use vcor_solver_modes, only : modes_t, resolve, resolve_contact, start_t
    use vcor_solver_newton, only : largest, most_iterations, newton_t
    implicit none
    private
 
    public :: panel_t
-   public :: solve_panel, solve_near_panel, improve_panel
+   public :: solve_panel, solve_near_panel, improve_panel, move_to_end
 
    !> Solution on a panel; index 0 is its start
    type :: panel_t
@@ -98,7 +97,7 @@ contains
    end function theta
 
    !> Set up the equations of a panel
-   pure subroutine set_up(equations, rule, map, scale, impact, kernel, start, panel)
+   pure subroutine set_up(equations, rule, map, scale, impact, modes, start, panel)
       !> The equations
       type(equations_t), intent(out) :: equations
       !> Collocation rule
@@ -109,8 +108,8 @@ contains
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start
       type(start_t), intent(in) :: start
       !> The panel: its times and plate parameters are set, and all values at its start
@@ -130,7 +129,7 @@ contains
          panel%alpha(i) = impact%plate%alpha(panel%time(i))
       end do
       ! what settles at once in a hereditary plate counts as alpha
-      if (size(start%p) > 0) panel%alpha(1:n) = start%plate%viscosity
+      if (size(start%p) > 0) panel%alpha(1:n) = modes%plate%viscosity
       panel%indentation(0) = start%indentation
       panel%force(0) = start%force
       panel%impulse(0) = start%impulse
@@ -139,8 +138,7 @@ contains
       inverse_mass = 1.0_wp/impact%mass
       associate (e => equations)
          e%lambda = scale*map%eigenvalue
-         call resolve_modes(kernel, start, map%square, e%lambda, e%stiffness, e%memory)
-         e%memory = times(map%square, e%memory, map%left_one)
+         call resolve_contact(modes%contact, start, map, e%lambda, e%stiffness, e%memory)
          e%impulsive = times(map%square, e%lambda, e%stiffness)
          e%inertial = inverse_mass*times(map%square, e%lambda, e%impulsive)
          e%free_impulse = start%impulse
@@ -154,7 +152,7 @@ contains
             ! U has V with V' = R H F + c beside alpha I
             panel%deflection(0) = start%deflection
             panel%drift(0) = start%drift
-            call resolve_plate(start, map, e%lambda, e%plate, e%past)
+            call resolve(modes%plate, start%p, map, e%lambda, e%plate, e%past)
             yield = times(map%square, e%lambda, e%plate)
             e%inertial = e%inertial + times(map%square, yield, e%impulsive)
             e%right = e%right - start%deflection + apply(map%right, &
@@ -165,7 +163,7 @@ contains
    end subroutine set_up
 
    !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_panel(rule, map, scale, impact, kernel, start, tolerance, panel, factors)
+   pure subroutine solve_panel(rule, map, scale, impact, modes, start, tolerance, panel, factors)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -174,8 +172,8 @@ contains
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation over its largest value
@@ -191,7 +189,7 @@ contains
       type(newton_t) :: newton
       integer :: i, j, iteration
 
-      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      call set_up(equations, rule, map, scale, impact, modes, start, panel)
       call assemble(map, equations, panel%alpha(1:), response)
       s = panel%indentation(1:)
       s(rule%stages + 1:) = 0.0_wp
@@ -220,7 +218,7 @@ contains
    !> Solve the collocation equations on a panel with the Jacobian of one next to it, of another
    !> length or another rule. No matrix is formed, so this costs half of a solution. With another
    !> rule, what is wanted are the values at the end: force and impulses are left out elsewhere
-   pure subroutine solve_near_panel(rule, map, scale, impact, kernel, start, tolerance, factors, &
+   pure subroutine solve_near_panel(rule, map, scale, impact, modes, start, tolerance, factors, &
                                     panel, to, from)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
@@ -230,8 +228,8 @@ contains
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation at the end of the panel over its largest value
@@ -254,7 +252,7 @@ contains
       real(wp) :: change(width), s(width), size, last, rate
       integer :: iteration
 
-      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      call set_up(equations, rule, map, scale, impact, modes, start, panel)
       s = panel%indentation(1:)
       s(rule%stages + 1:) = 0.0_wp
       panel%converged = .false.
@@ -314,7 +312,7 @@ contains
    !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
    !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
    !> leave little of it. Force and impulses are those at the end of the panel only
-   pure subroutine improve_panel(rule, map, scale, impact, kernel, start, tolerance, panel)
+   pure subroutine improve_panel(rule, map, scale, impact, modes, start, tolerance, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -323,8 +321,8 @@ contains
       real(wp), intent(in) :: scale
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation over its largest value
@@ -336,7 +334,7 @@ contains
       type(equations_t) :: equations
       real(wp) :: s(width)
 
-      call set_up(equations, rule, map, scale, impact, kernel, start, panel)
+      call set_up(equations, rule, map, scale, impact, modes, start, panel)
       s = displaced(map, equations, panel%alpha(1:), panel%indentation(1:))
       panel%indentation(1:) = displaced(map, equations, panel%alpha(1:), s)
       call integrate_to_end(map, equations, hertz(panel%indentation(1:)), panel)
@@ -419,5 +417,23 @@ contains
          panel%second_impulse(n) = equations%free_second_impulse(n) + sum(map%right(n, :)*x)
       end associate
    end subroutine integrate_to_end
+
+   !> Make the end of a panel the start of the next one, internal variables aside
+   pure subroutine move_to_end(panel, start)
+      !> The panel
+      class(panel_t), intent(in) :: panel
+      !> State at the start of the panel, on return that at its end
+      class(start_t), intent(inout) :: start
+
+      associate (n => panel%stages)
+         start%time = panel%time(n)
+         start%indentation = panel%indentation(n)
+         start%force = panel%force(n)
+         start%impulse = panel%impulse(n)
+         start%second_impulse = panel%second_impulse(n)
+         start%deflection = panel%deflection(n)
+         start%drift = panel%drift(n)
+      end associate
+   end subroutine move_to_end
 
 end module vcor_solver_panel

@@ -10,11 +10,12 @@ module vcor_solver_rebound
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : closing, collocation_t, linear, width
    use vcor_solver_approach, only : approach_t
-   use vcor_solver_rebound_panel, only : advance_rebound, rebound_panel_t, rebound_start_t, &
-      solve_rebound_panel
+   use vcor_solver_collocator, only : collocator_t
+   use vcor_solver_modes, only : modes_t
+   use vcor_solver_rebound_panel, only : advance_rebound, close_contact, rebound_panel_t, &
+      rebound_start_t, solve_rebound_panel
    use vcor_solver_recording, only : record
    implicit none
    private
@@ -32,24 +33,20 @@ module vcor_solver_rebound
 contains
 
    !> Follow the rebound
-   subroutine follow_rebound(rules, impact, kernel, memory, approach, start, accuracy, tolerance, &
-                             end_time, trajectory, error)
-      !> Collocation rules of the solution and of its companion
-      type(collocation_t), intent(in) :: rules(2)
+   subroutine follow_rebound(collocator, impact, modes, approach, start, accuracy, end_time, &
+                             trajectory, error)
+      !> The collocation
+      type(collocator_t), intent(in) :: collocator
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
-      !> Memory of a hereditary plate
-      type(exponential_sum_t), intent(in) :: memory
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> The approach
       type(approach_t), intent(in) :: approach
       !> State at the largest indentation; on return somewhere later
       type(rebound_start_t), intent(inout) :: start
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
-      !> Error that Newton's method may leave, over the largest value
-      real(wp), intent(in) :: tolerance
       !> End of the computation if the contact lasts [s]
       real(wp), intent(in) :: end_time
       !> Course of the impact, on entry its approach
@@ -64,41 +61,38 @@ contains
       ! reduce it: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
+      ! relative error of the contact time that is rounding
+      real(wp), parameter :: closest = 1.0e-13_wp
       ! t1 at the end, extrapolated, over that at the start of the last panel
       real(wp), parameter :: near_zero = 0.3_wp
-      ! first panel over the expected rebound at accuracy 1e-8, and its power of the accuracy
-      real(wp), parameter :: first_share = 0.5_wp, growth_of_first = 0.12_wp, usual = 1.0e-8_wp
-      ! a panel as long as this over the rest of the rebound is to be the last one; others leave a
-      ! rest that is worth a panel
-      real(wp), parameter :: closing_share = 0.9_wp, longest_share = 0.6_wp
-      ! rate of t1 at first, where the kernel is constant; its growth that is rounding, over the
-      ! time of the approach, and its rate
-      real(wp), parameter :: first_rate = -1.2_wp, noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
+      ! what a refused panel is cut to at most and at least, and the order with which the error of
+      ! the last one falls at least
+      real(wp), parameter :: least_cut = 0.8_wp, deepest_cut = 0.2_wp, order_at_end = 3.0_wp
+      ! share of what is allowed that is aimed at
+      real(wp), parameter :: aim = 0.3_wp
+      ! growth of t1 that is rounding, over the time of the approach, and its rate
+      real(wp), parameter :: noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
-      real(wp) :: length, taken, rest, rate, excess, refused, refused_end, end_found, slope
-      real(wp) :: error_now, error_sum, alpha_rate
+      real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end, end_found
+      real(wp) :: error_now, error_sum, alpha_rate, tolerance
       integer :: trial, n, kind, closings
       logical :: ends, last, inherited
 
-      n = rules(1)%stages
+      n = collocator%rule%stages
+      tolerance = collocator%coarse_tolerance
       refused = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
       end_found = 0.0_wp
-      slope = 0.0_wp
       kind = linear
-      if (kernel%error > 0.0_wp .or. kernel%viscosity > 0.0_wp) kind = 0
-      rate = first_rate
-      length = -start%t1/rate*first_share*(accuracy/usual)**growth_of_first
+      if (modes%contact%error > 0.0_wp .or. modes%contact%viscosity > 0.0_wp) kind = 0
+      call set_first_lengths()
       error_sum = 0.0_wp
 
       do trial = 1, most_trials
-         ! while t1 stands still nothing tells when the contact ends
-         rest = huge(1.0_wp)
-         if (rate < 0.0_wp) rest = -start%t1/rate
          if (end_found > start%time) rest = end_found - start%time
-         ends = length >= closing_share*rest
-         taken = min(length, longest_share*rest)
+         ends = rest <= end_length
+         taken = min(length, share_of_rest()*rest)
          if (ends) taken = rest
          last = start%time + taken >= end_time
          if (last) then
@@ -106,7 +100,10 @@ contains
             taken = end_time - start%time
          end if
          if (ends) then
-            call close_contact(panel, taken)
+            call guess(panel, closing, taken)
+            call close_contact(collocator%rule, impact, modes, approach, start, tolerance, &
+               max(0.1_wp*min(accuracy, 1.0e-8_wp), closest), taken, panel)
+            if (panel%converged) previous = panel
             ! rounding in a condition next to zero is no end: t1 has to get there, too
             panel%converged = panel%converged .and. abs(panel%t1(n)) <= near_zero*start%t1
             if (panel%converged) then
@@ -115,25 +112,24 @@ contains
             end if
          else
             call guess(panel, kind, taken)
-            call solve(1, kind, taken, panel)
+            call solve(collocator%rule, kind, taken, panel)
             if (panel%converged) then
                previous = panel
                if (panel%condition(n) <= 0.0_wp) then
                   ! the end is closer than expected
-                  call set_rate(panel)
+                  rest = taken*where_zero(panel)
                   refused = huge(1.0_wp)
-                  length = taken
-                  if (-start%t1 < closing_share*taken*rate) length = 0.5_wp*taken
                   cycle
                end if
             end if
          end if
          if (panel%converged) then
             call copy_guess(panel, companion)
-            call solve(2, merge(closing, kind, ends), taken, companion)
+            call solve(collocator%coarse, merge(closing, kind, ends), taken, companion)
          end if
          if (.not. (panel%converged .and. companion%converged)) then
             length = 0.5_wp*min(taken, rest)
+            end_length = min(end_length, length)
             cycle
          end if
 
@@ -155,8 +151,12 @@ contains
          end if
          if (.not. (excess <= 1.0_wp .or. inherited)) then
             refused = excess
-            if (ends) refused_end = excess
-            length = 0.5_wp*taken
+            if (ends) then
+               refused_end = excess
+               end_length = taken*cut((excess/aim)**(-1.0_wp/order_at_end))
+            else
+               length = taken*cut((excess/aim)**(-1.0_wp/real(2*n - 2, wp)))
+            end if
             cycle
          end if
          refused = huge(1.0_wp)
@@ -169,7 +169,7 @@ contains
 
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
-         call record(rules(1), impact, panel%panel_t, trajectory)
+         call record(collocator%rule, impact, panel%panel_t, trajectory)
          trajectory%last = trajectory%final
          if (ends) then
             trajectory%status = contact_separated
@@ -181,9 +181,9 @@ contains
          else if (last) then
             return
          end if
-         call set_rate(panel)
-         call advance_rebound(rules(1), rules(1)%map(kind), taken, kernel, memory, &
-            panel, start)
+         call expect_end(panel)
+         call advance_rebound(collocator%rule, collocator%rule%map(kind), taken, modes, panel, &
+            start)
          kind = linear
          length = taken*min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp)))
       end do
@@ -192,10 +192,118 @@ contains
 
    contains
 
+      !> Lengths of the first panel, of the last one and of the rebound to begin with
+      subroutine set_first_lengths()
+
+         real(wp), parameter :: usual = 1.0e-8_wp
+         ! the rebound over the approach where the kernel is constant, and the rate of t1
+         real(wp), parameter :: expected = 1.0_wp, first_rate = -1.2_wp
+         ! first panel over that where the kernel relaxes within it and where it does not, at the
+         ! usual accuracy, and its power of the accuracy
+         real(wp), parameter :: rough_first = 0.36_wp, short_first = 0.42_wp, &
+            long_first = 0.58_wp, fast = 3.0_wp, growth_of_first = 0.12_wp
+         ! last panel over that, and its power: of a continuous spectrum, in contact or plate, the
+         ! collocation of a panel does not resolve the modes that settle next to its end
+         real(wp), parameter :: smooth_end = 0.48_wp, growth_of_smooth = 0.12_wp
+         real(wp), parameter :: half_rough_end = 0.27_wp
+         real(wp), parameter :: rough_end = 0.06_wp, growth_of_rough = 0.3_wp
+
+         rate = first_rate
+         bend = 0.0_wp
+         rest = expected*approach%end
+         length = merge(short_first, long_first, any(modes%contact%rates*approach%end > fast)) &
+            *approach%end*(accuracy/usual)**growth_of_first
+         end_length = smooth_end*approach%end*(accuracy/usual)**growth_of_smooth
+         if (modes%contact%error > 0.0_wp) &
+            end_length = half_rough_end*approach%end*(accuracy/usual)**growth_of_smooth
+         if (modes%contact%error > 0.0_wp .and. impact%plate%hereditary()) then
+            length = rough_first*approach%end*(accuracy/usual)**growth_of_first
+            end_length = rough_end*approach%end*(accuracy/usual)**growth_of_rough
+         end if
+      end subroutine set_first_lengths
+
+      !> Share of the rest of the contact that a panel takes, so that some equal ones leave what is
+      !> for the last panel. The end is a branch point, from which panels keep away
+      pure function share_of_rest() result(share)
+         !> Share
+         real(wp) :: share
+
+         real(wp), parameter :: smallest = 0.45_wp, largest = 0.67_wp
+         real(wp), parameter :: unknown = 1.0e3_wp, margin = 0.95_wp
+         integer :: panels
+
+         share = largest
+         if (.not. (rest > end_length .and. rest < unknown*end_length)) return
+         panels = ceiling(log(margin*end_length/rest)/log(1.0_wp - largest))
+         share = max(smallest, 1.0_wp - (margin*end_length/rest)**(1.0_wp/real(panels, wp)))
+      end function share_of_rest
+
+      !> What a panel is cut to
+      pure function cut(wanted) result(share)
+         !> What its error calls for
+         real(wp), intent(in) :: wanted
+         !> Share of its length
+         real(wp) :: share
+
+         share = min(least_cut, max(deepest_cut, wanted))
+      end function cut
+
+      !> Expect the end, and t1 up to there, by the parabolas that go on where a panel ends. While
+      !> the condition grows nothing tells when the contact ends
+      subroutine expect_end(panel)
+         !> The panel
+         type(rebound_panel_t), intent(in) :: panel
+
+         real(wp) :: fall, fall_rate
+
+         call end_rates(panel%t1, rate, bend)
+         call end_rates(panel%condition, fall, fall_rate)
+         fall = -fall
+         rest = huge(1.0_wp)
+         if (panel%condition(n) < 1.0e3_wp*approach%end*fall) rest = 2.0_wp*panel%condition(n) &
+            /(fall + sqrt(max(0.0_wp, fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
+      end subroutine expect_end
+
+      !> First and second derivative by time of a value at the end of the panel solved last
+      subroutine end_rates(value, first, second)
+         !> Its values at the points of the panel
+         real(wp), intent(in) :: value(0:width)
+         !> Its rate
+         real(wp), intent(out) :: first
+         !> Rate of that
+         real(wp), intent(out) :: second
+
+         real(wp) :: slope(0:width)
+
+         associate (pace => panel%map(1) + 2.0_wp*panel%map(2))
+            slope = collocator%rule%slopes(value)
+            first = slope(n)/pace
+            second = (sum(collocator%rule%derivative(n, :)*slope) - 2.0_wp*panel%map(2)*first) &
+               /pace**2
+         end associate
+      end subroutine end_rates
+
+      !> Where the condition is zero in a panel, as a share of its time
+      function where_zero(panel) result(share)
+         !> The panel, the condition at its end not positive
+         type(rebound_panel_t), intent(in) :: panel
+         !> Share
+         real(wp) :: share
+
+         real(wp), parameter :: roughly = 1.0e-3_wp
+         real(wp) :: theta
+         integer :: j
+
+         j = findloc(panel%condition(1:n) <= 0.0_wp, .true., 1)
+         theta = collocator%rule%crossing(panel%condition, collocator%rule%point(j - 1), &
+            collocator%rule%point(j), roughly)
+         share = theta*(panel%map(1) + panel%map(2)*theta)/sum(panel%map)
+      end function where_zero
+
       !> Solve a panel
-      subroutine solve(which, kind, length, panel)
-         !> 1 for the solution, 2 for its companion
-         integer, intent(in) :: which
+      subroutine solve(rule, kind, length, panel)
+         !> Collocation rule
+         type(collocation_t), intent(in) :: rule
          !> Index of the map
          integer, intent(in) :: kind
          !> Duration [s]
@@ -203,8 +311,8 @@ contains
          !> The panel, its t1 guessed
          type(rebound_panel_t), intent(inout) :: panel
 
-         call solve_rebound_panel(rules(which), rules(which)%map(kind), length, impact, kernel, &
-            memory, approach, start, tolerance, panel)
+         call solve_rebound_panel(rule, rule%map(kind), length, impact, modes, approach, start, &
+            tolerance, panel)
       end subroutine solve
 
       !> Guess t1 at the stages of the solution
@@ -217,21 +325,29 @@ contains
          real(wp), intent(in) :: length
 
          ! polynomials run away beyond their own panel
-         real(wp), parameter :: farthest = 1.2_wp
+         real(wp), parameter :: farthest = 1.4_wp
+         ! of what t1 falls, as a guess, and for how long
+         real(wp), parameter :: slowest = 0.5_wp, near = 0.1_wp
          real(wp), dimension(width) :: theta, time
          integer :: j
 
-         theta = rules(1)%node
-         if (kind == closing) theta = theta*(2.0_wp - theta)
-         if (kind == 0) theta = theta**2
-         time = start%time + length*theta
-         panel%t1(1:) = start%t1 + rate*(time - start%time)
-         if (previous%stages == 0) return
-         theta = previous%theta(time)
-         do j = 1, n
-            if (theta(j) <= farthest) &
-               panel%t1(j) = rules(1)%interpolate(previous%t1(0:n), theta(j))
-         end do
+         associate (map => collocator%rule%map(kind))
+            time = length*collocator%rule%node*(map%slope + map%bend*collocator%rule%node)
+         end associate
+         panel%t1(1:) = start%t1 + time*(rate + 0.5_wp*bend*time)
+         ! which is zero at the end of the contact
+         if (kind == closing) panel%t1(1:) = panel%t1(1:) &
+            - (start%t1 + length*(rate + 0.5_wp*bend*length))*(time/length)**2
+         if (previous%stages > 0) then
+            theta = previous%theta(start%time + time)
+            do j = 1, n
+               if (theta(j) <= farthest) &
+                  panel%t1(j) = collocator%rule%interpolate(previous%t1(0:n), theta(j))
+            end do
+         end if
+         ! next to the largest indentation t1 falls at least as fast as time grows
+         panel%t1(1:) = min(panel%t1(1:), approach%end &
+            - slowest*min(start%time + time - approach%end, near*approach%end))
       end subroutine guess
 
       !> Guess t1 at the stages of the companion
@@ -243,64 +359,10 @@ contains
 
          integer :: j
 
-         do j = 1, rules(2)%stages
-            companion%t1(j) = rules(1)%interpolate(panel%t1(0:n), rules(2)%node(j))
+         do j = 1, collocator%coarse%stages
+            companion%t1(j) = collocator%rule%interpolate(panel%t1(0:n), collocator%coarse%node(j))
          end do
       end subroutine copy_guess
-
-      !> Find the length of the last panel, so that the condition is zero at its end, by the secant
-      !> method
-      subroutine close_contact(panel, length)
-         !> The last panel; not converged on failure
-         type(rebound_panel_t), intent(inout) :: panel
-         !> A guess at its duration, on return the duration [s]
-         real(wp), intent(inout) :: length
-
-         integer, parameter :: most_iterations = 30
-         ! a shorter correction tells nothing about slopes
-         real(wp), parameter :: noticeable = 1.0e-7_wp, closest = 1.0e-13_wp
-         ! no step goes farther than this, over the length
-         real(wp), parameter :: farthest = 0.4_wp
-         real(wp) :: correction, last_correction, condition, old_condition
-         integer :: iteration
-
-         ! the condition falls faster and faster; once known, its rate at the end is known for good
-         if (.not. slope < 0.0_wp) slope = -1.5_wp*start%condition/length
-         old_condition = 0.0_wp
-         correction = 0.0_wp
-         do iteration = 1, most_iterations
-            call guess(panel, closing, length)
-            call solve(1, closing, length, panel)
-            if (.not. panel%converged) return
-            condition = panel%condition(n)
-            if (abs(correction) > noticeable*length) slope = (condition - old_condition)/correction
-            panel%converged = slope < 0.0_wp
-            if (.not. panel%converged) return
-            previous = panel
-            old_condition = condition
-            last_correction = correction
-            correction = -condition/slope
-            correction = sign(min(abs(correction), farthest*length), correction)
-            if (abs(correction) <= max(0.1_wp*min(accuracy, 1.0e-8_wp), closest) &
-                *(start%time + length)) return
-            ! rounding in the condition of stiff internal variables ends it, too
-            if (iteration > 3 .and. abs(correction) <= noticeable*length &
-                .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
-            length = length + correction
-         end do
-         panel%converged = .false.
-      end subroutine close_contact
-
-      !> Set the mean rate of t1 in the later part of a panel
-      subroutine set_rate(panel)
-         !> The panel
-         type(rebound_panel_t), intent(in) :: panel
-
-         integer :: j
-
-         j = n/2
-         rate = (panel%t1(n) - panel%t1(j))/(panel%time(n) - panel%time(j))
-      end subroutine set_rate
    end subroutine follow_rebound
 
 end module vcor_solver_rebound

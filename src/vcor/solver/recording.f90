@@ -5,10 +5,9 @@ module vcor_solver_recording
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
       contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, width
    use vcor_solver_collocator, only : collocator_t, guess, improve, plate_velocity
-   use vcor_solver_modes, only : start_t
+   use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
@@ -40,13 +39,13 @@ contains
    end subroutine begin
 
    !> Add a panel to the trajectory
-   subroutine append(self, impact, kernel, start, panel, accuracy, trajectory)
+   subroutine append(self, impact, modes, start, panel, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
@@ -59,7 +58,7 @@ contains
       call record(self%rule, impact, panel, trajectory)
       if (trajectory%status == contact_separated) return
       trajectory%last = trajectory%final
-      call find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
+      call find_peaks(self, impact, modes, start, panel, accuracy, trajectory)
    end subroutine append
 
    !> Add the nodes of a panel to the trajectory
@@ -103,13 +102,13 @@ contains
    end subroutine record
 
    !> Largest indentation and force so far
-   subroutine find_peaks(self, impact, kernel, start, panel, accuracy, trajectory)
+   subroutine find_peaks(self, impact, modes, start, panel, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
-      type(exponential_sum_t), intent(in) :: kernel
+      !> Modes of contact and plate
+      type(modes_t), intent(in) :: modes
       !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> The panel
@@ -186,7 +185,7 @@ contains
          time = theta*(panel%map(1) + panel%map(2)*theta)
          step = step_to(start%time, time)
          call guess(self%rule, impact, panel, start, step, cut)
-         call improve(self, step, impact, kernel, start, accuracy, cut)
+         call improve(self, step, impact, modes, start, accuracy, cut)
          if (cut%converged) then
             peak = merge(cut%indentation(n), cut%force(n), of_indentation)
          else if (of_indentation) then
