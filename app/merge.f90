@@ -5,8 +5,8 @@ module vcor_app_merge
    use vcor_app_previous, only : look_at, previous_t, remark, replaced
    use vcor, only : case_t, check_same, contact_separated, default_threads, error_file, &
       error_numerical, error_t, grid_t, identity_t, integer_text, join_path, make_directory, &
-      new_grid, new_part, new_summary, open_hdf5, point_pending, quoted_path, raise, &
-      read_case_text, read_identity, read_points, reader_t, remark_t, remarks_of, same_file, &
+      new_grid, new_part, new_summary, point_pending, quoted_path, raise, &
+      read_case_text, read_identity, read_points, remark_t, remarks_of, same_file, &
       status_name, summary_t, summary_table, table_t, version, write_stdout, write_summary
    implicit none
    private
@@ -58,7 +58,6 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: found
-      type(reader_t) :: reader
       integer, allocatable :: owner(:)
       integer :: i, j
       logical :: is_ours
@@ -66,10 +65,7 @@ contains
       allocate (owner(0))
       do i = 1, size(request%files)
          associate (path => request%files(i)%text)
-            call open_hdf5(reader, path, error)
-            if (allocated(error)) return
-            call read_identity(reader, found, is_ours)
-            call reader%close(error)
+            call read_identity(path, found, is_ours, error)
             if (allocated(error)) return
             if (.not. is_ours .or. found%part%points == 0) then
                call raise(error, error_file, quoted_path(path)//' is no shard of a sweep of vcor')
@@ -174,16 +170,12 @@ contains
       !> The number
       integer :: number
 
-      type(reader_t) :: reader
       type(identity_t) :: found
       logical :: is_ours
 
       number = 0
-      call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      call read_identity(reader, found, is_ours)
-      call reader%close(error)
-      number = found%part%number
+      call read_identity(path, found, is_ours, error)
+      if (.not. allocated(error)) number = found%part%number
    end function number_in
 
    !> Numbers of a shard in their places

@@ -4,8 +4,7 @@ module vcor_app_previous
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
    use vcor, only : attach, check_same, checkpoint_t, error_file, error_t, identity_t, &
-      open_hdf5, plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, &
-      reader_t, write_stdout
+      plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, write_stdout
    implicit none
    private
 
@@ -48,8 +47,7 @@ contains
       !> What is there
       type(previous_t), intent(out) :: previous
 
-      type(reader_t) :: reader
-      type(error_t), allocatable :: error, ignored
+      type(error_t), allocatable :: ignored
       integer :: i
       logical :: is_ours
 
@@ -64,11 +62,7 @@ contains
             call read_csv_identity(previous%path, previous%identity, is_ours)
             previous%identity%data = expected%data
          else
-            call open_hdf5(reader, previous%path, error)
-            if (.not. allocated(error)) then
-               call read_identity(reader, previous%identity, is_ours)
-               call reader%close(ignored)
-            end if
+            call read_identity(previous%path, previous%identity, is_ours, ignored)
          end if
          if (is_ours) then
             call check_same(previous%path, previous%identity, expected, previous%objection)
@@ -137,14 +131,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(checkpoint_t) :: file
-      type(reader_t) :: reader
       type(identity_t) :: found
       logical :: is_ours
 
-      call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      call read_identity(reader, found, is_ours)
-      call reader%close(error)
+      call read_identity(path, found, is_ours, error)
       if (allocated(error)) return
       if (.not. is_ours) then
          call raise(error, error_file, quoted_path(path)//' is not a file of vcor')

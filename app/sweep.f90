@@ -4,7 +4,7 @@
 module vcor_app_sweep
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
+   use vcor_app_files, only : make_place, rows_path, threads_of, write_files, write_numbers
    use vcor_app_job, only : endings, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
       replaced
@@ -124,16 +124,6 @@ contains
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
 
-   !> Name of the summary as text until it is complete
-   function rows_path(job) result(path)
-      !> The case
-      type(job_t), intent(in) :: job
-      !> Its path
-      character(len=:), allocatable :: path
-
-      path = job%path//'_summary.part.csv'
-   end function rows_path
-
    !> After the points: write the results, or say what ended the sweep
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
       !> The request
@@ -207,7 +197,7 @@ contains
          if (allocated(error)) return
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
          call write_files(request, job, identity, table, none, files, error, &
-            has_csv=allocated(watch%rows%path))
+            has_csv=allocated(watch%rows%path), is_alone=watch%file%is_open())
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Write the tables of docs/performance.md, between its markers, and docs/performance.svg.
 
-    make_document.py FOLDER      with accuracy.csv, modes.csv, comparison.csv; sweeps.csv if there
+    make_document.py FOLDER      with accuracy.csv, modes.csv and comparison.csv, or sweeps.csv, or
+                                 all of them
 
 Standard library only. Run by make_document.sh.
 """
@@ -329,15 +330,16 @@ def main():
     if len(sys.argv) != 2:
         sys.exit("usage: make_document.py FOLDER")
     folder = pathlib.Path(sys.argv[1])
-    accuracy, modes, comparison = (
-        read(folder / f"{name}.csv") for name in ("accuracy", "modes", "comparison")
-    )
-    blocks = {
-        "machine": machine(),
-        "comparison": comparison_table(comparison),
-        "accuracy": accuracy_table(accuracy),
-        "modes": modes_table(modes),
-    }
+    blocks = {"machine": machine()}
+    if (folder / "comparison.csv").exists():
+        accuracy, modes, comparison = (
+            read(folder / f"{name}.csv") for name in ("accuracy", "modes", "comparison")
+        )
+        blocks["comparison"] = comparison_table(comparison)
+        blocks["accuracy"] = accuracy_table(accuracy)
+        blocks["modes"] = modes_table(modes)
+        FIGURE.write_text(figure(accuracy, comparison, modes))
+        print(f"written {FIGURE.relative_to(TOP)}")
     # whole sweeps, where they were measured
     if (folder / "sweeps.csv").exists():
         sweeps = read(folder / "sweeps.csv")
@@ -350,8 +352,7 @@ def main():
         if count != 1:
             sys.exit(f"make_document: {DOCUMENT.name} has {count} blocks '{name}', expected one")
     DOCUMENT.write_text(text)
-    FIGURE.write_text(figure(accuracy, comparison, modes))
-    print(f"written {DOCUMENT.relative_to(TOP)}, {FIGURE.relative_to(TOP)}")
+    print(f"written {DOCUMENT.relative_to(TOP)}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 # quiet machine) and writes. The lines behind the tables are in build/release/benchmarks/*.csv.
 #
 #   benchmarks/make_document.sh [--write-only]      with the measurements that are there
+#   benchmarks/make_document.sh --sweeps            whole sweeps alone, the other tables stay
 #
 # Environment: PYTHON, one with numpy and scipy (default python3); without them, and without
 # SUNDIALS, the document has fewer rows.
@@ -13,11 +14,16 @@ results=$BUILD/benchmarks
 
 case "${1-}" in
    --write-only) ;;
-   "")
+   "" | --sweeps)
       cmake --preset release
       cmake --build --preset release
-      "$results/accuracy" "$results"
-      benchmarks/compare.sh --csv "$results/comparison.csv"
+      if [ "${1-}" = --sweeps ]; then
+         results=$BUILD/benchmarks/sweeps
+         mkdir -p "$results"
+      else
+         "$results/accuracy" "$results"
+         benchmarks/compare.sh --csv "$results/comparison.csv"
+      fi
       # whole sweeps; by ranks too where there is MPI
       ranks=()
       if command -v mpirun >/dev/null; then

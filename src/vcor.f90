@@ -12,26 +12,26 @@ module vcor
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
-   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint, &
-      read_points
+   use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint
+   use vcor_io_checkpoint_points, only : read_points
    use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : directory_exists, file_exists, join_path, make_directory, &
-      plain_file_exists, quoted_path, remove_file, same_file, stderr_is_terminal, write_file, &
-      write_stdout, write_terminal
+   use vcor_io_file, only : remove_file, stderr_is_terminal, write_file, write_stdout, &
+      write_terminal
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
-   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
       read_identity, remarks_of
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
+   use vcor_io_path, only : directory_exists, file_exists, join_path, make_directory, &
+      plain_file_exists, quoted_path, same_file
    use vcor_io_real, only : read_real
    use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
-   use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_io_row_text, only : place_in_table, write_rows
+   use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
@@ -44,6 +44,7 @@ module vcor
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
+   use vcor_study_axes, only : new_grid
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
    use vcor_study_comparison, only : compare
@@ -53,7 +54,6 @@ module vcor
       attempt_halved, attempt_refined, compared_t, comparison_t
    use vcor_study_failures, only : failure_t, failures_t
    use vcor_study_grid, only : axis_t, grid_t
-   use vcor_study_axes, only : new_grid
    use vcor_study_identified, only : material_text, put_material
    use vcor_study_keys, only : catalogue, group_t, groups, key_t, kind_name, range_text, text_key
    use vcor_study_models, only : model_t, solve_models
@@ -116,7 +116,7 @@ module vcor
    public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
-   public :: reader_t, open_hdf5, remark_t, write_summary
+   public :: remark_t, write_summary
    public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound

@@ -114,6 +114,14 @@ def test_resume_after_a_crash(long):
     finish(long)
 
 
+def test_resume_after_a_kill_while_writing(long):
+    """What a killed run has left of the results gives way to them."""
+    interrupted(long)
+    for name in ("case.new.h5", "case_summary.part.csv"):
+        (long.folder / "out" / name).write_text("half of a file")
+    finish(long)
+
+
 def test_resume_of_nothing(vcor):
     vcor.write(sweep_text(30))
     done = vcor("run", "case.nml", "--output", "out", "--resume")

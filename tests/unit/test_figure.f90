@@ -4,18 +4,21 @@ program test_figure
    use vcor_error, only : error_file, error_input, error_t
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
+   use vcor_io_column, only : integer_column, real_column, text_column, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, plain
-   use vcor_io_file, only : join_path, make_directory, quoted_path, write_file
+   use vcor_io_file, only : write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_gnuplot_axis, only : in_quotes, number
    use vcor_io_hdf5, only : named_table_t, write_hdf5
-   use vcor_io_hdf5_contents, only : close_input, dataset_t, hdf5_input_t, list_members, member_t, &
-      number_attribute, open_input, read_dataset, text_attribute
+   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset, read_numbers
+   use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
+      open_hdf5, reader_t, text_attribute
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_getpid
-   use vcor_io_table, only : add_column, add_dimension, add_fact, integer_column, new_table, &
-      real_column, table_t, text_column, text_value
+   use vcor_io_table, only : add_fact, new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension
    use vcor_kinds, only : wp
    use vcor_numeric_contour, only : find_loops, loop_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
@@ -317,11 +320,12 @@ contains
    subroutine test_reading()
       type(table_t) :: summary, history
       type(named_table_t) :: more(1)
-      type(hdf5_input_t) :: input
+      type(reader_t) :: reader
       type(member_t), allocatable :: members(:)
       type(dataset_t) :: set
       type(error_t), allocatable :: error
       character(len=:), allocatable :: path
+      real(wp), allocatable :: numbers(:)
       integer :: i
 
       call new_table(summary, '1.2.3', 'Stoß', '&case'//new_line('a')//'/')
@@ -343,51 +347,61 @@ contains
       call write_hdf5(path, summary, history, error, more=more)
       call check(.not. allocated(error), 'the file is written')
 
-      call open_input(input, path, error)
+      call open_hdf5(reader, path, error)
       call check(.not. allocated(error), 'the file is opened')
-      call check_text(text_attribute(input, '/', 'title'), 'Stoß', 'title')
-      call check_text(text_attribute(input, '/', 'case'), '&case'//new_line('a')//'/', 'case')
-      call check_text(text_attribute(input, '/', 'no such'), '', 'attribute that is not there')
-      call check_text(text_attribute(input, '/none', 'title'), '', 'object that is not there')
-      call check_relative(number_attribute(input, 'more', 'contact_time'), 1.5e-3_wp, rounding, &
+      call check_text(text_attribute(reader, '/', 'title'), 'Stoß', 'title')
+      call check_text(text_attribute(reader, '/', 'case'), '&case'//new_line('a')//'/', 'case')
+      call check_text(text_attribute(reader, '/', 'no such'), '', 'attribute that is not there')
+      call check_text(text_attribute(reader, '/none', 'title'), '', 'object that is not there')
+      call check_relative(number_attribute(reader, 'more', 'contact_time'), 1.5e-3_wp, rounding, &
          'a number as attribute')
-      call check(ieee_is_nan(number_attribute(input, 'more', 'none')), 'no such number')
-      call check(ieee_is_nan(number_attribute(input, 'none', 'none')), 'no such group')
+      call check(ieee_is_nan(number_attribute(reader, 'more', 'none')), 'no such number')
+      call check(ieee_is_nan(number_attribute(reader, 'none', 'none')), 'no such group')
 
-      call list_members(input, '/', members, error)
+      call list_members(reader, '/', members, error)
       call check(size(members) == 3, 'groups')
       call check(all(members%is_group), 'they are groups')
       call check_text(members(1)%name//' '//members(2)%name, 'summary history', 'in their order')
-      call list_members(input, 'summary', members, error)
+      call list_members(reader, 'summary', members, error)
       call check(size(members) == 5, 'dimensions and columns')
       call check(.not. any(members%is_group), 'they are no groups')
       call check_text(members(1)%name, 'impact.velocity', 'the first dimension comes first')
       call check_text(members(5)%name, 'status', 'the last column comes last')
-      call list_members(input, 'none', members, error)
+      call list_members(reader, 'none', members, error)
       call check(allocated(error), 'no such group')
 
-      call read_dataset(input, 'summary/sphere.radius', set, error)
+      call read_dataset(reader, 'summary/sphere.radius', set, error)
       call check(set%is_scale, 'a dimension is a scale')
       call check_text(set%column%unit, 'm', 'its unit')
       call check_text(set%column%long_name, 'radius', 'its meaning')
-      call read_dataset(input, 'summary/cor', set, error)
+      call read_dataset(reader, 'summary/cor', set, error)
       call check(.not. set%is_scale .and. set%column%kind == real_column, 'a column of numbers')
       call check(size(set%lengths) == 2, 'a column of two dimensions')
       call check(all(set%lengths == [2, 3]), 'the slowest dimension comes first')
       call check_relative(set%column%reals, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'values')
-      call read_dataset(input, 'summary/steps', set, error)
+      call read_dataset(reader, 'summary/steps', set, error)
       call check(set%column%kind == integer_column, 'a column of whole numbers')
       call check(all(set%column%integers == [(10*i, i=1, 6)]), 'whole numbers')
-      call read_dataset(input, 'summary/status', set, error)
+      call read_dataset(reader, 'summary/status', set, error)
       call check(set%column%kind == text_column, 'a column of text')
       call check_text(text_value(set%column, 2), 'sticks', 'text')
       call check_text(text_value(set%column, 3), 'α', 'text beyond ASCII')
       call check_text(text_value(set%column, 4), '', 'empty text')
-      call read_dataset(input, 'summary/none', set, error)
+      call read_dataset(reader, 'summary/none', set, error)
       call check(allocated(error), 'no such dataset')
       call check_contains(error%message, 'summary/none', 'which is named')
-      call close_input(input)
-      call close_input(input)
+
+      allocate (numbers(6))
+      call read_numbers(reader, 'summary/cor', numbers, error)
+      call check_relative(numbers, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'into an array')
+      call read_numbers(reader, 'summary/cor', numbers(:5), error)
+      call check(allocated(error), 'an array of another length')
+      call check_contains(error%message, "found 6 numbers in 'summary/cor', expected 5", 'lengths')
+      call read_numbers(reader, 'summary/status', numbers, error)
+      call check(allocated(error), 'text is no numbers')
+      call check_contains(error%message, "'summary/status' cannot be read as numbers", 'text')
+      call close_hdf5(reader)
+      call close_hdf5(reader)
    end subroutine test_reading
 
    !> What is no file of results
@@ -410,10 +424,10 @@ contains
       !> What the message says
       character(len=*), intent(in) :: says
 
-      type(hdf5_input_t) :: input
+      type(reader_t) :: reader
       type(error_t), allocatable :: error
 
-      call open_input(input, path, error)
+      call open_hdf5(reader, path, error)
       call check(allocated(error), 'a file that cannot be opened is refused')
       if (.not. allocated(error)) return
       call check(error%code == code, 'code of the error: '//says)

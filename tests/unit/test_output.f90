@@ -4,14 +4,16 @@ program test_output
       & ieee_value
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_internal, error_t
+   use vcor_io_column, only : text_value
    use vcor_io_csv, only : write_csv
-   use vcor_io_file, only : commit, create_file, directory_exists, discard, file_exists, &
-      & join_path, make_directory, output_file_t, put, quoted_path, write_file, write_stdout
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put, write_file, &
+      & write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_number, only : integer_text, real_text
+   use vcor_io_path, only : directory_exists, file_exists, join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_getpid
-   use vcor_io_table, only : add_column, add_dimension, check_table, coordinate_row, new_table, &
-      & row_count, table_t, text_value
+   use vcor_io_table, only : check_table, coordinate_row, new_table, row_count, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension
    use vcor_kinds, only : wp
    use vcor_test, only : check, check_contains, check_text, finish, suite
    implicit none

@@ -2,10 +2,11 @@
 module vcor_figure_result
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_t, raise
+   use vcor_io_column, only : column_t, integer_column, real_column, text_column
    use vcor_io_drawing, only : split_path
-   use vcor_io_hdf5_contents, only : close_input, dataset_t, hdf5_input_t, list_members, &
-      member_t, number_attribute, open_input, read_dataset, text_attribute
-   use vcor_io_table, only : column_t, integer_column, real_column, text_column
+   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset
+   use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
+      open_hdf5, reader_t, text_attribute
    use vcor_kinds, only : wp
    use vcor_study_nearest, only : suggestion
    use vcor_study_text, only : printable, shortened
@@ -51,41 +52,41 @@ contains
       !> Error of code `error_file` or `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(hdf5_input_t) :: input
+      type(reader_t) :: reader
       type(member_t), allocatable :: members(:)
       character(len=:), allocatable :: directory
       integer :: count, i, last
 
-      call open_input(input, filename, error)
+      call open_hdf5(reader, filename, error)
       if (allocated(error)) return
-      result%path = input%path
+      result%path = reader%path
       call split_path(trim(filename), directory, result%stem)
       last = index(result%stem, '.', back=.true.)
       if (last > 1) result%stem = result%stem(:last - 1)
-      result%title = printable(text_attribute(input, '/', 'title'))
-      result%case_text = text_attribute(input, '/', 'case')
-      call list_members(input, '/', members, error)
+      result%title = printable(text_attribute(reader, '/', 'title'))
+      result%case_text = text_attribute(reader, '/', 'case')
+      call list_members(reader, '/', members, error)
       if (.not. allocated(error)) then
          allocate (result%groups(size(members)))
          count = 0
          do i = 1, size(members)
             if (.not. members(i)%is_group) cycle
             count = count + 1
-            call read_group(input, members(i)%name, result%groups(count), error)
+            call read_group(reader, members(i)%name, result%groups(count), error)
             if (allocated(error)) exit
          end do
          result%groups = result%groups(:count)
       end if
-      call close_input(input)
+      call close_hdf5(reader)
       if (allocated(error)) return
       if (size(result%groups) == 0) call raise(error, error_input, result%path &
          //': there are no results in this file, expected those of vcor run')
    end subroutine read_result
 
    !> Read the datasets of a group
-   subroutine read_group(input, name, group, error)
+   subroutine read_group(reader, name, group, error)
       !> Open file
-      type(hdf5_input_t), intent(in) :: input
+      type(reader_t), intent(in) :: reader
       !> Name of the group
       character(len=*), intent(in) :: name
       !> The group
@@ -97,9 +98,9 @@ contains
       integer :: i, j, count
 
       group%name = name
-      group%contact_time = number_attribute(input, name, 'contact_time')
-      group%min_frequency = number_attribute(input, name, 'min_frequency')
-      call list_members(input, name, members, error)
+      group%contact_time = number_attribute(reader, name, 'contact_time')
+      group%min_frequency = number_attribute(reader, name, 'min_frequency')
+      call list_members(reader, name, members, error)
       if (allocated(error)) return
       count = 0
       do i = 1, size(members)
@@ -110,7 +111,7 @@ contains
       do i = 1, size(members)
          if (members(i)%is_group) cycle
          j = j + 1
-         call read_dataset(input, name//'/'//members(i)%name, group%datasets(j), error)
+         call read_dataset(reader, name//'/'//members(i)%name, group%datasets(j), error)
          if (allocated(error)) return
       end do
    end subroutine read_group

@@ -7,7 +7,7 @@ module vcor_figure_sweep
    use vcor_figure_result, only : get_axes, get_column, result_t
    use vcor_io_figure, only : add_curve, figure_t, line_solid, new_figure, points_only, plain, &
       style_count
-   use vcor_io_hdf5_contents, only : dataset_t
+   use vcor_io_hdf5_dataset, only : dataset_t
    use vcor_kinds, only : wp
    use vcor_study_text, only : integer_text, shortened
    implicit none

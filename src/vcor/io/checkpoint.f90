@@ -9,36 +9,33 @@
 !> never changes again. Outcomes are written to their places by the system's `pwrite`, which is why
 !> neither SIGKILL nor a crash leaves a file that HDF5 cannot open, and why a chunk costs its own
 !> length only. The room is taken at the beginning: a disk that is too small is noticed then.
-!>
-!> A point is done if its check sum is right. It is written last; after a crash of the machine the
-!> disk may have any part of what was written, in any order, and the sum tells.
 module vcor_io_checkpoint
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
       c_ptr, c_size_t
-   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : move_file, quoted_path, remove_file
+   use vcor_io_checkpoint_points, only : check_column, check_of, columns, dataset, read_points, &
+      status_column, steps_column
+   use vcor_io_file, only : move_file, remove_file
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : open_hdf5, reader_t
-   use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
+   use vcor_io_hdf5_dataset, only : find_place
+   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
+   use vcor_io_identity, only : identity_t, remarks_of
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : quoted_path
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_lockf, c_pwrite, &
       c_text, errno_interrupted, errno_locked, last_errno, lock_alone, system_reason
    use vcor_io_results, only : unit_of
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
    use vcor_study_grid, only : grid_t
    use vcor_study_partition, only : part_t
-   use vcor_study_quantity, only : point_pending, quantities
+   use vcor_study_quantity, only : quantities
    use vcor_study_summary, only : summary_t
    implicit none
    private
 
-   public :: checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
-
-   !> The columns, that is the quantities, steps, status and check
-   integer, parameter :: columns = size(quantities) + 3, steps_column = size(quantities) + 1, &
-      status_column = size(quantities) + 2, check_column = size(quantities) + 3
+   public :: checkpoint_t, create_checkpoint, open_checkpoint, attach
 
    !> A file of a sweep under way
    type :: checkpoint_t
@@ -161,93 +158,6 @@ contains
       if (.not. allocated(error)) call attach(self, path, error)
    end subroutine open_checkpoint
 
-   !> Read a file
-   subroutine read_points(path, identity, summary, error, expected)
-      !> Its path
-      character(len=*), intent(in) :: path
-      !> What it is about
-      type(identity_t), intent(out) :: identity
-      !> Outcomes of its points; there is room for all of them if `expected` is given, otherwise
-      !> they are pending afterwards where there is no room
-      type(summary_t), intent(inout) :: summary
-      !> Set if it cannot be read, or is not about what is expected
-      type(error_t), allocatable, intent(out) :: error
-      !> What it should be about; nothing but this is read without it
-      type(identity_t), intent(in), optional :: expected
-
-      type(reader_t) :: reader
-      type(error_t), allocatable :: trouble
-      integer, allocatable :: checks(:)
-      integer :: i, n
-      logical :: is_ours
-
-      n = 0
-      call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      call read_identity(reader, identity, is_ours)
-      if (.not. is_ours .or. identity%part%points == 0) then
-         call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
-      else if (present(expected)) then
-         call check_same(path, identity, expected, error)
-         if (.not. allocated(error) .and. (identity%part%number /= expected%part%number .or. &
-            identity%part%points /= expected%part%points)) call raise(error, error_file, &
-            quoted_path(path)//' has other points of the sweep')
-         n = size(summary%status)
-         if (.not. allocated(error)) then
-            do i = 1, size(quantities)
-               call reader%get_reals(dataset(i), summary%values(i)%at)
-            end do
-            allocate (checks(n))
-            call reader%get_integers(dataset(steps_column), summary%steps)
-            call reader%get_integers(dataset(status_column), summary%status)
-            call reader%get_integers(dataset(check_column), checks)
-         end if
-      end if
-      call reader%close(trouble)
-      if (allocated(trouble) .and. .not. allocated(error)) call move_alloc(trouble, error)
-      if (allocated(error) .or. .not. allocated(checks)) return
-      do i = 1, n
-         if (checks(i) == check_of(summary, i)) cycle
-         summary%status(i) = point_pending
-         summary%steps(i) = 0
-         call forget(summary, i)
-      end do
-   end subroutine read_points
-
-   !> Take the numbers of a point away
-   pure subroutine forget(summary, place)
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-      !> Place of the point
-      integer, intent(in) :: place
-
-      integer :: i
-
-      do i = 1, size(quantities)
-         summary%values(i)%at(place) = ieee_value(1.0_wp, ieee_quiet_nan)
-      end do
-   end subroutine forget
-
-   !> Path of the dataset of a column
-   pure function dataset(column) result(path)
-      !> Number of the column
-      integer, intent(in) :: column
-      !> Its path in the file
-      character(len=:), allocatable :: path
-
-      select case (column)
-      case (steps_column)
-         path = 'steps'
-      case (status_column)
-         path = 'status'
-      case (check_column)
-         path = 'check'
-      case default
-         path = trim(quantities(column)%name)
-      end select
-      path = 'summary/'//path
-   end function dataset
-
    !> Open a file that is there for writing, and learn where its columns are
    subroutine attach(self, path, error)
       !> The file
@@ -265,10 +175,14 @@ contains
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, columns
-         self%offsets(i) = reader%place(dataset(i))
+         call find_place(reader, dataset(i), self%offsets(i), error)
+         if (allocated(error)) exit
       end do
-      call reader%close(error)
-      if (allocated(error)) return
+      call close_hdf5(reader)
+      if (allocated(error)) then
+         error%code = error_file
+         return
+      end if
 
       self%stream = c_fopen(c_text(path), c_text('rb+'))
       reason = last_errno()
@@ -409,28 +323,5 @@ contains
       self%stream = c_null_ptr
       call remove_file(self%path)
    end subroutine remove
-
-   !> Check sum of a point
-   pure function check_of(summary, place) result(check)
-      !> Outcomes
-      type(summary_t), intent(in) :: summary
-      !> Place of the point
-      integer, intent(in) :: place
-      !> The sum; 0 where the point is pending, and nowhere else
-      integer :: check
-
-      integer(c_int64_t) :: sum
-      integer :: i
-
-      check = 0
-      if (summary%status(place) == point_pending) return
-      sum = int(summary%steps(place), c_int64_t)
-      sum = ieor(ishftc(sum, 11), int(summary%status(place), c_int64_t))
-      do i = 1, size(quantities)
-         sum = ieor(ishftc(sum, 11), transfer(summary%values(i)%at(place), sum))
-      end do
-      check = int(ibits(ieor(sum, ishft(sum, -31)), 0, 31))
-      if (check == 0) check = 1
-   end function check_of
 
 end module vcor_io_checkpoint

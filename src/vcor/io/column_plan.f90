@@ -8,9 +8,9 @@ module vcor_io_column_plan
    use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_frequency, &
       role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, role_time
    use vcor_kinds, only : wp
-   use vcor_study_keys, only : contains_word
    use vcor_study_text, only : integer_text, shortened
    use vcor_study_units, only : time_units
+   use vcor_study_words, only : contains_word
    implicit none
    private
 

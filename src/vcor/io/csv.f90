@@ -19,14 +19,15 @@
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
-   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
+   use vcor_io_column, only : column_t
    use vcor_io_csv_rows, only : field, new_row_writer, row_writer_t
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
    use vcor_io_number, only : real_text
-   use vcor_io_table, only : check_table, column_t, row_count, table_t
+   use vcor_io_table, only : check_table, row_count, table_t
    implicit none
    private
 
-   public :: write_csv, csv_file_t, begin_csv, add_rows, end_csv, discard_csv
+   public :: write_csv, csv_file_t, begin_csv, add_rows, share_rows, end_csv, discard_csv
 
    !> Rows that become text at once
    integer, parameter :: rows_per_block = 256
@@ -117,24 +118,41 @@ contains
       integer, intent(in) :: threads
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      type(row_writer_t) :: rows
-      integer :: start, team
+      integer :: team
 
       team = max(1, min(threads, (last - first)/rows_per_block + 1))
-!$omp parallel default(none) shared(file, table, error, first, last) private(rows) &
-!$omp num_threads(team)
+!$omp parallel default(none) shared(file, table, error, first, last) num_threads(team)
+      call share_rows(file, table, first, last, error)
+!$omp end parallel
+   end subroutine add_rows
+
+   !> The same, called by all threads of a team, with the same arguments; a thread that has other
+   !> things to do may come late
+   subroutine share_rows(file, table, first, last, error)
+      !> The file, begun; discarded on failure
+      type(csv_file_t), intent(inout) :: file
+      !> Table to write
+      type(table_t), intent(in) :: table
+      !> First row
+      integer, intent(in) :: first
+      !> Last row
+      integer, intent(in) :: last
+      !> Unallocated before; set if the file could not be written
+      type(error_t), allocatable, intent(inout) :: error
+      type(row_writer_t) :: rows
+      integer :: start
+
       call new_row_writer(rows, table)
 !$omp do schedule(dynamic) ordered
       do start = first, last, rows_per_block
          call rows%take(start, min(start + rows_per_block - 1, last), table)
 !$omp ordered
          if (.not. allocated(error)) call put(file%file, rows%text(:rows%last), error)
+         if (allocated(error)) file%is_open = .false.
 !$omp end ordered
       end do
 !$omp end do
-!$omp end parallel
-      if (allocated(error)) file%is_open = .false.
-   end subroutine add_rows
+   end subroutine share_rows
 
    !> End a file: it gets its name
    subroutine end_csv(file, error)

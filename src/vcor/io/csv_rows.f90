@@ -1,10 +1,10 @@
 !> Rows of a table as text with commas, by any thread
 module vcor_io_csv_rows
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
+   use vcor_io_column, only : column_t, integer_column, real_column, text_column
    use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
       & put_real
-   use vcor_io_table, only : column_t, coordinate_row, integer_column, real_column, table_t, &
-      & text_column
+   use vcor_io_table, only : coordinate_row, table_t
    implicit none
    private
 

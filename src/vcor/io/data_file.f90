@@ -8,17 +8,17 @@ module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
       & take_decimals, take_line
-   use vcor_io_file, only : join_path
    use vcor_io_header, only : header_t, longest_word, read_names, role_of
+   use vcor_io_path, only : join_path
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
    use vcor_study_case, only : case_t
-   use vcor_study_keys, only : contains_word
    use vcor_study_store, only : entry_t
    use vcor_study_text, only : has_control, integer_text, printable, real_text
    use vcor_study_units, only : modulus_units, time_units, unit_size
+   use vcor_study_words, only : contains_word
    implicit none
    private
 

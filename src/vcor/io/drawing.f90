@@ -7,9 +7,9 @@ module vcor_io_drawing
    use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : create_file, discard, file_exists, join_path, make_directory, &
-      & output_file_t, quoted_path, write_file
+   use vcor_io_file, only : create_file, discard, output_file_t, write_file
    use vcor_io_gnuplot, only : data_text, script_text
+   use vcor_io_path, only : file_exists, join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_getpid, c_remove, c_rename, c_text, last_errno, system_reason
    use vcor_study_text, only : integer_text
    implicit none

@@ -1,238 +1,215 @@
-!> HDF5 files that this program has written, read back
+!> HDF5 files read back: what is in them, and what they say about themselves
 !>
 !>     call open_hdf5(reader, "case.h5", error)
-!>     text = reader%text("version")
-!>     call reader%get_reals("summary/cor", values)
-!>     call reader%close(error)
+!>     text = text_attribute(reader, "/", "title")
+!>     call list_members(reader, "summary", members, error)
+!>     call close_hdf5(reader)
 !>
-!> The first failure is kept, everything after it does nothing, and `close` makes an error of it.
+!> Numbers and text of datasets are read by `vcor_io_hdf5_dataset`.
+!>
+!> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack). Members come in the
+!> order in which they were written where the file knows it, else by name. Every error is an
+!> `error_file` with the name of the file, but for what a file lacks that is there: that is an
+!> `error_input`.
 module vcor_io_hdf5_reader
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int64_t, c_loc, &
-      & c_null_char, c_null_ptr, c_ptr
-   use hdf5, only : h5aclose_f, h5aexists_f, h5aopen_f, h5aread_f, h5dclose_f, h5dget_space_f, &
-      & h5dopen_f, h5dread_f, h5f_acc_rdonly_f, h5fclose_f, h5fopen_f, &
-      & h5sclose_f, h5sget_simple_extent_npoints_f, h5t_cset_utf8_f, &
-      & h5t_native_double, h5t_native_integer, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_c_binding, only : c_loc, c_ptr
+   use hdf5, only : h5_index_crt_order_f, h5_index_name_f, h5_iter_inc_f, h5aclose_f, &
+      & h5aexists_by_name_f, h5aget_space_f, h5aopen_f, h5aread_f, h5f_acc_rdonly_f, h5fclose_f, &
+      & h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, h5gopen_f, h5i_group_f, &
+      & h5iget_type_f, h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, h5sclose_f, h5t_native_double, &
       & hid_t, hsize_t
-   use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : quoted_path
+   use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
+   use vcor_io_hdf5_text, only : attribute_of, read_lengths
+   use vcor_io_path, only : directory_exists, file_exists
    use vcor_kinds, only : wp
+   use vcor_study_text, only : printable, shortened
    implicit none
    private
 
-   public :: reader_t, open_hdf5
+   public :: reader_t, open_hdf5, close_hdf5
+   public :: member_t, list_members, text_attribute, number_attribute
 
-   !> An open file
+   !> Longest name of a member that is read [bytes]
+   integer, parameter :: longest_name = 512
+
+   !> A file that is being read
    type :: reader_t
-      !> What failed first; not allocated as long as nothing did
-      character(len=:), allocatable :: fault
-      !> Its path
-      character(len=:), allocatable, private :: path
-      !> The file
-      integer(hid_t), private :: file = -1_hid_t
-      !> What handled errors before
+      !> Its name as messages show it
+      character(len=:), allocatable :: path
+      !> The file, as HDF5 numbers it; negative unless it is open
+      integer(hid_t) :: file = -1_hid_t
+      !> Handler of errors before
       type(handler_t), private :: handler
-   contains
-      !> An attribute of the file
-      procedure :: text
-      !> Real numbers
-      procedure :: get_reals
-      !> Whole numbers
-      procedure :: get_integers
-      !> Where in the file a dataset is
-      procedure :: place
-      !> Close the file
-      procedure :: close => close_hdf5
    end type reader_t
 
-   interface
-      !> Where in the file the numbers of a dataset begin that is stored in one piece
-      function c_get_offset(dataset) result(offset) bind(c, name="H5Dget_offset")
-         import :: c_int64_t
-         !> The dataset
-         integer(c_int64_t), intent(in), value :: dataset
-         !> Bytes before it, all bits set if there is none
-         integer(c_int64_t) :: offset
-      end function c_get_offset
-   end interface
+   !> A member of a group
+   type :: member_t
+      !> Its name
+      character(len=:), allocatable :: name
+      !> Whether it is a group itself
+      logical :: is_group = .false.
+   end type member_t
 
 contains
 
    !> Open a file
-   subroutine open_hdf5(self, path, error)
-      !> The file
-      type(reader_t), intent(out) :: self
-      !> Its path
-      character(len=*), intent(in) :: path
-      !> Set if it is no HDF5 file, or cannot be read
+   subroutine open_hdf5(reader, filename, error)
+      !> The open file
+      type(reader_t), intent(out) :: reader
+      !> Its name
+      character(len=*), intent(in) :: filename
+      !> Error of code `error_input` if it is no HDF5 file, `error_file` if it cannot be read
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: fault
       integer :: status
+      logical :: is_hdf5
 
-      self%path = path
-      call begin_hdf5(self%handler, self%fault)
-      if (allocated(self%fault)) then
-         call raise(error, error_file, "cannot read "//quoted_path(path)//": HDF5 cannot "// &
-            & self%fault)
+      reader%path = printable(filename)
+      if (len_trim(filename) == 0) then
+         call raise(error, error_file, "the name of the file is empty, expected that of a file " &
+            & //"of results")
+      else if (directory_exists(filename)) then
+         call raise(error, error_file, reader%path//": found a directory, expected a file of " &
+            & //"results")
+      else if (.not. file_exists(filename)) then
+         call raise(error, error_file, reader%path//": there is no such file")
+      end if
+      if (allocated(error)) return
+
+      call begin_hdf5(reader%handler, fault)
+      if (allocated(fault)) then
+         call raise(error, error_file, reader%path//": HDF5 cannot "//fault)
          return
       end if
-      call h5fopen_f(path, h5f_acc_rdonly_f, self%file, status)
-      if (status >= 0) return
-      call end_hdf5(self%handler)
-      call raise(error, error_file, "cannot read "//quoted_path(path)//": expected an HDF5 file")
+      call h5fis_hdf5_f(trim(filename), is_hdf5, status)
+      if (status < 0) then
+         call raise(error, error_file, reader%path//": cannot be read")
+      else if (.not. is_hdf5) then
+         call raise(error, error_input, reader%path//": this is no HDF5 file, expected an HDF5 " &
+            & //"file of results")
+      else
+         call h5fopen_f(trim(filename), h5f_acc_rdonly_f, reader%file, status)
+         if (status < 0) call raise(error, error_file, reader%path//": HDF5 cannot open it: it " &
+            & //"is damaged, or being written")
+      end if
+      if (allocated(error)) call end_hdf5(reader%handler)
    end subroutine open_hdf5
 
-   !> An attribute of the file
-   function text(self, name)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Name of the attribute
-      character(len=*), intent(in) :: name
-      !> Its value, empty if there is no such text
-      character(len=:), allocatable :: text
-      character(kind=c_char), pointer :: letters(:)
-      type(c_ptr), target :: place
-      type(c_ptr) :: buffer
-      integer(hid_t) :: attribute, text_type
-      integer, parameter :: longest = 2**30
-      integer :: i, status
-      logical :: exists
+   !> Close a file
+   subroutine close_hdf5(reader)
+      !> Open file; closed afterwards
+      type(reader_t), intent(inout) :: reader
+      integer :: ignored
 
-      text = ""
-      if (allocated(self%fault)) return
-      call h5aexists_f(self%file, name, exists, status)
-      if (status < 0 .or. .not. exists) return
-      call h5tcopy_f(h5t_string, text_type, status)
-      call note(self, status, "make a type for text")
-      call h5tset_cset_f(text_type, h5t_cset_utf8_f, status)
-      call note(self, status, "make a type for text")
-      call h5aopen_f(self%file, name, attribute, status)
-      call note(self, status, "open the attribute '"//name//"'")
-      if (allocated(self%fault)) return
-      place = c_null_ptr
-      buffer = c_loc(place)
-      call h5aread_f(attribute, text_type, buffer, status)
-      call note(self, status, "read the attribute '"//name//"'")
-      call h5aclose_f(attribute, status)
-      call h5tclose_f(text_type, status)
-      if (allocated(self%fault) .or. .not. c_associated(place)) return
-      call c_f_pointer(place, letters, [longest])
-      i = 1
-      do while (letters(i) /= c_null_char)
-         i = i + 1
-      end do
-      text = repeat(" ", i - 1)
-      do i = 1, len(text)
-         text(i:i) = letters(i)
-      end do
-   end function text
-
-   !> Real numbers
-   subroutine get_reals(self, name, values)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Path of the dataset
-      character(len=*), intent(in) :: name
-      !> Its numbers; their number is checked, shape (n)
-      real(wp), intent(inout), target :: values(:)
-
-      call read_numbers(self, name, h5t_native_double, size(values), c_loc(values))
-   end subroutine get_reals
-
-   !> Whole numbers
-   subroutine get_integers(self, name, values)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Path of the dataset
-      character(len=*), intent(in) :: name
-      !> Its numbers; their number is checked, shape (n)
-      integer, intent(inout), target :: values(:)
-
-      call read_numbers(self, name, h5t_native_integer, size(values), c_loc(values))
-   end subroutine get_integers
-
-   !> Read a dataset
-   subroutine read_numbers(self, name, memory_type, length, place)
-      !> The file
-      type(reader_t), intent(inout) :: self
-      !> Path of the dataset
-      character(len=*), intent(in) :: name
-      !> Type of the numbers
-      integer(hid_t), intent(in) :: memory_type
-      !> Expected number of them
-      integer, intent(in) :: length
-      !> Where they go
-      type(c_ptr), intent(in) :: place
-      type(c_ptr) :: values
-      integer(hid_t) :: dataset, space
-      integer(hsize_t) :: found
-      integer :: status
-
-      if (allocated(self%fault)) return
-      call h5dopen_f(self%file, name, dataset, status)
-      call note(self, status, "find '"//name//"'")
-      if (allocated(self%fault)) return
-      call h5dget_space_f(dataset, space, status)
-      call note(self, status, "give the length of '"//name//"'")
-      call h5sget_simple_extent_npoints_f(space, found, status)
-      call note(self, status, "give the length of '"//name//"'")
-      if (.not. allocated(self%fault) .and. found /= int(length, hsize_t)) &
-         & call note(self, -1, "read '"//name//"', which has another length than expected")
-      if (.not. allocated(self%fault) .and. length > 0) then
-         values = place
-         call h5dread_f(dataset, memory_type, values, status)
-         call note(self, status, "read '"//name//"'")
-      end if
-      call h5sclose_f(space, status)
-      call h5dclose_f(dataset, status)
-   end subroutine read_numbers
-
-   !> Where in the file a dataset is that is stored in one piece
-   function place(self, name) result(offset)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Path of the dataset
-      character(len=*), intent(in) :: name
-      !> Bytes before its first number
-      integer(c_int64_t) :: offset
-      integer(hid_t) :: dataset
-      integer :: status
-
-      offset = -1_c_int64_t
-      if (allocated(self%fault)) return
-      call h5dopen_f(self%file, name, dataset, status)
-      call note(self, status, "find '"//name//"'")
-      if (allocated(self%fault)) return
-      offset = c_get_offset(int(dataset, c_int64_t))
-      if (offset < 0) call note(self, -1, "say where '"//name//"' is")
-      call h5dclose_f(dataset, status)
-   end function place
-
-   !> Close the file
-   subroutine close_hdf5(self, error)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Set to what failed first since the file was opened
-      type(error_t), allocatable, intent(out) :: error
-      integer :: status
-
-      call h5fclose_f(self%file, status)
-      call note(self, status, "close the file")
-      call end_hdf5(self%handler)
-      if (allocated(self%fault)) call raise(error, error_file, "cannot read "// &
-         & quoted_path(self%path)//": HDF5 cannot "//self%fault)
+      if (reader%file < 0_hid_t) return
+      call h5fclose_f(reader%file, ignored)
+      call end_hdf5(reader%handler)
+      reader%file = -1_hid_t
    end subroutine close_hdf5
 
-   !> Keep the first failure
-   pure subroutine note(self, status, what)
-      !> The file
-      class(reader_t), intent(inout) :: self
-      !> Status of HDF5, negative on failure
-      integer, intent(in) :: status
-      !> What was asked of HDF5
-      character(len=*), intent(in) :: what
+   !> Members of a group, in the order they were written where the file knows it, else by name
+   subroutine list_members(reader, path, members, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the group, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Its members, shape (n)
+      type(member_t), allocatable, intent(out) :: members(:)
+      !> Set if there is no such group or it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      character(len=longest_name) :: name
+      integer(hid_t) :: group, object
+      integer :: count, i, ignored, kind, last_order, order, status, storage
 
-      if (status < 0 .and. .not. allocated(self%fault)) self%fault = what
-   end subroutine note
+      allocate(members(0))
+      call h5gopen_f(reader%file, path, group, status)
+      if (status < 0) then
+         call raise(error, error_input, reader%path//": there is no group '"//shortened(path)//"'")
+         return
+      end if
+      call h5gget_info_f(group, storage, count, last_order, status)
+      if (status >= 0) then
+         deallocate(members)
+         allocate(members(count))
+      end if
+      order = h5_index_crt_order_f
+      do i = 1, size(members)
+         call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, int(i - 1, hsize_t), name, &
+            & status)
+         if (status < 0 .and. i == 1) then
+            order = h5_index_name_f
+            call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, 0_hsize_t, name, status)
+         end if
+         if (status < 0) exit
+         members(i)%name = trim(name)
+         call h5oopen_f(group, trim(name), object, status)
+         if (status < 0) exit
+         call h5iget_type_f(object, kind, status)
+         members(i)%is_group = kind == h5i_group_f
+         call h5oclose_f(object, ignored)
+      end do
+      call h5gclose_f(group, ignored)
+      if (status < 0) call raise(error, error_file, reader%path//": the group '"//shortened(path) &
+         & //"' is damaged")
+   end subroutine list_members
+
+   !> A text attribute of a group or a dataset
+   function text_attribute(reader, path, name) result(text)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the group or the dataset, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value; empty if there is none or it is no text
+      character(len=:), allocatable :: text
+      integer(hid_t) :: object
+      integer :: ignored, status
+
+      text = ""
+      call h5oopen_f(reader%file, path, object, status)
+      if (status < 0) return
+      text = attribute_of(object, name)
+      call h5oclose_f(object, ignored)
+   end function text_attribute
+
+   !> A number as attribute of a group or a dataset
+   function number_attribute(reader, path, name) result(number)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the group or the dataset, `/` for the file
+      character(len=*), intent(in) :: path
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Its value; NaN if there is none or it is no single number
+      real(wp) :: number
+      real(wp), target :: value(1)
+      type(c_ptr) :: place
+      integer(hid_t) :: attribute, object, space
+      integer, allocatable :: lengths(:)
+      integer :: ignored, status
+      logical :: exists
+
+      number = ieee_value(1.0_wp, ieee_quiet_nan)
+      call h5aexists_by_name_f(reader%file, path, name, exists, status)
+      if (status < 0 .or. .not. exists) return
+      call h5oopen_f(reader%file, path, object, status)
+      if (status < 0) return
+      call h5aopen_f(object, name, attribute, status)
+      if (status >= 0) then
+         call h5aget_space_f(attribute, space, status)
+         call read_lengths(space, lengths, status)
+         if (status >= 0 .and. product(lengths) == 1) then
+            place = c_loc(value)
+            call h5aread_f(attribute, h5t_native_double, place, status)
+            if (status >= 0) number = value(1)
+         end if
+         call h5sclose_f(space, ignored)
+         call h5aclose_f(attribute, ignored)
+      end if
+      call h5oclose_f(object, ignored)
+   end function number_attribute
 
 end module vcor_io_hdf5_reader

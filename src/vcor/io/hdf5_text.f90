@@ -7,7 +7,7 @@ module vcor_io_hdf5_text
       & h5sget_simple_extent_ndims_f, h5t_string, h5t_string_f, h5tclose_f, h5tcopy_f, &
       & h5tget_class_f, h5tget_cset_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, hid_t, &
       & hsize_t, size_t
-   use vcor_io_table, only : column_t
+   use vcor_io_column, only : column_t
    implicit none
    private
 

@@ -6,10 +6,10 @@
 module vcor_io_header
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : split
-   use vcor_study_keys, only : contains_word, join_words
    use vcor_study_nearest, only : nearest_name
    use vcor_study_text, only : lower, shortened
    use vcor_study_units, only : frequency_units, modulus_units, time_units
+   use vcor_study_words, only : contains_word, join_words
    implicit none
    private
 

@@ -4,10 +4,10 @@ module vcor_io_identity
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_data_file, only : data_file
-   use vcor_io_file, only : quoted_path
    use vcor_io_hdf5, only : remark_t
-   use vcor_io_hdf5_reader, only : reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t, text_attribute
    use vcor_io_number, only : integer_text
+   use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_study_case, only : case_t
    use vcor_study_partition, only : new_part, part_t
@@ -112,24 +112,46 @@ contains
       remarks(4)%text = integer_text(identity%part%parts)
    end function remarks_of
 
-   !> What an open file is about
-   subroutine read_identity(reader, identity, is_ours)
-      !> The file
-      type(reader_t), intent(inout) :: reader
+   !> What an HDF5 file is about
+   subroutine read_identity(path, identity, is_ours, error)
+      !> Path of the file
+      character(len=*), intent(in) :: path
       !> What it is about; one shard without points where it says nothing of those
       type(identity_t), intent(out) :: identity
       !> Whether the file is of this program
       logical, intent(out) :: is_ours
+      !> Error of code `error_file` if it cannot be read, or is no HDF5 file
+      type(error_t), allocatable, intent(out) :: error
 
-      is_ours = reader%text('program') == 'vcor'
-      identity%version = reader%text('version')
-      identity%title = reader%text('title')
-      identity%case_text = reader%text('case')
-      identity%data = reader%text('data')
+      type(reader_t) :: reader
+
+      is_ours = .false.
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) then
+         ! it is no input: it stands where results belong
+         error%code = error_file
+         return
+      end if
+      is_ours = attribute('program') == 'vcor'
+      identity%version = attribute('version')
+      identity%title = attribute('title')
+      identity%case_text = attribute('case')
+      identity%data = attribute('data')
       identity%part = new_part(max(0, number('points')), max(1, number('shard')), &
          max(1, number('shards')))
+      call close_hdf5(reader)
 
    contains
+
+      !> An attribute of the file
+      function attribute(name) result(text)
+         !> Name of the attribute
+         character(len=*), intent(in) :: name
+         !> Its text; empty where there is none
+         character(len=:), allocatable :: text
+
+         text = text_attribute(reader, '/', name)
+      end function attribute
 
       !> A number in an attribute
       function number(name)
@@ -142,7 +164,7 @@ contains
          integer :: status
 
          number = 0
-         digits = reader%text(name)
+         digits = attribute(name)
          if (len(digits) == 0) return
          read (digits, *, iostat=status) number
          if (status /= 0) number = 0

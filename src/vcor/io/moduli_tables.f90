@@ -9,7 +9,8 @@
 !> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
 !> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_moduli_tables
-   use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
+   use vcor_io_table, only : add_fact, new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension
    use vcor_kinds, only : wp
    use vcor_study_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_version, only : version

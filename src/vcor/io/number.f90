@@ -195,13 +195,15 @@ contains
       integer, intent(out) :: power
       ! An error of one in the last bit of 5^k is below 2^26 in `rest`
       integer(int64), parameter :: undecided = 2_int64**28
+      integer(int64), parameter :: limb_mask = 2_int64**limb_bits - 1_int64
+      real(wp), parameter :: unit = 2.0_wp**(-fraction_bits)
       integer(int64) :: column(0:top+2), half, high, low, rest
       integer :: i, k, shift
 
-      low = ibits(mantissa, 0, limb_bits)
-      high = ishft(mantissa, -limb_bits)
+      low = iand(mantissa, limb_mask)
+      high = shiftr(mantissa, limb_bits)
       ! log2(m) >= m - 1 for m from 1 to 2: the power is right or one too small
-      power = floor((real(exponent - 1, wp) + scale(real(mantissa, wp), -fraction_bits))*log10_of_2)
+      power = floor((real(exponent - 1, wp) + real(mantissa, wp)*unit)*log10_of_2)
       do
          k = 16 - power
          column(0) = low*decimal%limb(0, k)
@@ -210,17 +212,17 @@ contains
          column(3) = high*decimal%limb(2, k)
          column(4) = 0_int64
          do i = 0, top + 1
-            column(i+1) = column(i+1) + ishft(column(i), -limb_bits)
-            column(i) = ibits(column(i), 0, limb_bits)
+            column(i+1) = column(i+1) + shiftr(column(i), limb_bits)
+            column(i) = iand(column(i), limb_mask)
          end do
 
          ! The point is in the third limb, 21 to 26 bits from its right: 17 or 18 digits are 54 to
          ! 58 bits of the 133 or 134
          shift = fraction_bits - exponent - k - decimal%exponent(k) - 2*limb_bits
-         digits = ishft(column(4), 2*limb_bits - shift) + ishft(column(3), limb_bits - shift) &
-            & + ishft(column(2), -shift)
-         rest = ishft(ibits(column(2), 0, shift), limb_bits) + column(1)
-         half = ishft(1_int64, shift + limb_bits - 1)
+         digits = shiftl(column(4), 2*limb_bits - shift) + shiftl(column(3), limb_bits - shift) &
+            & + shiftr(column(2), shift)
+         rest = shiftl(iand(column(2), shiftl(1_int64, shift) - 1_int64), limb_bits) + column(1)
+         half = shiftl(1_int64, shift + limb_bits - 1)
          if (rest > half) digits = digits + 1_int64
          if (digits < too_large) exit
          power = power + 1
@@ -257,17 +259,20 @@ contains
       character(len=*), intent(inout) :: buffer
       !> Last character in use, before and after
       integer, intent(inout) :: last
-      integer(int64) :: rest, shorter
-      integer :: pair, place
+      ! Each half has four pairs: two chains of quotients that do not wait for each other
+      integer(int64), parameter :: half = 10_int64**8
+      integer :: high, low, pair, place
 
-      rest = digits
-      do pair = 7, 0, -1
+      high = int(digits/half)
+      low = int(digits - half*(digits/half))
+      do pair = 3, 0, -1
          place = last + 3 + 2*pair
-         shorter = rest/100_int64
-         buffer(place:place+1) = decimal%pairs(int(rest - 100_int64*shorter))
-         rest = shorter
+         buffer(place:place+1) = decimal%pairs(mod(high, 100))
+         buffer(place+8:place+9) = decimal%pairs(mod(low, 100))
+         high = high/100
+         low = low/100
       end do
-      buffer(last+1:last+1) = achar(iachar("0") + int(rest))
+      buffer(last+1:last+1) = achar(iachar("0") + high)
       buffer(last+2:last+2) = "."
       last = last + 18
 

@@ -1,10 +1,11 @@
 !> Outcomes and trajectories as tables
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : new_table, table_t
+   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
    use vcor_study_grid, only : grid_t
-   use vcor_study_quantity, only : history_quantities, longest_status, quantities, status_name
+   use vcor_study_quantity, only : history_quantities, quantities, status_label
    use vcor_study_summary, only : summary_t
    use vcor_version, only : version
    implicit none
@@ -31,7 +32,6 @@ contains
       !> Their outcomes; they move to the table, so that there are not two of a million
       type(summary_t), intent(inout) :: summary
 
-      character(len=longest_status), allocatable :: status(:)
       integer :: i
 
       call new_table(table, version, title, case_text)
@@ -46,11 +46,7 @@ contains
             trim(quantities(i)%unit), trim(quantities(i)%meaning))
       end do
       call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
-      allocate (status(size(summary%status)))
-      do i = 1, size(status)
-         status(i) = status_name(summary%status(i))
-      end do
-      call add_column(table, 'status', status, '', 'how the contact ended')
+      call add_column(table, 'status', status_label(summary%status), '', 'how the contact ended')
    end subroutine summary_table
 
    !> Move outcomes to their table once more, to write some of its rows
@@ -64,7 +60,6 @@ contains
       !> Last row
       integer, intent(in) :: last
 
-      character(len=longest_status) :: status
       integer :: i
 
       do i = 1, size(quantities)
@@ -73,8 +68,8 @@ contains
       call move_alloc(summary%steps, table%columns(size(quantities) + 1)%integers)
       associate (column => table%columns(size(quantities) + 2))
          do i = first, last
-            status = status_name(summary%status(i))
-            column%texts((i - 1)*column%width + 1:i*column%width) = status
+            column%texts((i - 1)*column%width + 1:i*column%width) &
+               = status_label(summary%status(i))
          end do
       end associate
    end subroutine lend_rows

@@ -2,11 +2,11 @@
 !> them
 module vcor_io_row_text
    use vcor_error, only : error_t
+   use vcor_io_column, only : column_t, integer_column, real_column, text_value
    use vcor_io_file, only : write_stdout
    use vcor_io_number, only : decimal_t, longest_integer, longest_real, new_decimal, put_integer, &
       put_real
-   use vcor_io_table, only : column_t, coordinate_row, integer_column, real_column, row_count, &
-      table_t, text_value
+   use vcor_io_table, only : coordinate_row, row_count, table_t
    implicit none
    private
 

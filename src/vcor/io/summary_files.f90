@@ -1,10 +1,9 @@
 !> The files of a summary, both at once where there are threads for it
 module vcor_io_summary_files
-!$ use omp_lib, only : omp_set_max_active_levels
    use vcor_error, only : error_t
-   use vcor_io_csv, only : write_csv
+   use vcor_io_csv, only : begin_csv, csv_file_t, end_csv, share_rows
    use vcor_io_hdf5, only : remark_t, write_hdf5
-   use vcor_io_table, only : table_t
+   use vcor_io_table, only : row_count, table_t
    implicit none
    private
 
@@ -12,8 +11,9 @@ module vcor_io_summary_files
 
 contains
 
-   !> Write a summary: HDF5 by one thread, as the library wants it, CSV by the others
-   subroutine write_summary(csv, hdf5, table, remarks, threads, error)
+   !> Write a summary: HDF5 by one thread, as the library wants it, CSV by the others and, as soon
+   !> as HDF5 is done, by that one too
+   subroutine write_summary(csv, hdf5, table, remarks, threads, error, csv_part, hdf5_part)
       !> Name of the CSV file; empty: none
       character(len=*), intent(in) :: csv
       !> Name of the HDF5 file; empty: none
@@ -26,20 +26,24 @@ contains
       integer, intent(in) :: threads
       !> What went wrong first; unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Name of the CSV file until it is complete, as in `create_file`
+      character(len=*), intent(in), optional :: csv_part
+      !> The same of the HDF5 file
+      character(len=*), intent(in), optional :: hdf5_part
+      type(csv_file_t) :: file
       type(error_t), allocatable :: trouble
-      integer :: team, rest
 
-      team = min(threads, 2)
-      rest = threads
-      if (len(hdf5) > 0) rest = max(1, threads - 1)
-!$    call omp_set_max_active_levels(2)
-!$omp parallel sections default(none) num_threads(team) &
-!$omp shared(csv, hdf5, table, remarks, rest, error, trouble)
-!$omp section
-      if (len(csv) > 0) call write_csv(csv, table, error, rest)
-!$omp section
-      if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks)
-!$omp end parallel sections
+      if (len(csv) > 0) call begin_csv(file, csv, table, error, csv_part)
+      if (allocated(error)) return
+!$omp parallel default(none) num_threads(threads) &
+!$omp shared(file, csv, hdf5, hdf5_part, table, remarks, error, trouble)
+!$omp single
+      if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks, &
+         temporary=hdf5_part)
+!$omp end single nowait
+      if (len(csv) > 0) call share_rows(file, table, 1, row_count(table), error)
+!$omp end parallel
+      if (file%is_open) call end_csv(file, error)
       if (.not. allocated(error) .and. allocated(trouble)) call move_alloc(trouble, error)
    end subroutine write_summary
 

@@ -8,51 +8,20 @@
 !> history, or just the row numbers 1, 2, 3 ... A grid has more dimensions; the rows of its columns
 !> run through them with the last dimension the fastest, as in nested loops, the first one outside.
 !>
-!> Units: `1` for numbers without dimension, such as ratios, counts and numbers in a row; the SI
-!> unit otherwise, as in `m/s` and `N s`; nothing for text.
-!>
 !> Building a table cannot fail at the caller's hand: the first fault (lengths that do not match, a
 !> name twice) is kept, and `check_table`, which every writer calls, makes an error of it. All
-!> components are public for the writers and for reading; they are set by the procedures below only.
+!> components are public for the writers and for reading; they are set by the procedures below and
+!> those of `vcor_io_table_columns` only.
 module vcor_io_table
    use vcor_error, only : error_internal, error_t, raise
+   use vcor_io_column, only : column_t, describe, move_column
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: table_t, column_t, dimension_t, fact_t
-   public :: new_table, add_dimension, add_column, add_fact, move_in_column, check_table
-   public :: row_count, coordinate_row, text_value
-   public :: real_column, integer_column, text_column
-
-   !> Kind of a column: real numbers
-   integer, parameter :: real_column = 1
-   !> Kind of a column: whole numbers
-   integer, parameter :: integer_column = 2
-   !> Kind of a column: text
-   integer, parameter :: text_column = 3
-
-   !> One column: what it is called and its values, of one kind
-   type :: column_t
-      !> Name, one line
-      character(len=:), allocatable :: name
-      !> Unit: `1` without dimension, empty for text
-      character(len=:), allocatable :: unit
-      !> What it is, one line
-      character(len=:), allocatable :: long_name
-      !> `real_column`, `integer_column` or `text_column`: which of the following is allocated
-      integer :: kind = real_column
-      !> Values, shape (length)
-      real(wp), allocatable :: reals(:)
-      !> Values, shape (length)
-      integer, allocatable :: integers(:)
-      !> Values one after the other, each `width` characters, padded with blanks
-      character(len=:), allocatable :: texts
-      !> Characters per text value
-      integer :: width = 0
-      !> Number of values
-      integer :: length = 0
-   end type column_t
+   public :: table_t, dimension_t, fact_t
+   public :: new_table, add_fact, check_table, row_count, coordinate_row
+   public :: take_column, take_dimension
 
    !> One dimension
    type :: dimension_t
@@ -97,27 +66,6 @@ module vcor_io_table
       !> First fault in building the table; not allocated if there is none
       character(len=:), allocatable :: fault
    end type table_t
-
-   !> Add a dimension, all of them before the first column
-   interface add_dimension
-      module procedure add_index_dimension
-      module procedure add_real_dimension
-      module procedure add_integer_dimension
-      module procedure add_text_dimension
-   end interface add_dimension
-
-   !> Add a column; its length is the product of the lengths of all dimensions
-   interface add_column
-      module procedure add_real_column
-      module procedure add_integer_column
-      module procedure add_text_column
-   end interface add_column
-
-   !> Add a column whose values move to the table: nothing is copied, which counts for millions
-   interface move_in_column
-      module procedure move_in_real_column
-      module procedure move_in_integer_column
-   end interface move_in_column
 
 contains
 
@@ -172,18 +120,6 @@ contains
       place = mod((row - 1)/stride, table%dimensions(number)%coordinate%length) + 1
    end function coordinate_row
 
-   !> Value of a text column
-   pure function text_value(column, row) result(text)
-      !> Text column
-      type(column_t), intent(in) :: column
-      !> Number of the value, from 1
-      integer, intent(in) :: row
-      !> The value, without blanks at its end
-      character(len=:), allocatable :: text
-
-      text = trim(column%texts((row - 1)*column%width + 1:row*column%width))
-   end function text_value
-
    !> Check that a table is complete and sound
    pure subroutine check_table(table, error)
       !> Table to check
@@ -197,133 +133,6 @@ contains
          call raise(error, error_internal, "the table has no dimension, expected at least one")
       end if
    end subroutine check_table
-
-   !> Add a dimension whose coordinates are the numbers 1, 2, 3 ...
-   pure subroutine add_index_dimension(table, name, length)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the dimension
-      character(len=*), intent(in) :: name
-      !> Its length, not negative
-      integer, intent(in) :: length
-      type(column_t) :: coordinate
-      integer :: i
-
-      call describe(coordinate, name, "1", "number of the "//name, integer_column, max(length, 0))
-      coordinate%integers = [(i, i = 1, length)]
-      call take_dimension(table, coordinate, .true.)
-   end subroutine add_index_dimension
-
-   !> Add a dimension with real numbers
-   pure subroutine add_real_dimension(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the dimension
-      character(len=*), intent(in) :: name
-      !> Coordinates, shape (length)
-      real(wp), intent(in) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-      type(column_t) :: coordinate
-
-      call describe(coordinate, name, unit, long_name, real_column, size(values))
-      coordinate%reals = values
-      call take_dimension(table, coordinate, .false.)
-   end subroutine add_real_dimension
-
-   !> Add a dimension with whole numbers
-   pure subroutine add_integer_dimension(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the dimension
-      character(len=*), intent(in) :: name
-      !> Coordinates, shape (length)
-      integer, intent(in) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-      type(column_t) :: coordinate
-
-      call describe(coordinate, name, unit, long_name, integer_column, size(values))
-      coordinate%integers = values
-      call take_dimension(table, coordinate, .false.)
-   end subroutine add_integer_dimension
-
-   !> Add a dimension with names
-   pure subroutine add_text_dimension(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the dimension
-      character(len=*), intent(in) :: name
-      !> Coordinates, shape (length)
-      character(len=*), intent(in) :: values(:)
-      !> Unit, empty
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-      type(column_t) :: coordinate
-
-      call describe(coordinate, name, unit, long_name, text_column, size(values))
-      call join_texts(coordinate, values)
-      call take_dimension(table, coordinate, .false.)
-   end subroutine add_text_dimension
-
-   !> Add a column of real numbers
-   pure subroutine add_real_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the column
-      character(len=*), intent(in) :: name
-      !> Values, shape (rows); NaN and infinity are allowed
-      real(wp), intent(in) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-
-      call take_column(table, name, unit, long_name, real_column, size(values))
-      if (allocated(table%fault)) return
-      table%columns(table%column_count)%reals = values
-   end subroutine add_real_column
-
-   !> Add a column of whole numbers
-   pure subroutine add_integer_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the column
-      character(len=*), intent(in) :: name
-      !> Values, shape (rows)
-      integer, intent(in) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-
-      call take_column(table, name, unit, long_name, integer_column, size(values))
-      if (allocated(table%fault)) return
-      table%columns(table%column_count)%integers = values
-   end subroutine add_integer_column
-
-   !> Add a column of text
-   pure subroutine add_text_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the column
-      character(len=*), intent(in) :: name
-      !> Values, shape (rows); blanks at their ends do not count
-      character(len=*), intent(in) :: values(:)
-      !> Unit, empty
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-
-      call take_column(table, name, unit, long_name, text_column, size(values))
-      if (allocated(table%fault)) return
-      call join_texts(table%columns(table%column_count), values)
-   end subroutine add_text_column
 
    !> Add a number that holds for a table as a whole
    pure subroutine add_fact(table, name, value, unit, long_name)
@@ -350,42 +159,6 @@ contains
          fact%long_name = long_name
       end associate
    end subroutine add_fact
-
-   !> Add a column of real numbers, which move
-   pure subroutine move_in_real_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the column
-      character(len=*), intent(in) :: name
-      !> Values, shape (rows); not allocated afterwards
-      real(wp), allocatable, intent(inout) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-
-      call take_column(table, name, unit, long_name, real_column, size(values))
-      if (allocated(table%fault)) return
-      call move_alloc(values, table%columns(table%column_count)%reals)
-   end subroutine move_in_real_column
-
-   !> Add a column of whole numbers, which move
-   pure subroutine move_in_integer_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name of the column
-      character(len=*), intent(in) :: name
-      !> Values, shape (rows); not allocated afterwards
-      integer, allocatable, intent(inout) :: values(:)
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-
-      call take_column(table, name, unit, long_name, integer_column, size(values))
-      if (allocated(table%fault)) return
-      call move_alloc(values, table%columns(table%column_count)%integers)
-   end subroutine move_in_integer_column
 
    !> Make room for a column and describe it; its values are set by the caller
    pure subroutine take_column(table, name, unit, long_name, kind, length)
@@ -485,63 +258,5 @@ contains
             & table%fault = "the name of a column of a table is not a single line of text"
       end do
    end subroutine check_name
-
-   !> Set everything but the values
-   pure subroutine describe(column, name, unit, long_name, kind, length)
-      !> Column to describe
-      type(column_t), intent(inout) :: column
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-      !> One of the kinds of columns
-      integer, intent(in) :: kind
-      !> Number of values
-      integer, intent(in) :: length
-
-      column%name = trim(name)
-      column%unit = trim(unit)
-      column%long_name = trim(long_name)
-      column%kind = kind
-      column%length = length
-   end subroutine describe
-
-   !> Set the values of a text column
-   pure subroutine join_texts(column, values)
-      !> Column to set
-      type(column_t), intent(inout) :: column
-      !> Values, shape (length)
-      character(len=*), intent(in) :: values(:)
-      integer :: i, width
-
-      ! One text for all: no memory of its own for each of a million values
-      width = 0
-      if (size(values) > 0) width = maxval(len_trim(values))
-      column%width = width
-      allocate(character(len=width*size(values)) :: column%texts)
-      do i = 1, size(values)
-         column%texts((i - 1)*width + 1:i*width) = values(i)
-      end do
-   end subroutine join_texts
-
-   !> Move a column without a copy of its values
-   pure subroutine move_column(from, to)
-      !> Column to move; without values afterwards
-      type(column_t), intent(inout) :: from
-      !> Where it goes
-      type(column_t), intent(inout) :: to
-
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%unit, to%unit)
-      call move_alloc(from%long_name, to%long_name)
-      call move_alloc(from%reals, to%reals)
-      call move_alloc(from%integers, to%integers)
-      call move_alloc(from%texts, to%texts)
-      to%kind = from%kind
-      to%width = from%width
-      to%length = from%length
-   end subroutine move_column
 
 end module vcor_io_table

@@ -4,10 +4,10 @@ module vcor_io_values
    use vcor_io_real, only : read_real
    use vcor_io_scanner, only : end_token, scan_text, token_t
    use vcor_kinds, only : wp
-   use vcor_study_keys, only : integer_key, key_t, list_key, logical_key, real_key, spelled, &
-      & text_key, wanted
+   use vcor_study_keys, only : integer_key, key_t, list_key, logical_key, real_key, text_key, wanted
    use vcor_study_store, only : entry_t
    use vcor_study_text, only : integer_text, is_utf8, lower, quoted, shortened
+   use vcor_study_words, only : spelled
    implicit none
    private
 

@@ -4,10 +4,10 @@ module vcor_study_axes
    use vcor_kinds, only : wp
    use vcor_study_entries, only : entries_t
    use vcor_study_grid, only : axis_t, grid_t, log_spacing, spaced
-   use vcor_study_keys, only : catalogue, groups, join_words, key_t, keys_of, &
-      list_key, real_key, row_for_model
+   use vcor_study_keys, only : catalogue, groups, key_t, keys_of, list_key, real_key, row_for_model
    use vcor_study_path, only : resolve_path
    use vcor_study_text, only : integer_text, real_text, shortened
+   use vcor_study_words, only : join_words
    implicit none
    private
 

@@ -1,5 +1,5 @@
 !> The numbers of a case in a form that impacts are built from quickly: nothing is looked up by
-!> name twice, what does not change is built once
+!> name twice, what does not change is built once and is not copied either
 module vcor_study_blueprint
    use vcor_constants, only : pi
    use vcor_error, only : error_t
@@ -34,10 +34,10 @@ module vcor_study_blueprint
       integer :: item = 0
       !> Description of its material
       type(material_data_t) :: data
-      !> Its material; not allocated as long as it varies and was never built
+      !> Its material; not allocated as long as it was never built
       class(material_t), allocatable :: material
-      !> Whether the modulus varies, so that the material has to be built for each impact
-      logical :: varies = .false.
+      !> Whether the modulus of the material is that of its description
+      logical :: is_current = .false.
    end type body_t
 
    !> What an impact is built from
@@ -65,6 +65,8 @@ module vcor_study_blueprint
       type(body_t) :: plate
       !> Whether the Volterra series has its second term
       logical :: second_term = .false.
+      !> Whether modulus and plate of the impact that was built last are what they should be
+      logical :: contact_is_current = .false.
       !> How the impact is to be solved
       type(solver_settings_t), public :: settings
    contains
@@ -120,22 +122,44 @@ contains
       call case%get('solver', 'volterra_order', order)
       self%second_term = order == 2
 
-      call describe_body(case, 'sphere', varying, self%sphere)
-      call describe_body(case, 'plate', varying, self%plate)
-      if (.not. self%sphere%varies) call build_material_of(self%sphere, error, cause)
+      call describe_body(case, 'sphere', self%sphere)
+      call describe_body(case, 'plate', self%plate)
+      if (.not. varies(self%sphere%item)) call build_material_of(self%sphere, error, cause)
       if (allocated(error)) return
-      if (self%plate%item /= self%sphere%item .and. .not. self%plate%varies) &
+      if (self%plate%item /= self%sphere%item .and. .not. varies(self%plate%item)) &
          call build_material_of(self%plate, error, cause)
+
+   contains
+
+      !> Whether the modulus of a material varies
+      pure function varies(item)
+         !> Number of the material
+         integer, intent(in) :: item
+         !> Whether it does
+         logical :: varies
+
+         varies = any(varying%group == 'material' .and. varying%item == item &
+            .and. takes_part(varying%key))
+      end function varies
    end subroutine new_blueprint
 
+   !> Whether a number of a material takes part in its modulus: points of data need not be fitted
+   !> anew for another density
+   elemental function takes_part(key)
+      !> Key of the number
+      character(len=*), intent(in) :: key
+      !> Whether it does
+      logical :: takes_part
+
+      takes_part = key /= 'density' .and. key /= 'poisson_ratio'
+   end function takes_part
+
    !> Describe the material of a body
-   subroutine describe_body(case, group, varying, body)
+   subroutine describe_body(case, group, body)
       !> The case
       class(entries_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: group
-      !> Numbers that will be set, shape (n)
-      type(place_t), intent(in) :: varying(:)
       !> The body, its material not built
       type(body_t), intent(out) :: body
 
@@ -144,8 +168,6 @@ contains
       call case%get(group, 'material', name)
       body%item = case%find_material(name)
       call describe_material(case, body%item, body%data)
-      body%varies = any(varying%group == 'material' .and. varying%item == body%item &
-         .and. varying%key /= 'density' .and. varying%key /= 'poisson_ratio')
    end subroutine describe_body
 
    !> Place of an entry
@@ -185,8 +207,9 @@ contains
       real(wp), intent(in) :: value
 
       if (place%group == 'material') then
-         if (place%item == self%sphere%item) call self%sphere%data%set(place%key, value)
-         if (place%item == self%plate%item) call self%plate%data%set(place%key, value)
+         call set_in(self%sphere)
+         call set_in(self%plate)
+         self%contact_is_current = .false.
          return
       end if
       select case (place%key)
@@ -200,6 +223,7 @@ contains
          self%surface_radius = value
       case ('half_thickness')
          self%half_thickness = value
+         self%contact_is_current = .false.
       case ('time_step')
          self%settings%time_step = value
       case ('end_time')
@@ -211,61 +235,99 @@ contains
       case default
          continue
       end select
+
+   contains
+
+      !> Set it where a body is of the material
+      pure subroutine set_in(body)
+         !> The body
+         type(body_t), intent(inout) :: body
+
+         if (place%item /= body%item) return
+         call body%data%set(place%key, value)
+         if (takes_part(place%key)) body%is_current = .false.
+      end subroutine set_in
    end subroutine set
 
    !> Build the impact
    subroutine build(self, impact, error, cause)
-      !> The blueprint; its materials are built anew where they vary
+      !> The blueprint; its materials are built anew where that has to be
       class(blueprint_t), intent(inout) :: self
-      !> The impact
-      type(impact_t), intent(out) :: impact
+      !> The impact; what this blueprint built last or, the first time, nothing
+      type(impact_t), intent(inout) :: impact
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> What in the case the error is about
       type(place_t), intent(out) :: cause
 
-      type(contact_modulus_t) :: modulus
-      type(plate_t) :: plate
+      type(impact_t) :: motion
+      type(contact_modulus_t) :: no_modulus
+      type(plate_t) :: no_plate
       real(wp) :: mass
+
+      if (.not. self%contact_is_current) call build_contact(self, impact, error, cause)
+      if (allocated(error)) return
+      mass = self%mass
+      if (.not. mass > 0.0_wp) &
+         mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density
+      ! modulus and plate are in their place already: copies of them would take longer than all else
+      call new_impact(motion, self%velocity, mass, self%radius, self%surface_radius, no_modulus, &
+         no_plate, error, self%law)
+      if (allocated(error)) then
+         cause = place_t('sphere', 'radius')
+         return
+      end if
+      impact%velocity = motion%velocity
+      impact%mass = motion%mass
+      impact%hertz_factor = motion%hertz_factor
+      impact%law = motion%law
+   end subroutine build
+
+   !> Build what the sphere meets: modulus and plate of an impact
+   subroutine build_contact(self, impact, error, cause)
+      !> The blueprint; its materials are built anew where that has to be
+      type(blueprint_t), intent(inout) :: self
+      !> The impact, its modulus and plate built
+      type(impact_t), intent(inout) :: impact
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> What in the case the error is about
+      type(place_t), intent(inout) :: cause
 
       call build_materials(self, error, cause)
       if (allocated(error)) return
-      call new_contact_modulus(modulus, self%sphere%material, self%plate%material, &
+      call new_contact_modulus(impact%modulus, self%sphere%material, self%plate%material, &
          self%sphere%item == self%plate%item, error, self%pair)
       if (allocated(error)) then
          cause = place_t('plate', 'material')
          return
       end if
-      call new_plate(plate, self%plate%material, self%half_thickness, self%waves, error)
+      call new_plate(impact%plate, self%plate%material, self%half_thickness, self%waves, error)
       if (allocated(error)) then
          cause = place_t('plate', 'waves')
          return
       end if
-      mass = self%mass
-      if (.not. mass > 0.0_wp) &
-         mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density
-      call new_impact(impact, self%velocity, mass, self%radius, self%surface_radius, modulus, &
-         plate, error, self%law)
-      if (allocated(error)) cause = place_t('sphere', 'radius')
-   end subroutine build
+      self%contact_is_current = .true.
+   end subroutine build_contact
 
-   !> Build the materials that vary or were never built, and set what does not take part in the
-   !> modulus: points of data need not be fitted anew for another density
+   !> Build the materials that have changed or were never built, and set what does not take part in
+   !> the modulus
    subroutine build_materials(self, error, cause)
       !> The blueprint
       class(blueprint_t), intent(inout) :: self
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> What in the case the error is about
-      type(place_t), intent(out) :: cause
+      type(place_t), intent(inout) :: cause
 
       call build_material_of(self%sphere, error, cause)
       if (allocated(error)) return
       if (self%plate%item /= self%sphere%item) then
          call build_material_of(self%plate, error, cause)
-      else if (self%plate%varies .or. .not. allocated(self%plate%material)) then
+      else if (.not. self%plate%is_current) then
          if (allocated(self%plate%material)) deallocate (self%plate%material)
          allocate (self%plate%material, source=self%sphere%material)
+         self%plate%is_current = .true.
       else
          call set_constants(self%plate)
       end if
@@ -280,12 +342,16 @@ contains
       !> What in the case the error is about
       type(place_t), intent(inout) :: cause
 
-      if (.not. body%varies .and. allocated(body%material)) then
+      if (body%is_current) then
          call set_constants(body)
          return
       end if
       call new_material(body%material, body%data, error)
-      if (allocated(error)) cause = place_t('material', 'name', body%item)
+      if (allocated(error)) then
+         cause = place_t('material', 'name', body%item)
+         return
+      end if
+      body%is_current = .true.
    end subroutine build_material_of
 
    !> Set what does not take part in the modulus

@@ -22,7 +22,7 @@ contains
       !> The material
       type(material_data_t), intent(in) :: data
 
-      call put_text(case, item, 'model', data%model)
+      call put(case, item, 'model', word=data%model)
       select case (data%model)
       case ('sls')
          call put_number(case, item, 'glassy_modulus', data%glassy_modulus)
@@ -40,8 +40,8 @@ contains
          call put_number(case, item, 'exponent', data%exponent)
          call put_number(case, item, 'time', data%time)
       case default
-         call put_list(case, item, 'moduli', data%moduli)
-         call put_list(case, item, 'times', 1.0_wp/data%rates)
+         call put(case, item, 'moduli', list=data%moduli)
+         call put(case, item, 'times', list=1.0_wp/data%rates)
       end select
       call put_number(case, item, 'equilibrium_modulus', data%equilibrium_modulus)
    end subroutine put_material
@@ -57,9 +57,9 @@ contains
       !> Moduli [Pa], shape (n)
       real(wp), intent(in) :: moduli(:)
 
-      call put_text(case, item, 'model', 'table')
-      call put_list(case, item, 'times', times)
-      call put_list(case, item, 'moduli', moduli)
+      call put(case, item, 'model', word='table')
+      call put(case, item, 'times', list=times)
+      call put(case, item, 'moduli', list=moduli)
    end subroutine put_points
 
    !> Have the impact of a case solved by product integration, with steps as they are needed
@@ -103,7 +103,7 @@ contains
 
       call case%start('fit')
       call case%add(find_group('material'), 0, item)
-      call put_text(case, item, 'name', data%name)
+      call put(case, item, 'name', word=data%name)
       call put_material(case, item, data)
       if (density > 0.0_wp) call put_number(case, item, 'density', density)
       call put_number(case, item, 'poisson_ratio', poisson_ratio)
@@ -126,45 +126,29 @@ contains
       call case%assign_number(case%handle('material', key, item), number)
    end subroutine put_number
 
-   !> Set a text
-   subroutine put_text(case, item, key, word)
+   !> Set a text or a list
+   subroutine put(case, item, key, word, list)
       !> The case
       type(case_t), intent(inout) :: case
       !> Number of the material
       integer, intent(in) :: item
       !> Name of the key
       character(len=*), intent(in) :: key
-      !> The text
-      character(len=*), intent(in) :: word
+      !> The text, where the key takes one
+      character(len=*), intent(in), optional :: word
+      !> The list, where the key takes one, shape (n)
+      real(wp), intent(in), optional :: list(:)
 
       type(entry_t) :: entry
+      integer :: handle
 
-      entry = case%entry(case%handle('material', key, item))
-      entry%text = word
+      handle = case%handle('material', key, item)
+      entry = case%entry(handle)
+      if (present(word)) entry%text = word
+      if (present(list)) entry%list = list
       entry%given = .true.
       entry%present = .true.
-      call case%assign(case%handle('material', key, item), entry)
-   end subroutine put_text
-
-   !> Set a list
-   subroutine put_list(case, item, key, list)
-      !> The case
-      type(case_t), intent(inout) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The list
-      real(wp), intent(in) :: list(:)
-
-      type(entry_t) :: entry
-
-      entry = case%entry(case%handle('material', key, item))
-      if (allocated(entry%list)) deallocate (entry%list)
-      allocate (entry%list, source=list)
-      entry%given = .true.
-      entry%present = .true.
-      call case%assign(case%handle('material', key, item), entry)
-   end subroutine put_list
+      call case%assign(handle, entry)
+   end subroutine put
 
 end module vcor_study_identified

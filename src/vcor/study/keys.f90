@@ -9,13 +9,14 @@ module vcor_study_keys
    use vcor_kinds, only : wp
    use vcor_study_interval, only : interval_t, interval_text
    use vcor_study_text, only : lower
+   use vcor_study_words, only : contains_word, join_words
    implicit none
    private
 
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       & list_key
-   public :: find_group, find_key, first_row, last_row, row_for_model, contains_word
-   public :: kind_name, range_text, wanted, keys_of, group_names, join_words, spelled
+   public :: find_group, find_key, first_row, last_row, row_for_model
+   public :: kind_name, range_text, wanted, keys_of, group_names
 
    !> Kinds of values: a real number
    integer, parameter :: real_key = 1
@@ -291,35 +292,6 @@ contains
       found = 0
    end function row_for_model
 
-   !> Whether a list of words holds a word
-   pure function contains_word(words, word) result(yes)
-      !> Words separated by blanks
-      character(len=*), intent(in) :: words
-      !> The word
-      character(len=*), intent(in) :: word
-      !> True if it is there
-      logical :: yes
-
-      yes = len_trim(word) > 0 .and. index(trim(word), " ") == 0
-      if (yes) yes = index(" "//words//" ", " "//trim(word)//" ") > 0
-   end function contains_word
-
-   !> A word as it is spelled in a list of words: upper and lower case make no difference
-   pure function spelled(words, word) result(same)
-      !> Words separated by blanks
-      character(len=*), intent(in) :: words
-      !> The word
-      character(len=*), intent(in) :: word
-      !> The word of the list; in lower case when it is not there
-      character(len=len(word)) :: same
-      integer :: place
-
-      same = lower(word)
-      if (.not. contains_word(lower(words), same)) return
-      place = index(" "//lower(words)//" ", " "//same//" ")
-      same = words(place:place + len(word) - 1)
-   end function spelled
-
    !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
    pure function range_text(key) result(text)
       !> The key
@@ -401,23 +373,5 @@ contains
          words = words//" "//trim(groups(group)%name)
       end do
    end function group_names
-
-   !> Words with commas between them
-   pure function join_words(words) result(text)
-      !> Words separated by blanks
-      character(len=*), intent(in) :: words
-      !> The same separated by a comma and a blank
-      character(len=:), allocatable :: text
-      integer :: position
-
-      text = ""
-      do position = 1, len_trim(words)
-         if (words(position:position) == " ") then
-            text = text//", "
-         else
-            text = text//words(position:position)
-         end if
-      end do
-   end function join_words
 
 end module vcor_study_keys

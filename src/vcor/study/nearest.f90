@@ -1,7 +1,7 @@
 !> The known name nearest to a misspelt one
 module vcor_study_nearest
-   use vcor_study_keys, only : join_words
    use vcor_study_text, only : lower
+   use vcor_study_words, only : join_words
    implicit none
    private
 

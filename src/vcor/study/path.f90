@@ -2,9 +2,10 @@
 !> known
 module vcor_study_path
    use vcor_study_entries, only : entries_t
-   use vcor_study_keys, only : find_group, find_key, group_names, groups, join_words, keys_of
+   use vcor_study_keys, only : find_group, find_key, group_names, groups, keys_of
    use vcor_study_nearest, only : nearest_name, suggestion
    use vcor_study_text, only : canonical_name, integer_text, shortened
+   use vcor_study_words, only : join_words
    implicit none
    private
 

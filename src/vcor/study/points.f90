@@ -141,10 +141,19 @@ contains
       integer :: n
 
       n = last - first + 1
-      call self%summary%unpack(first, reshape(result(:n*numbers_per_point), &
-         [n, numbers_per_point]))
+      call unpack_from(result)
       call self%failures%add_packed(result(n*numbers_per_point + 1:))
       call self%monitor%finished(first, last, self%summary, error)
+
+   contains
+
+      !> Outcomes from the first of so many numbers
+      subroutine unpack_from(numbers)
+         !> Numbers, by point and quantity
+         real(wp), intent(in) :: numbers(n, numbers_per_point)
+
+         call self%summary%unpack(first, numbers)
+      end subroutine unpack_from
    end subroutine take
 
    !> Whether to stop

@@ -9,7 +9,7 @@ module vcor_study_quantity
    private
 
    public :: quantity_t, quantities, history_quantities
-   public :: quantity_value, quantity_values, quantity_names, status_name
+   public :: quantity_value, quantity_values, quantity_names, status_label, status_name
    public :: status_t, statuses, point_pending, point_invalid, point_failed, longest_status
 
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
@@ -147,12 +147,22 @@ contains
       !> separated, no_separation, sticks, invalid, failed or pending
       character(len=:), allocatable :: name
 
+      name = trim(status_label(status))
+   end function status_name
+
+   !> The same with blanks at its end
+   elemental function status_label(status) result(label)
+      !> One of the `contact_*` and `point_*` constants
+      integer, intent(in) :: status
+      !> Name
+      character(len=longest_status) :: label
+
       integer :: i
 
-      name = 'failed'
+      label = 'failed'
       do i = 1, size(statuses)
-         if (statuses(i)%code == status) name = trim(statuses(i)%name)
+         if (statuses(i)%code == status) label = statuses(i)%name
       end do
-   end function status_name
+   end function status_label
 
 end module vcor_study_quantity

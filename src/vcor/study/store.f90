@@ -8,10 +8,11 @@ module vcor_study_store
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_kinds, only : wp
    use vcor_study_interval, only : contains_number
-   use vcor_study_keys, only : catalogue, contains_word, find_group, find_key, first_row, groups, &
-      & integer_key, key_t, last_row, list_key, logical_key, real_key, text_key, wanted
+   use vcor_study_keys, only : catalogue, find_group, find_key, first_row, groups, integer_key, &
+      & key_t, last_row, list_key, logical_key, real_key, text_key, wanted
    use vcor_study_nearest, only : nearest_name
    use vcor_study_text, only : integer_text, lower, real_text, shortened
+   use vcor_study_words, only : contains_word
    implicit none
    private
 

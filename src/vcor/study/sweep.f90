@@ -64,12 +64,13 @@ module vcor_study_sweep
       type(trajectory_t) :: trajectory
       !> What the impact is built from
       type(blueprint_t), private :: blueprint
+      !> Which value of each parameter is set in it, 0: none; allocated once it is ready, shape
+      !> (axes)
+      integer, allocatable, private :: places(:)
       !> The solver where it varies
       class(solver_t), allocatable, private :: solver
       !> Settings that this solver was made with
       type(solver_settings_t), private :: settings
-      !> Whether it is ready
-      logical, private :: is_ready = .false.
    end type worker_t
 
 contains
@@ -191,10 +192,13 @@ contains
       real(wp) :: value
       integer :: i, place(size(self%grid%axes))
 
-      if (.not. worker%is_ready) worker%blueprint = self%blueprint
-      worker%is_ready = .true.
+      if (.not. allocated(worker%places)) then
+         worker%blueprint = self%blueprint
+         allocate (worker%places(size(place)), source=0)
+      end if
       place = self%grid%places(point)
       do i = 1, size(place)
+         if (worker%places(i) == place(i)) cycle
          value = self%grid%axes(i)%values(place(i))
          if (.not. contains_number(self%ranges(i), value)) then
             cause = self%places(i)
@@ -202,11 +206,12 @@ contains
             return
          end if
          call worker%blueprint%set(self%places(i), value)
+         worker%places(i) = place(i)
       end do
       call worker%blueprint%build(worker%impact, error, cause)
       if (allocated(error)) return
-      cause = solver_place(worker%blueprint%settings)
       call check_settings(worker%blueprint%settings, worker%impact, error)
+      if (allocated(error)) cause = solver_place(worker%blueprint%settings)
    end subroutine build_point
 
    !> Build the solver anew if its settings have changed

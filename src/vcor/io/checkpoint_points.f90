@@ -1,0 +1,157 @@
+!> What a file of a sweep under way holds: its columns and check sums, and how they are read back
+!>
+!> A point is done if its check sum is right. It is written last; after a crash of the machine the
+!> disk may have any part of what was written, in any order, and the sum tells.
+module vcor_io_checkpoint_points
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_c_binding, only : c_int64_t
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_hdf5_dataset, only : read_numbers
+   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
+   use vcor_io_identity, only : check_same, identity_t, read_identity
+   use vcor_io_path, only : quoted_path
+   use vcor_kinds, only : wp
+   use vcor_study_quantity, only : point_pending, quantities
+   use vcor_study_summary, only : summary_t
+   implicit none
+   private
+
+   public :: read_points, check_of, dataset
+   public :: columns, steps_column, status_column, check_column
+
+   !> The columns, that is the quantities, steps, status and check
+   integer, parameter :: columns = size(quantities) + 3, steps_column = size(quantities) + 1, &
+      status_column = size(quantities) + 2, check_column = size(quantities) + 3
+
+contains
+
+   !> Read a file
+   subroutine read_points(path, identity, summary, error, expected)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> What it is about
+      type(identity_t), intent(out) :: identity
+      !> Outcomes of its points; there is room for all of them if `expected` is given, otherwise
+      !> they are pending afterwards where there is no room
+      type(summary_t), intent(inout) :: summary
+      !> Set if it cannot be read, or is not about what is expected
+      type(error_t), allocatable, intent(out) :: error
+      !> What it should be about; nothing but this is read without it
+      type(identity_t), intent(in), optional :: expected
+
+      integer, allocatable :: checks(:)
+      integer :: i
+      logical :: is_ours
+
+      call read_identity(path, identity, is_ours, error)
+      if (allocated(error)) return
+      if (.not. is_ours .or. identity%part%points == 0) then
+         call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
+         return
+      end if
+      if (.not. present(expected)) return
+      call check_same(path, identity, expected, error)
+      if (allocated(error)) return
+      if (identity%part%number /= expected%part%number &
+         .or. identity%part%points /= expected%part%points) then
+         call raise(error, error_file, quoted_path(path)//' has other points of the sweep')
+         return
+      end if
+      allocate (checks(size(summary%status)))
+      call read_columns(path, summary, checks, error)
+      if (allocated(error)) return
+      do i = 1, size(checks)
+         if (checks(i) == check_of(summary, i)) cycle
+         summary%status(i) = point_pending
+         summary%steps(i) = 0
+         call forget(summary, i)
+      end do
+   end subroutine read_points
+
+   !> Read all columns of a file
+   subroutine read_columns(path, summary, checks, error)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> Outcomes, with room for all of its points
+      type(summary_t), intent(inout) :: summary
+      !> Check sums, shape (points)
+      integer, intent(inout) :: checks(:)
+      !> Error of code `error_file` if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(reader_t) :: reader
+      integer :: i
+
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      do i = 1, size(quantities)
+         call read_numbers(reader, dataset(i), summary%values(i)%at, error)
+         if (allocated(error)) exit
+      end do
+      if (.not. allocated(error)) &
+         call read_numbers(reader, dataset(steps_column), summary%steps, error)
+      if (.not. allocated(error)) &
+         call read_numbers(reader, dataset(status_column), summary%status, error)
+      if (.not. allocated(error)) call read_numbers(reader, dataset(check_column), checks, error)
+      call close_hdf5(reader)
+      if (allocated(error)) error%code = error_file
+   end subroutine read_columns
+
+   !> Take the numbers of a point away
+   pure subroutine forget(summary, place)
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+      !> Place of the point
+      integer, intent(in) :: place
+
+      integer :: i
+
+      do i = 1, size(quantities)
+         summary%values(i)%at(place) = ieee_value(1.0_wp, ieee_quiet_nan)
+      end do
+   end subroutine forget
+
+   !> Path of the dataset of a column
+   pure function dataset(column) result(path)
+      !> Number of the column
+      integer, intent(in) :: column
+      !> Its path in the file
+      character(len=:), allocatable :: path
+
+      select case (column)
+      case (steps_column)
+         path = 'steps'
+      case (status_column)
+         path = 'status'
+      case (check_column)
+         path = 'check'
+      case default
+         path = trim(quantities(column)%name)
+      end select
+      path = 'summary/'//path
+   end function dataset
+
+   !> Check sum of a point
+   pure function check_of(summary, place) result(check)
+      !> Outcomes
+      type(summary_t), intent(in) :: summary
+      !> Place of the point
+      integer, intent(in) :: place
+      !> The sum; 0 where the point is pending, and nowhere else
+      integer :: check
+
+      integer(c_int64_t) :: sum
+      integer :: i
+
+      check = 0
+      if (summary%status(place) == point_pending) return
+      sum = int(summary%steps(place), c_int64_t)
+      sum = ieor(ishftc(sum, 11), int(summary%status(place), c_int64_t))
+      do i = 1, size(quantities)
+         sum = ieor(ishftc(sum, 11), transfer(summary%values(i)%at(place), sum))
+      end do
+      check = int(ibits(ieor(sum, ishft(sum, -31)), 0, 31))
+      if (check == 0) check = 1
+   end function check_of
+
+end module vcor_io_checkpoint_points

@@ -1,0 +1,175 @@
+!> Paths: what there is, directories, and how a path stands in a message
+!>
+!> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
+!> with the path and the system's reason.
+module vcor_io_path
+   use, intrinsic :: iso_c_binding, only : c_int, c_null_char
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, &
+      & is_regular, last_errno, resolved_path, system_reason
+   implicit none
+   private
+
+   public :: file_exists, plain_file_exists, directory_exists, make_directory
+   public :: join_path, same_file, quoted_path
+   public :: check_text_of, raise_system
+
+contains
+
+   !> Whether there is a file, a device or a pipe of that name, a directory excepted; a link counts
+   !> as what it points at
+   function file_exists(path) result(exists)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> True if there is one
+      logical :: exists
+
+      exists = c_access(c_text(trim(path)), access_exists) == 0
+      if (exists) exists = .not. directory_exists(path)
+   end function file_exists
+
+   !> Whether there is a file of that name that can be looked into without consequences
+   function plain_file_exists(path) result(exists)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> True if there is one; a link counts as what it points at
+      logical :: exists
+
+      exists = file_exists(path)
+      if (exists) exists = is_regular(trim(path))
+   end function plain_file_exists
+
+   !> Whether there is a directory of that name; a link counts as what it points at
+   function directory_exists(path) result(exists)
+      !> Path to look at; empty is the current directory
+      character(len=*), intent(in) :: path
+      !> True if there is one
+      logical :: exists
+
+      ! Only a directory has a member `.`
+      exists = c_access(c_text(join_path(path, ".")), access_exists) == 0
+   end function directory_exists
+
+   !> Make a directory, and those above it; one that is there is fine
+   subroutine make_directory(path, error)
+      !> Path of the directory; empty is the current directory
+      character(len=*), intent(in) :: path
+      !> Set if there is no such directory afterwards
+      type(error_t), allocatable, intent(out) :: error
+      integer(c_int) :: reason, status
+      integer :: last
+
+      call check_text_of(path, error)
+      if (allocated(error)) return
+      if (directory_exists(path)) return
+
+      do last = 1, len_trim(path)
+         ! Each part that ends here or before a slash, top down
+         if (path(last:last) == "/") cycle
+         if (last < len_trim(path)) then
+            if (path(last+1:last+1) /= "/") cycle
+         end if
+         status = c_mkdir(c_text(path(:last)), all_permissions)
+         reason = last_errno()
+         if (status == 0) cycle
+         ! Whatever the reason: what counts is that there is a directory, perhaps made by another
+         ! process at the same time, or one that may be entered but not written
+         if (directory_exists(path(:last))) cycle
+         if (file_exists(path(:last))) then
+            call raise(error, error_file, "cannot make the directory "//quoted_path(path)//": "// &
+               & quoted_path(path(:last))//" is a file, expected a directory")
+         else
+            call raise_system(error, "cannot make the directory "//quoted_path(path(:last)), reason)
+         end if
+         return
+      end do
+   end subroutine make_directory
+
+   !> Path of a member of a directory
+   pure function join_path(directory, name) result(path)
+      !> Directory, with or without a slash at the end; empty is the current directory
+      character(len=*), intent(in) :: directory
+      !> Path from there; one that begins with a slash stands for itself
+      character(len=*), intent(in) :: name
+      !> The path, without blanks at the end
+      character(len=:), allocatable :: path
+
+      path = trim(name)
+      if (len_trim(directory) == 0 .or. index(name, "/") == 1) return
+      path = trim(directory)
+      if (path(len(path):) /= "/") path = path//"/"
+      path = path//trim(name)
+   end function join_path
+
+   !> Whether two paths lead to one file, by the folders they are in, links resolved, and the names
+   function same_file(one, other) result(same)
+      !> A path
+      character(len=*), intent(in) :: one
+      !> Another path
+      character(len=*), intent(in) :: other
+      !> Whether both are the same
+      logical :: same
+      integer :: a, b
+
+      a = index(one, "/", back=.true.)
+      b = index(other, "/", back=.true.)
+      same = one(a+1:) == other(b+1:)
+      if (same) same = folder_of(one, a) == folder_of(other, b)
+
+   contains
+
+      !> Folder of a path, resolved
+      function folder_of(path, slash) result(folder)
+         !> The path
+         character(len=*), intent(in) :: path
+         !> Place of its last slash, 0 if it has none
+         integer, intent(in) :: slash
+         !> The folder
+         character(len=:), allocatable :: folder
+
+         if (slash == 0) then
+            folder = resolved_path(".")
+         else
+            folder = resolved_path(path(:slash))
+         end if
+      end function folder_of
+   end function same_file
+
+   !> A path as it stands in a message: between quotes, on one line
+   pure function quoted_path(path) result(quoted)
+      !> Any path
+      character(len=*), intent(in) :: path
+      !> The path between quotes, `?` for every control character
+      character(len=:), allocatable :: quoted
+      integer :: i
+
+      quoted = "'"//trim(path)//"'"
+      do i = 1, len(quoted)
+         if (iachar(quoted(i:i)) < iachar(" ") .or. iachar(quoted(i:i)) == 127) quoted(i:i) = "?"
+      end do
+   end function quoted_path
+
+   !> Check that a path can be handed to C
+   subroutine check_text_of(path, error)
+      !> Path to check
+      character(len=*), intent(in) :: path
+      !> Set if C would take a part of it for the whole
+      type(error_t), allocatable, intent(out) :: error
+
+      if (index(path, c_null_char) > 0) call raise(error, error_file, &
+         & "the path "//quoted_path(path)//" holds a NUL character, expected text")
+   end subroutine check_text_of
+
+   !> Set an error with the reason of the system
+   subroutine raise_system(error, what, reason)
+      !> The error, allocated on return
+      type(error_t), allocatable, intent(inout) :: error
+      !> What failed
+      character(len=*), intent(in) :: what
+      !> Value of `errno`
+      integer(c_int), intent(in) :: reason
+
+      call raise(error, error_file, what//": "//system_reason(reason))
+   end subroutine raise_system
+
+end module vcor_io_path
