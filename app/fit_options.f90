@@ -168,7 +168,7 @@ contains
                   //commas(fixable_parameters(request%model)))
             else if (.not. in_range(fixed, request%model)) then
                call raise(error, error_usage, '--fix: the value of '//trim(fixed%name) &
-                  //' is out of range')
+                  //' is out of range, expected '//range_of(fixed, request%model))
             end if
             do k = 1, i - 1
                if (request%fixed(k)%name == fixed%name) call raise(error, error_usage, &
@@ -177,11 +177,52 @@ contains
          end associate
          if (allocated(error)) return
       end do
+      if (request%model == 'sls' .and. value_of('alpha') > value_of('beta')) &
+         call raise(error, error_usage, '--fix: found alpha above beta, expected alpha <= beta: ' &
+         //'the rubbery modulus is glassy_modulus*alpha/beta')
+      if (allocated(error)) return
       reading%shear = request%shear
       reading%poisson_ratio = request%poisson_ratio
       allocate (reading%units(0))
       if (allocated(request%units)) call take_units(request%units, reading, error)
+
+   contains
+
+      !> Value that is given for a parameter
+      pure function value_of(name) result(value)
+         !> Name of the parameter
+         character(len=*), intent(in) :: name
+         !> Its value; that of alpha is 0 and that of others is huge where none is given
+         real(wp) :: value
+
+         integer :: j
+
+         value = merge(0.0_wp, huge(1.0_wp), name == 'alpha')
+         do j = 1, size(request%fixed)
+            if (request%fixed(j)%name == name) value = request%fixed(j)%value
+         end do
+      end function value_of
    end subroutine check_fit
+
+   !> Values that a parameter may have
+   pure function range_of(parameter, model) result(text)
+      !> The parameter
+      type(parameter_t), intent(in) :: parameter
+      !> Model that it belongs to
+      character(len=*), intent(in) :: model
+      !> In words
+      character(len=:), allocatable :: text
+
+      select case (parameter%name)
+      case ('exponent')
+         text = 'a number in (0, 1)'
+         if (model == 'mittag_leffler') text = 'a number in (0, 1]'
+      case ('equilibrium_modulus', 'alpha')
+         text = 'a number >= 0, at most 1e30'
+      case default
+         text = 'a number > 0, at most 1e30'
+      end select
+   end function range_of
 
    !> Whether a parameter has a value that it may have
    pure function in_range(parameter, model) result(yes)

@@ -163,18 +163,19 @@ contains
       text = 'usage: vcor fit DATA [options]'//nl &
          //'       vcor fit --from-model CASE.nml[:MATERIAL] [options]'//nl//nl &
          //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
-         //'storage and loss modulus, and prints its parameters with standard errors, the'//nl &
-         //'misfit, the band of the data and a &material group to be pasted into a case.'//nl &
-         //'Columns are told by a header (t,E or f,E_stor,E_loss ...), units by the header,'//nl &
-         //'by a second line of units or by --units; without either, two columns are s and'//nl &
-         //'Pa, three are rad/s, Pa and Pa.'//nl//nl &
+         //'storage and loss modulus (or loss tangent), and prints its parameters with'//nl &
+         //'standard errors, the misfit, the band of the data and a &material group to be'//nl &
+         //'pasted into a case. Columns are told by a header (t,E or f,E_stor,E_loss ...),'//nl &
+         //'units by the header, by a second line of units or by --units; without a header,'//nl &
+         //'two columns are s and Pa, three are rad/s, Pa and Pa. Times in s and moduli in Pa'//nl &
+         //'are what a header means that names no units.'//nl//nl &
          //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
          //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
          //'                          support, or until the largest misfit is below 0.05 %'//nl &
          //'  --fix KEY=VALUE         give a parameter, in SI units; may be repeated'//nl &
          //'  --units LIST            units of the columns: s,MPa or Hz,MPa or rad/s,Pa ...'//nl &
          //'  --shear                 the moduli are shear moduli G: E = 2 (1 + nu) G'//nl &
-         //'  --poisson-ratio NU      of the material; default 0.5'//nl &
+         //'  --poisson-ratio NU      of the material; default 0.5, of shear moduli required'//nl &
          //'  --density RHO           of the material [kg/m3]'//nl &
          //'  --name NAME             of the material; default: that of the file'//nl &
          //'  --output PATH           write the group to this file, or into this directory'//nl &

@@ -5,8 +5,9 @@ module vcor_app_sampling
    use vcor_app_job, only : job_t, prepare
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor, only : build_material, case_t, error_input, error_t, error_usage, file_exists, &
-      integer_text, material_data_t, material_t, printable, put_material, raise, sampled_times, &
-      samples_t, solve_case, outcome_t, contact_separated, time_range_t, wp
+      integer_text, material_data_t, material_names, material_t, printable, put_material, raise, &
+      sampled_times, samples_t, solve_case, outcome_t, contact_separated, suggestion, &
+      time_range_t, wp
    implicit none
    private
 
@@ -155,7 +156,8 @@ contains
       end if
       sampled%item = sampled%case%find_material(other)
       if (sampled%item == 0) call raise(error, error_usage, '--from-model: there is no material ' &
-         //"'"//printable(other)//"' in "//printable(filename))
+         //"'"//printable(other)//"' in "//printable(filename)//'; ' &
+         //suggestion(other, material_names(sampled%case)))
    end subroutine find_material
 
    !> The impact of the case with the material that was sampled and with the one that was found

@@ -64,6 +64,7 @@ module vcor
       share_flag, this_rank
    use vcor_study_nearest, only : suggestion
    use vcor_study_partition, only : new_part, part_t
+   use vcor_study_path, only : material_names
    use vcor_study_points, only : solve_part
    use vcor_study_quantity, only : history_quantities, point_failed, point_invalid, &
       point_pending, quantities, quantity_names, quantity_t, quantity_value, status_name, &
@@ -127,6 +128,6 @@ module vcor
    public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
    public :: file_exists, directory_exists, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
-   public :: real_text, integer_text, printable, suggestion, read_real
+   public :: real_text, integer_text, printable, suggestion, read_real, material_names
 
 end module vcor

@@ -5,7 +5,7 @@ import re
 import subprocess
 
 import pytest
-from figure import plots, texts
+from figure import crowded, plots, texts
 from program import ROOT, program
 
 PAGE = ROOT / "docs" / "gallery.md"
@@ -97,6 +97,7 @@ def test_content(gallery, name):
     for text in expected:
         assert text in found
     assert plots(gallery / f"{name}.svg") == count
+    assert crowded(gallery / f"{name}.svg") == []
 
 
 def numbers(path):

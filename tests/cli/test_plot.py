@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 from cases import SLS
-from figure import blocks, plots, texts
+from figure import blocks, crowded, places, plots, texts
 from program import FILE, INPUT, PAPER, ROOT, USAGE, Vcor, complaint, contents
 
 SWEEP = ROOT / "examples" / "sweeps"
@@ -101,7 +101,7 @@ def test_history(vcor, results, plot):
 def test_history_without_ghost_lines(plot):
     figure = plot("sls.h5", "--kind", "history")
     assert plots(figure) == 6
-    assert "COR 0.432" in texts(figure)
+    assert "COR 0.4320" in texts(figure)
 
 
 def test_several_histories(plot):
@@ -128,6 +128,67 @@ def test_history_without_separation(vcor):
     assert not any("COR" in text for text in texts(figure))
     vcor.succeeds("plot", "case.h5", "case.h5", "--legend", "a", "--legend", "b", "--quiet")
     assert "a: no separation" in texts(figure)
+
+
+@pytest.mark.parametrize("velocity", [0.02, 0.5, 10.0, 90.0])
+def test_room_for_the_ticks(vcor, velocity):
+    """The labels of an axis stand apart, however long the contact is."""
+    vcor.write(SLS)
+    for method in ("sls", "none"):
+        words = ["--set", f"impact.velocity={velocity}", "--set", f"output.stem={method}"]
+        if method == "none":
+            words += ["--set", "plate.waves=none"]
+        vcor.succeeds("run", "--quiet", "case.nml", *words)
+    for files in (["sls.h5"], ["sls.h5", "none.h5"]):
+        for kind in ("history", "loop"):
+            vcor.succeeds("plot", *files, "--kind", kind, "--output", "figure.svg")
+            ticks = [text for text, _, y, _, at in places(vcor.folder / "figure.svg") if at == "middle"]
+            assert sum(bool(re.fullmatch(r"[\d.e+-]+", text)) for text in ticks) >= 3
+            assert crowded(vcor.folder / "figure.svg") == []
+
+
+@pytest.mark.parametrize(
+    "sweep",
+    [
+        "parameter = 'rubber.beta', start = 0.0003, stop = 0.0011, count = 3",
+        "parameter = 'rubber.beta', start = 1200.1, stop = 1200.7, count = 3",
+        "parameter = 'rubber.beta', start = 1.1e6, stop = 3.7e6, count = 3",
+        "parameter = 'rubber.beta', start = 0.0002, stop = 0.05, count = 5, spacing = 'log'",
+        "parameter = 'rubber.beta', start = 1e6, stop = 2e8, count = 5, spacing = 'log'",
+        "parameter = 'rubber.beta', start = 1e3, stop = 3e3, count = 5, spacing = 'log'",
+    ],
+)
+def test_room_for_the_ticks_of_a_sweep(vcor, sweep):
+    vcor.write(SLS + f"&sweep\n {sweep}\n/\n")
+    vcor.succeeds("run", "--quiet", "case.nml", "--set", "rubber.alpha=1e-4")
+    vcor.succeeds("plot", "case.h5", "--quantity", "cor,max_force", "--output", "figure.svg")
+    assert crowded(vcor.folder / "figure.svg") == []
+    below = max(y for _, _, y, _, at in places(vcor.folder / "figure.svg") if at == "middle")
+    labels = [text for text, _, y, _, _ in places(vcor.folder / "figure.svg") if below - 30 < y < below]
+    assert len(labels) >= 2
+
+
+def test_very_small_numbers(plot):
+    """Powers of ten stand in the label: they would not find room beside the axis."""
+    figure = plot("sls_velocity.h5", "--quantity", "cor_error")
+    (label,) = [text for text in texts(figure) if text.startswith("estimated error of cor")]
+    assert re.fullmatch(r"estimated error of cor \[10-\d+\]", label)
+    assert all(len(text) < 5 for text, _, _, _, anchor in places(figure) if anchor == "end")
+
+
+def test_legend_of_one_file(vcor, results, plot):
+    """It is shown, or refused where nothing is there that it could stand beside."""
+    found = texts(plot("sls.h5", "--kind", "loop", "--legend", "my text"))
+    assert "my text, energy loss 0.7918 J" in found
+    assert "my text" in texts(plot("sls_velocity.h5", "--legend", "my text"))
+    for name, kind in (("sls", "history"), ("sls_material", "moduli"), ("grid", "map")):
+        vcor.refuses("plot", results / f"{name}.h5", "--legend", "x", code=USAGE, says=["--legend", kind])
+
+
+def test_quantity_of_an_impact(vcor, results):
+    vcor.refuses(
+        "plot", results / "sls.h5", "--quantity", "cor", code=USAGE, says=["--quantity", "history"]
+    )
 
 
 def test_loop(vcor, results, plot):

@@ -232,7 +232,7 @@ def test_other_data(vcor, data_files):
     vcor.write(
         text
         + "&material\n   name = 'rubber', model = 'table', density = 1100.0, poisson_ratio = 0.5,\n"
-        + f"   file = '{name}'\n/\n&sweep\n   parameter = 'impact.velocity'\n   values = 1, 2\n/\n"
+        + f"   file = '{name}', modulus_unit = 'MPa'\n/\n&sweep\n   parameter = 'impact.velocity'\n   values = 1, 2\n/\n"
     )
     vcor.succeeds("run", "case.nml")
     assert "finished" in vcor.succeeds("run", "case.nml", "--resume")

@@ -76,6 +76,8 @@ def test_constant_modulus_is_elastic(vcor, method):
 
 FORMS = {
     "header": "time,modulus\n" + DATA,
+    "decimal commas": DATA.replace(",", ";").replace(".", ","),
+    "decimal commas and tabs": DATA.replace(",", "\t").replace(".", ","),
     "header with units": '"t [s]";"E [Pa]"\n' + DATA,
     "header of many words": "Relaxation of BUTYL at 300 K\n" + DATA,
     "remark first": "# BUTYL, 300 K\n#\n\ntime,modulus\n" + DATA,
@@ -93,6 +95,21 @@ FORMS = {
     "last line without end": DATA[:-1],
     "D exponents": DATA.replace("e", "D"),
 }
+
+
+@pytest.mark.parametrize(
+    "head, name, unit",
+    [("t [ms], E [Pa]", "time", "ms"), ("time/s;E in MPa", "modulus", "MPa"), ("t E(t)/kPa", "modulus", "kPa")],
+)
+def test_units_of_the_header(table, head, name, unit):
+    """They are not taken in silence, nor left out of account."""
+    table.write(head + "\n" + DATA, "data.csv")
+    says = [f"'{unit}'", f"{name}_unit = '{unit}'"]
+    table.refuses("run", "case.nml", code=INPUT, at="data.csv:1", says=says)
+    other = "t [s], E [MPa]\n" + "\n".join(rows((points()[0], points()[1] / 1e6))) + "\n"
+    table.write(other, "data.csv")
+    table.write(TABLE[: TABLE.rindex("/")] + "   modulus_unit = 'MPa'\n/\n")
+    assert float(table.numbers("case.nml")["cor"]) > 0
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -204,7 +221,7 @@ BAD = {
     "three columns": (with_line(5, "1e-3,1e6,1"), 5, ["3 columns", "expected 2"]),
     "three columns by blanks": (with_line(5, "1e-3 1e6 1"), 5, ["3 columns", "expected 2"]),
     "comma at the end": (with_line(5, "1e-3,1e6,"), 5, ["3 columns"]),
-    "decimal commas": (with_line(5, "0,001;1000000,5"), 5, ["4 columns"]),
+    "decimal commas": (with_line(5, "0,001;1000000,5"), 5, ["decimal commas", "decimal points"]),
     "no modulus": (with_line(5, "1e-3,"), 5, ["''", "a modulus > 0"]),
     "after remarks": ("# a\n\n# b\ntime,modulus\n" + with_line(5, "1e-3"), 9, ["1 column"]),
     "CRLF": (with_line(5, "1e-3").replace("\n", "\r\n"), 5, ["1 column"]),

@@ -2,7 +2,7 @@
 
 import pytest
 from cases import MODELS, SLS, add_line, case_text, edit, without
-from program import INPUT
+from program import INPUT, PAPER
 
 # Model, group and key, for each key that has to be a positive number
 POSITIVE = [
@@ -248,6 +248,24 @@ def test_scheme_of_another_method(vcor):
 def test_unknown_key(vcor, group, key, nearest):
     said = spoiled(vcor, ("sls", group, key), "1", [f"unknown key '{key}'", f"&{group}"])
     assert f"'{nearest}'" in said
+
+
+@pytest.mark.parametrize(
+    "setting, nearest",
+    [
+        ("rubber.model='slss'", "sls"),
+        ("rubber.model='mittag-leffler'", "mittag_leffler"),
+        ("plate.waves='relaxng'", "relaxing"),
+        ("contact.law='receeding'", "receding"),
+        ("solver.method='drect'", "direct"),
+        ("solver.form='c'", ""),
+        ("solver.method='best'", ""),
+    ],
+)
+def test_unknown_choice(vcor, setting, nearest):
+    """All are named, and the nearest one if there is one."""
+    said = vcor.refuses("run", PAPER / "sls.nml", "--set", setting, code=INPUT, says="expected one of")
+    assert said.endswith(f"; did you mean '{nearest}'?") or not nearest and "did you" not in said
 
 
 def test_key_of_another_group(vcor):

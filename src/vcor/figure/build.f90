@@ -87,9 +87,18 @@ contains
             //'cannot be told apart, expected at most '//integer_text(style_count))
          return
       end if
+      if (size(quantities) > 0 .and. index(' sweep map ', ' '//chosen//' ') == 0) then
+         call raise(error, error_usage, '--quantity is for figures of kind sweep and map, found ' &
+            //'kind '//chosen)
+      else if (size(texts) == 1 .and. index(' loop sweep ', ' '//chosen//' ') == 0) then
+         call raise(error, error_usage, '--legend has no place in a figure of kind '//chosen &
+            //' of one file')
+      end if
+      if (allocated(error)) return
       call make_legends(results, legends)
       do i = 1, size(texts)
          legends(i)%text = texts(i)%text
+         legends(i)%given = .true.
       end do
       shown = quantities
       if (size(shown) == 0) then

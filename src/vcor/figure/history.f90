@@ -4,7 +4,7 @@ module vcor_figure_history
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_t
    use vcor_figure_course, only : course_t, read_course
-   use vcor_figure_label, only : number_text, suit_unit, with_unit
+   use vcor_figure_label, only : rounded_text, suit_unit, with_unit
    use vcor_figure_legend, only : column_room, fitted, legend_t, page_room
    use vcor_figure_result, only : result_t
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
@@ -166,11 +166,11 @@ contains
          if (.not. ieee_is_finite(course%contact_time)) return
          associate (t0 => factor*course%contact_time)
             call add_note(panel, note_top, t0, 0.0_wp, &
-               't_0'//blank//'= '//number_text(t0, digits)//' '//unit)
+               't_0'//blank//'= '//rounded_text(t0, digits)//' '//unit)
             call add_note(panel, note_right, t0, course%cor, &
-               'COR '//number_text(course%cor, digits))
+               'COR '//rounded_text(course%cor, digits))
             call add_note(panel, note_right, t0, course%residual_ratio, &
-               number_text(course%residual_ratio, digits))
+               rounded_text(course%residual_ratio, digits))
          end associate
       end subroutine add_marks
 
@@ -182,8 +182,9 @@ contains
          character(len=:), allocatable :: text
 
          text = ': no separation'
-         if (ieee_is_finite(course%contact_time)) text = ': COR '//number_text(course%cor, digits) &
-            //', t_0'//blank//'= '//number_text(factor*course%contact_time, digits)//' '//unit
+         if (ieee_is_finite(course%contact_time)) text = ': COR ' &
+            //rounded_text(course%cor, digits)//', t_0'//blank//'= ' &
+            //rounded_text(factor*course%contact_time, digits)//' '//unit
       end function outcome_text
    end subroutine history_figure
 
@@ -222,10 +223,9 @@ contains
                text = ''
                if (ieee_is_finite(courses(i)%hysteresis_energy)) &
                   text = 'energy loss '//energy(courses(i)%hysteresis_energy)
-               if (size(courses) > 1 .and. text /= '') then
-                  text = fitted(legends(i)%text, column_room - len(text) - 2)//', '//text
-               else if (size(courses) > 1) then
-                  text = fitted(legends(i)%text, column_room)
+               if (size(courses) > 1 .or. legends(i)%given) then
+                  if (text /= '') text = ', '//text
+                  text = fitted(legends(i)%text, column_room - len(text))//text
                end if
                call add_curve(panel, length_factor*courses(i)%indentation(:n), &
                   force_factor*courses(i)%force(:n), line_solid, i, text)
@@ -246,7 +246,7 @@ contains
          real(wp) :: factor
 
          call suit_unit('J', abs(joule), factor, unit)
-         text = number_text(factor*joule, digits)//' '//unit
+         text = rounded_text(factor*joule, digits)//' '//unit
       end function energy
    end subroutine loop_figure
 

@@ -6,12 +6,12 @@ module vcor_figure_label
    private
 
    public :: suit_unit, with_unit, quantity_label, parameter_label, number_text, is_geometric
-   public :: largest_of
+   public :: largest_of, rounded_text
 
 contains
 
    !> A unit with a prefix, such that the largest of some numbers has one to three digits before the
-   !> point, or none
+   !> point, or none; a power of ten for pure numbers that are all very small
    pure subroutine suit_unit(unit, largest, factor, name)
       !> SI unit
       character(len=*), intent(in) :: unit
@@ -22,8 +22,12 @@ contains
       !> The unit with its prefix
       character(len=:), allocatable, intent(out) :: name
 
-      character(len=*), parameter :: prefixes(-4:3) = [character(len=2) :: 'p', 'n', 'µ', 'm', '', &
-         'k', 'M', 'G']
+      character(len=*), parameter :: prefixes(-6:3) = [character(len=2) :: 'a', 'f', 'p', 'n', &
+         'µ', 'm', '', 'k', 'M', 'G']
+      ! Pure numbers below are told in powers of ten, frequencies from there on with a prefix: their
+      ! digits would not find room beside an axis
+      real(wp), parameter :: small = 1.0e-3_wp, many = 1.0e5_wp
+      character(len=12) :: exponent
       integer :: power
       real(wp) :: magnitude
 
@@ -38,6 +42,15 @@ contains
       case ('kg')
          magnitude = 1000.0_wp*largest
          name = 'g'
+      case ('rad/s')
+         if (largest < many) return
+      case ('', '1')
+         if (largest >= small) return
+         power = floor(log10(largest*1.001_wp))
+         factor = 10.0_wp**(-power)
+         write (exponent, '(i0)') power
+         name = '10^{'//trim(exponent)//'}'
+         return
       case default
          return
       end select
@@ -121,6 +134,26 @@ contains
       !> Its text
       character(len=:), allocatable :: text
 
+      integer :: mark
+
+      text = rounded_text(value, digits)
+      mark = index(text, '×')
+      if (mark == 0) then
+         text = without_zeros(text)
+      else
+         text = without_zeros(text(:mark - 1))//text(mark:)
+      end if
+   end function number_text
+
+   !> A number that was rounded to so many significant digits
+   pure function rounded_text(value, digits) result(text)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Digits, 1 .. 15
+      integer, intent(in) :: digits
+      !> Its text
+      character(len=:), allocatable :: text
+
       character(len=40) :: buffer
       character(len=12) :: form
       integer :: decimals, power
@@ -139,14 +172,15 @@ contains
       if (power < -4 .or. power > max(5, digits)) then
          text = trim(adjustl(buffer(:34)))
          write (form, '(i0)') power
-         text = without_zeros(text)//'×10^{'//trim(form)//'}'
+         text = text//'×10^{'//trim(form)//'}'
          return
       end if
       decimals = max(0, digits - 1 - power)
       write (form, '(a, i0, a)') '(f40.', decimals, ')'
       write (buffer, form) value
-      text = without_zeros(trim(adjustl(buffer)))
-   end function number_text
+      text = trim(adjustl(buffer))
+      if (text(len(text):) == '.') text = text(:len(text) - 1)
+   end function rounded_text
 
    !> A number without zeros after the last digit that counts
    pure function without_zeros(number) result(text)

@@ -18,6 +18,8 @@ module vcor_figure_legend
    type :: legend_t
       !> The text, as a figure takes it
       character(len=:), allocatable :: text
+      !> Whether the user gave it
+      logical :: given = .false.
    end type legend_t
 
    !> Most keys that a text names

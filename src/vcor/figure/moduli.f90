@@ -3,7 +3,7 @@
 module vcor_figure_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_t, raise
-   use vcor_figure_label, only : largest_of, number_text, suit_unit, with_unit
+   use vcor_figure_label, only : largest_of, rounded_text, suit_unit, with_unit
    use vcor_figure_legend, only : fitted, legend_t, page_room
    use vcor_figure_result, only : get_column, get_texts, get_window, has_group, result_t
    use vcor_io_column, only : column_t, text_value
@@ -250,7 +250,7 @@ contains
       real(wp) :: factor
 
       call suit_unit('s', contact_time, factor, unit)
-      text = 't_0'//blank//'= '//number_text(factor*contact_time, digits)//' '//unit
+      text = 't_0'//blank//'= '//rounded_text(factor*contact_time, digits)//' '//unit
    end function time_text
 
    !> A lowest frequency in words
@@ -260,7 +260,7 @@ contains
       !> Such as `ω_{min} = 4684 rad/s`
       character(len=:), allocatable :: text
 
-      text = 'ω_{min}'//blank//'= '//number_text(min_frequency, digits)//' rad/s'
+      text = 'ω_{min}'//blank//'= '//rounded_text(min_frequency, digits)//' rad/s'
    end function frequency_text
 
    !> Mark the window of the impact, t <= t0 and omega >= omega_min

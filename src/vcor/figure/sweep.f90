@@ -88,7 +88,8 @@ contains
                call cut_lines(axes, column, fitted(legends(i)%text, merge(page_room, column_room, &
                   size(quantities) > 1)), lines)
                do j = 1, size(lines)
-                  if (size(results) == 1 .and. size(axes) == 1 .or. k > 1) lines(j)%text = ''
+                  if (size(results) == 1 .and. size(axes) == 1 .and. .not. legends(i)%given &
+                     .or. k > 1) lines(j)%text = ''
                   call add_curve(panel, x_factor*lines(j)%x, y_factor*lines(j)%y, &
                      merge(points_only, line_solid, size(lines(j)%x) == 1), &
                      merge(j, i, size(results) == 1), lines(j)%text)

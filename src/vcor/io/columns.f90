@@ -1,17 +1,34 @@
 !> Columns of numbers in text files, as spreadsheets, other programs and people write them
 !>
 !> Between columns stands a comma, a semicolon, a tab or blanks. Lines end as they do on any system,
-!> what follows a # does not count, and a byte-order mark is passed over.
+!> what follows a # does not count, and a byte-order mark is passed over. Numbers may have decimal
+!> commas where something else stands between the columns.
 module vcor_io_columns
    implicit none
    private
 
-   public :: lines_in, take_line, split, start_of, blanks
+   public :: lines_in, take_line, split, start_of, blanks, decimals_t, take_decimals
+   public :: mixed_decimals, not_a_text
 
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
    !> What is blank
    character(len=*), parameter :: blanks = " "//achar(9)
+
+   !> What to say of a file with both ways to write numbers
+   character(len=*), parameter :: mixed_decimals = "found both decimal commas and decimal points" &
+      & //", expected one of them in all lines"
+   !> What to say of a file that is none of text
+   character(len=*), parameter :: not_a_text = "found a control character, expected a text file " &
+      & //"(in ASCII or UTF-8)"
+
+   !> How the numbers of a file are written
+   type :: decimals_t
+      !> Whether some have decimal commas
+      logical :: commas = .false.
+      !> Whether some have decimal points
+      logical :: points = .false.
+   end type decimals_t
 
 contains
 
@@ -61,6 +78,44 @@ contains
       if (start > len(text)) return
       if (text(start-1:start) == carriage_return//line_feed) start = start + 1
    end subroutine take_line
+
+   !> Make points of the decimal commas of a line
+   pure subroutine take_decimals(content, decimals)
+      !> The line
+      character(len=*), intent(inout) :: content
+      !> How its numbers are written, on return
+      type(decimals_t), intent(out) :: decimals
+      integer :: i
+
+      decimals%commas = has_decimal_commas(content)
+      decimals%points = index(content, ".") > 0
+      if (.not. decimals%commas) return
+      do i = 1, len(content)
+         if (content(i:i) == ",") content(i:i) = "."
+      end do
+   end subroutine take_decimals
+
+   !> Whether each comma of a line is between two digits, and something else between its columns
+   pure function has_decimal_commas(content) result(yes)
+      !> The line
+      character(len=*), intent(in) :: content
+      !> True if so
+      logical :: yes
+      character(len=*), parameter :: digits = "0123456789"
+      integer :: first, i, last
+
+      yes = .false.
+      if (index(content, ",") == 0) return
+      first = verify(content, blanks)
+      last = verify(content, blanks, back=.true.)
+      if (scan(content(first:last), ";"//blanks) == 0) return
+      do i = 1, len(content)
+         if (content(i:i) /= ",") cycle
+         if (i == 1 .or. i == len(content)) return
+         if (verify(content(i-1:i-1)//content(i+1:i+1), digits) > 0) return
+      end do
+      yes = .true.
+   end function has_decimal_commas
 
    !> Find the columns of a line: between commas or semicolons if there are any, else between blanks
    pure subroutine split(content, columns, from, to)

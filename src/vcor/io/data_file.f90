@@ -2,10 +2,13 @@
 !>
 !> Between the two stands a comma, a semicolon, a tab or blanks. Blank lines and what follows a #
 !> do not count, one line before the first number may say what the columns are, lines end as
-!> they do on any system, and a byte-order mark is passed over.
+!> they do on any system, and a byte-order mark is passed over. Units stand in the case; a header
+!> that says something else is refused.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_columns, only : lines_in, split, start_of, take_line
+   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
+      & take_decimals, take_line
+   use vcor_io_header, only : header_t, longest_word, read_names, role_of
    use vcor_io_path, only : join_path
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
@@ -13,8 +16,9 @@ module vcor_io_data_file
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
    use vcor_study_case, only : case_t
    use vcor_study_store, only : entry_t
-   use vcor_study_text, only : integer_text, printable, real_text
-   use vcor_study_units, only : unit_size
+   use vcor_study_text, only : has_control, integer_text, printable, real_text
+   use vcor_study_units, only : modulus_units, time_units, unit_size
+   use vcor_study_words, only : contains_word
    implicit none
    private
 
@@ -84,6 +88,7 @@ contains
       real(wp), allocatable, intent(out) :: moduli(:)
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      type(decimals_t) :: decimals, before
       character(len=:), allocatable :: content, message
       real(wp), allocatable :: points(:, :)
       integer :: start, line, n, last_line, columns, from(2), to(2)
@@ -97,14 +102,25 @@ contains
       do while (start <= len(text))
          call take_line(text, start, content)
          line = line + 1
+         call take_decimals(content, decimals)
          call split(content, columns, from, to)
          if (columns == 0) cycle
          if (first) then
             first = .false.
             if (.not. any([looks_numeric(content(from(1):to(1))), &
-               & looks_numeric(content(from(2):to(2)))])) cycle
+               & looks_numeric(content(from(2):to(2)))])) then
+               call compare_units(content, name, line, scale, error)
+               if (allocated(error)) return
+               cycle
+            end if
          end if
-         if (columns == 2) then
+         before%commas = before%commas .or. decimals%commas
+         before%points = before%points .or. decimals%points
+         if (has_control(content)) then
+            message = not_a_text
+         else if (before%commas .and. before%points) then
+            message = mixed_decimals
+         else if (columns == 2) then
             call read_point(content, from, to, scale, points(:, n+1), message)
             if (.not. allocated(message) .and. n > 0) &
                & call compare(points(:, n), points(:, n+1), last_line, message)
@@ -127,6 +143,41 @@ contains
       times = points(1, :n)*scale(1)
       moduli = points(2, :n)*scale(2)
    end subroutine read_points
+
+   !> Refuse a header with other units than those of the case
+   subroutine compare_units(content, name, line, scale, error)
+      !> The line of the header
+      character(len=*), intent(in) :: content
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      !> Number of the line
+      integer, intent(in) :: line
+      !> Units of times and moduli by the case [s], [Pa]
+      real(wp), intent(in) :: scale(2)
+      !> Error of code `error_input`, unallocated where nothing is against them
+      type(error_t), allocatable, intent(out) :: error
+      type(header_t) :: header
+      character(len=longest_word) :: unit, key
+      integer :: i, role
+      logical :: known, shear
+
+      call read_names(header, content, line)
+      if (header%count /= 2) return
+      do i = 1, 2
+         call role_of(header%columns(i), role, shear, unit)
+         known = contains_word(time_units, unit)
+         if (i == 2) known = contains_word(modulus_units, unit)
+         if (.not. known) cycle
+         if (abs(unit_size(trim(unit))/scale(i) - 1.0_wp) < 0.01_wp) cycle
+         key = unit
+         if (unit == "N/mm2") key = "MPa"
+         if (unit == "N/m2") key = "Pa"
+         call raise(error, error_input, name//":"//integer_text(line)//": found '"//trim(unit) &
+            & //"' as unit of the "//trim(names(i))//", which is not that of the case; give " &
+            & //trim(names(i))//"_unit = '"//trim(key)//"' in its &material group")
+         return
+      end do
+   end subroutine compare_units
 
    !> Read time and modulus
    subroutine read_point(content, from, to, scale, point, message)

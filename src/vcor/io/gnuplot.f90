@@ -67,6 +67,8 @@ contains
          call buffer%add(terminal(formats(first:first+2), width, height)//nl)
          first = first + 4
       end do
+      ! Rows of a legend are nearer to each other in the other formats
+      call buffer%add("row = GPVAL_TERM eq 'svg' ? 1 : 1.25"//nl)
       call buffer%add("set output here."//in_quotes(name//"."//format)//nl//nl)
       do i = 1, style_count
          call buffer%add("set style line "//integer_text(i)//" lc rgb '"//colours(i) &
@@ -77,7 +79,7 @@ contains
       if (size(figure%panels) > 1) call buffer%add("set multiplot"//nl)
       first = 0
       do i = 1, size(figure%panels)
-         call put_panel(buffer, figure%panels(i), frames(i), first)
+         call put_panel(buffer, figure%panels(i), frames(i), width, first)
          first = first + figure%panels(i)%curve_count
       end do
       if (size(figure%panels) > 1) call buffer%add(nl//"unset multiplot"//nl)
@@ -147,13 +149,15 @@ contains
    end function terminal
 
    !> One panel
-   subroutine put_panel(buffer, panel, frame, first)
+   subroutine put_panel(buffer, panel, frame, width, first)
       !> The script
       type(buffer_t), intent(inout) :: buffer
       !> The panel
       type(panel_t), intent(in) :: panel
       !> Its place
       type(frame_t), intent(in) :: frame
+      !> Width of the figure [cm]
+      real(wp), intent(in) :: width
       !> Number of curves in the panels before
       integer, intent(in) :: first
       integer :: i
@@ -165,16 +169,16 @@ contains
          & //"set tmargin at screen "//short(frame%top)//nl)
       if (title_count(panel) > 0) then
          call buffer%add("set key at screen "//short(frame%legend_left)//", screen " &
-            & //short(frame%legend_top)//" left top vertical Left reverse samplen 2.2 maxrows " &
-            & //integer_text(frame%legend_rows)//nl)
+            & //short(frame%legend_top)//" left top vertical Left reverse samplen 2.2 spacing " &
+            & //"row maxrows "//integer_text(frame%legend_rows)//nl)
       else
          call buffer%add("unset key"//nl)
       end if
-      call put_axis(buffer, "x", panel%x, across(panel))
-      call put_axis(buffer, "y", panel%y, along(panel, .false.))
+      call put_axis(buffer, "x", panel%x, across(panel), (frame%right - frame%left)*width)
+      call put_axis(buffer, "y", panel%y, along(panel, .false.), 0.0_wp)
       if (panel%right%label /= "") then
          call buffer%add("set ytics nomirror"//nl//"set y2tics scale 0.6"//nl)
-         call put_axis(buffer, "y2", panel%right, along(panel, .true.))
+         call put_axis(buffer, "y2", panel%right, along(panel, .true.), 0.0_wp)
       else
          call buffer%add("set ytics mirror"//nl//"unset y2tics"//nl//"unset y2label"//nl)
       end if

@@ -15,7 +15,8 @@ module vcor_io_header
 
    public :: header_t, column_name_t, read_names, read_units, note_comment, role_of, check_unit
    public :: most_columns, longest_word
-   public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss
+   public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
+      role_tangent
 
    !> Most columns of a file
    integer, parameter :: most_columns = 64
@@ -33,6 +34,8 @@ module vcor_io_header
    integer, parameter :: role_storage = 4
    !> Loss moduli
    integer, parameter :: role_loss = 5
+   !> Loss tangents, which give the loss moduli where there are none
+   integer, parameter :: role_tangent = 6
 
    !> Names of columns; moduli that begin with g are shear moduli
    character(len=*), parameter :: time_names = " t time times "
@@ -46,10 +49,13 @@ module vcor_io_header
       //"storage storage_modulus e_prime g_prime "
    character(len=*), parameter :: loss_names = " e'' g'' e"" g"" e_loss g_loss loss " &
       //"loss_modulus e_double_prime g_double_prime "
+   character(len=*), parameter :: tangent_names = " loss_tangent loss_factor damping_factor "
+   !> Unit of a pure number
+   character(len=*), parameter :: pure_number = "1"
 
    !> One column
    type :: column_name_t
-      !> Its name, lower case, `_` for blanks
+      !> Its name, lower case but for T, `_` for blanks
       character(len=longest_word) :: name = ""
       !> Its unit; blank where it is not told
       character(len=longest_word) :: unit = ""
@@ -61,6 +67,8 @@ module vcor_io_header
    type :: header_t
       !> Lines of the header that were read, 0 to 2
       integer :: lines = 0
+      !> Line of the names
+      integer :: line = 0
       !> Number of the columns
       integer :: count = 0
       !> The columns
@@ -107,6 +115,7 @@ contains
 
       call split(content, columns, from, to)
       header%lines = 1
+      header%line = line
       header%count = 0
       do i = 1, min(columns, most_columns)
          cell = unquoted(content(from(i):to(i)))
@@ -186,6 +195,17 @@ contains
       integer :: i, mark
 
       name = lower(cell)
+      if (is_tangent(name)) then
+         column%name = "loss_tangent"
+         column%unit = pure_number
+         return
+      end if
+      ! t in s
+      mark = index(name, " in ")
+      if (mark > 1) then
+         column%unit = without_brackets(cell(mark + 4:))
+         name = name(:mark - 1)
+      end if
       ! E(t) is a name, E(Pa) is a name and a unit
       mark = index(name, "(t)") + index(name, "(w)") + index(name, "(f)") + index(name, "(omega)")
       if (mark > 1) then
@@ -207,8 +227,52 @@ contains
       do i = 1, len(name)
          if (name(i:i) == " ") name(i:i) = "_"
       end do
+      ! T is the temperature
+      if (name == "t" .and. index(cell, "T") == 1) name = "T"
       column%name = name
    end subroutine take_apart
+
+   !> Whether a name is that of the loss tangent: tan_delta, tan d, tan(delta), tand ...
+   pure function is_tangent(name) result(yes)
+      !> The name, lower case
+      character(len=*), intent(in) :: name
+      !> True if it is
+      logical :: yes
+
+      character(len=*), parameter :: angles = " d del delta "//char(206)//char(180)//" phi "
+      character(len=:), allocatable :: angle
+      integer :: mark
+
+      yes = .false.
+      if (index(name, "tan") /= 1 .or. len(name) < 4) return
+      angle = name(4:)
+      if (scan(angle(1:1), "_ -(") > 0) angle = angle(2:)
+      mark = scan(angle, " )[(")
+      if (mark > 1) angle = angle(:mark - 1)
+      yes = contains_word(angles, angle)
+   end function is_tangent
+
+   !> A unit by its usual name
+   pure function usual_unit(unit) result(usual)
+      !> A unit as somebody wrote it
+      character(len=*), intent(in) :: unit
+      !> The unit as `vcor_study_units` has it, where it is one of these
+      character(len=longest_word) :: usual
+
+      character(len=*), parameter :: micro(2) = [char(194)//char(181), char(206)//char(188)]
+      character(len=*), parameter :: squared = char(194)//char(178)
+      integer :: i, mark
+
+      usual = unit
+      do i = 1, size(micro)
+         if (usual(:2) == micro(i)) usual = "u"//usual(3:)
+      end do
+      mark = index(usual, "^2")
+      if (mark > 1) usual = usual(:mark - 1)//usual(mark + 1:)
+      mark = index(usual, squared)
+      if (mark > 1) usual = usual(:mark - 1)//"2"//usual(mark + 2:)
+      if (usual == "sec") usual = "s"
+   end function usual_unit
 
    !> What a column holds, by its name and else by its unit; what it is in, where that is understood
    pure subroutine role_of(column, role, shear, unit)
@@ -221,14 +285,15 @@ contains
       !> Its unit; blank where nothing tells it
       character(len=longest_word), intent(out) :: unit
 
-      unit = column%unit
+      unit = usual_unit(column%unit)
       role = role_none
       if (contains_word(time_names, column%name)) role = role_time
       if (contains_word(frequency_names, column%name)) role = role_frequency
       if (contains_word(relaxation_names, column%name)) role = role_relaxation
       if (contains_word(storage_names, column%name)) role = role_storage
       if (contains_word(loss_names, column%name)) role = role_loss
-      shear = role >= role_relaxation .and. (column%name(1:1) == "g" &
+      if (contains_word(tangent_names, column%name)) role = role_tangent
+      shear = role >= role_relaxation .and. role < role_tangent .and. (column%name(1:1) == "g" &
          .or. column%name == "shear_modulus")
       if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
       if (unit == "" .and. contains_word(angular_names, column%name)) unit = "rad/s"
@@ -257,15 +322,33 @@ contains
       case (role_frequency)
          known = frequency_units
          what = "frequency"
+      case (role_tangent)
+         known = pure_number
+         what = "loss tangent"
       case default
          known = modulus_units
          what = "modulus"
       end select
       if (contains_word(known, unit)) return
-      near = nearest_name(trim(unit), known)
+      near = nearest_unit(unit, known)
       if (near /= "") near = "; did you mean '"//near//"'?"
       call raise(error, error_input, place//": found '"//shortened(trim(unit))//"' as unit of " &
          //"the "//what//", expected one of "//join_words(known)//near)
    end subroutine check_unit
+
+   !> The unit that somebody may have meant
+   pure function nearest_unit(unit, known) result(near)
+      !> The unit
+      character(len=*), intent(in) :: unit
+      !> Known ones, separated by blanks
+      character(len=*), intent(in) :: known
+      !> The nearest one; empty when none is near, or the unit is one of something else
+      character(len=:), allocatable :: near
+
+      near = ""
+      if (len_trim(unit) < 2 .or. contains_word(time_units//" "//frequency_units//" " &
+         //modulus_units, unit)) return
+      near = nearest_name(trim(unit), known)
+   end function nearest_unit
 
 end module vcor_io_header

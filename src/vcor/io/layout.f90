@@ -9,7 +9,7 @@ module vcor_io_layout
    implicit none
    private
 
-   public :: frame_t, lay_out, title_count, body_height, line_height
+   public :: frame_t, lay_out, title_count, body_height, line_height, letter_width
 
    !> Widths of a figure: a column, a page [cm]
    real(wp), parameter :: column_width = 8.5_wp, page_width = 17.0_wp

@@ -70,6 +70,9 @@ contains
          <= (1.0_wp + constant)*minval(samples%modulus)) then
          call raise(error, error_input, 'the modulus does not change: nothing is there to be ' &
             //"fitted, model = 'elastic' describes it")
+      else if (.not. falls(samples)) then
+         call raise(error, error_input, 'the modulus does not fall with time, or rise with ' &
+            //'frequency, as that of a material that relaxes does')
       else if (unknowns == 0) then
          call raise(error, error_usage, 'all parameters are given: nothing is there to be fitted')
       end if
@@ -83,6 +86,22 @@ contains
          call fit_parametric(fit, model, fixed, samples, error)
       end if
    end subroutine fit_material
+
+   !> Whether the modulus falls with time, or rises with frequency, on the whole: by the slope of
+   !> its logarithm over that of time or frequency
+   pure function falls(samples) result(yes)
+      !> The samples, two or more
+      type(samples_t), intent(in) :: samples
+      !> True if it does
+      logical :: yes
+
+      real(wp) :: x(size(samples%at))
+
+      x = log(samples%at)
+      x = x - sum(x)/real(size(x), wp)
+      if (samples%dynamic) x = -x
+      yes = dot_product(x, log(samples%modulus)) < 0.0_wp
+   end function falls
 
    !> A whole number as text
    pure function text_of(number) result(text)

@@ -35,7 +35,7 @@ contains
    pure function nearest_name(name, known) result(word)
       !> The unknown name, any case
       character(len=*), intent(in) :: name
-      !> Known names separated by single blanks, lower case
+      !> Known names separated by single blanks, any case
       character(len=*), intent(in) :: known
       !> The nearest, empty when none is near
       character(len=:), allocatable :: word
@@ -48,7 +48,7 @@ contains
       first = 1
       do while (first <= len_trim(known))
          last = first + index(known(first:)//" ", " ") - 2
-         distance = edit_distance(lower(trim(name)), known(first:last))
+         distance = edit_distance(lower(trim(name)), lower(known(first:last)))
          if (is_beginning(name, known(first:last))) distance = min(distance, 1)
          if (distance < least) then
             least = distance
@@ -68,7 +68,7 @@ contains
       logical :: yes
 
       yes = len_trim(name) >= shortest_beginning
-      if (yes) yes = index(word, lower(trim(name))) == 1
+      if (yes) yes = index(lower(word), lower(trim(name))) == 1
    end function is_beginning
 
    !> Least number of letters put in, left out, changed, or swapped with their neighbour that makes

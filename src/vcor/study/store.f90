@@ -10,6 +10,7 @@ module vcor_study_store
    use vcor_study_interval, only : contains_number
    use vcor_study_keys, only : catalogue, find_group, find_key, first_row, groups, integer_key, &
       & key_t, last_row, list_key, logical_key, real_key, text_key, wanted
+   use vcor_study_nearest, only : nearest_name
    use vcor_study_text, only : integer_text, lower, real_text, shortened
    use vcor_study_words, only : contains_word
    implicit none
@@ -358,9 +359,11 @@ contains
       type(entry_t), intent(in) :: entry
       !> Found and expected; empty when nothing is wrong
       character(len=:), allocatable :: message
+      character(len=:), allocatable :: near
       integer :: i
 
       message = ""
+      near = ""
       select case (key%value_kind)
       case (real_key)
          if (.not. contains_number(key%range, entry%number)) message = real_text(entry%number)
@@ -376,6 +379,8 @@ contains
       case (text_key)
          if (key%choices /= "" .and. .not. contains_word(key%choices, entry%text)) then
             message = "'"//shortened(entry%text)//"'"
+            ! a single letter is near to every other
+            if (len_trim(entry%text) > 1) near = nearest_name(entry%text, trim(key%choices))
          else if (entry%text == "" .and. key%default /= "''") then
             message = "an empty text"
          end if
@@ -383,6 +388,7 @@ contains
          continue
       end select
       if (message /= "") message = "found "//message//", expected "//wanted(key)
+      if (near /= "") message = message//"; did you mean '"//near//"'?"
    end function range_message
 
 end module vcor_study_store

@@ -35,6 +35,8 @@ module vcor_material_fit_series
    real(wp), parameter :: completes = 1.0e-3_wp
    !> Steps that do not pay before the search ends: one may be a poor start
    integer, parameter :: most_in_vain = 2
+   !> Part of the misfit that more terms leave, above which the iteration may have stopped short
+   real(wp), parameter :: halfway = 0.7_wp
    !> Factor by which the rates that a fit starts from go beyond the data
    real(wp), parameter :: around = 4.0_wp
    !> Most terms
@@ -300,8 +302,11 @@ contains
          n = size(series%rates)
          call try(n - width, better)
          if (.not. better .and. .not. is_good(series)) call try(n + width, better)
-         if (width == 2 .and. .not. better) width = 1
-         if (width == 1) call try(n - 1, better)
+         if (width == 2 .and. .not. better) exit
+      end do
+      do
+         call try(size(series%rates) - 1, better)
+         if (.not. better) exit
       end do
       ! data that are a series of one term more are told by what is left then
       if (size(series%rates) == most) return
@@ -318,7 +323,7 @@ contains
          logical, intent(out) :: better
 
          real(wp) :: value
-         logical :: guided
+         logical :: guided, look
 
          better = .false.
          if (terms < 1 .or. terms > most) return
@@ -329,8 +334,13 @@ contains
          else
             call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
          end if
-         ! nearly there: worth a closer look, before longer ones are tried
-         if (.not. is_good(trial) .and. maxval(abs(trial%residuals)) <= close*good_enough) &
+         ! nearly there, or a term less, or no closer than with fewer terms, which is a place on the
+         ! way: worth a closer look, before longer ones are tried
+         look = maxval(abs(trial%residuals)) <= close*good_enough
+         if (allocated(series%rates)) look = look .or. terms == size(series%rates) - 1 .or. &
+            (terms > size(series%rates) &
+            .and. norm2(trial%residuals) > halfway*norm2(series%residuals))
+         if (look .and. .not. is_good(trial)) &
             call refine(trial, samples, fixed, fine, last_patience)
          value = criterion(trial)
          ! of those that are good enough the shortest

@@ -1,0 +1,309 @@
+!> Which columns of a data file are read, as what and in which units
+!>
+!> By what the user says, else by the header, else by their number: two columns are time and
+!> relaxation modulus, three are angular frequency, storage and loss modulus, in units of the SI.
+module vcor_io_column_plan
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_io_columns, only : decimals_t
+   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_frequency, &
+      role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, role_time
+   use vcor_kinds, only : wp
+   use vcor_study_text, only : integer_text, shortened
+   use vcor_study_units, only : time_units
+   use vcor_study_words, only : contains_word
+   implicit none
+   private
+
+   public :: plan_t, reading_t, make_plan, name_of, columns_text
+
+   !> What the user says about the columns
+   type :: reading_t
+      !> Units by the option, one word per column, blank for one that the file tells; shape (0), (2)
+      !> or (3)
+      character(len=longest_word), allocatable :: units(:)
+      !> Whether the moduli are shear moduli
+      logical :: shear = .false.
+      !> Poisson's ratio [-]; beyond 0.5: not given
+      real(wp) :: poisson_ratio = 1.0_wp
+   end type reading_t
+
+   !> Columns that are read
+   type :: plan_t
+      !> Number of columns in each line
+      integer :: columns = 0
+      !> Places of time or frequency and one or two moduli, shape (2) or (3)
+      integer, allocatable :: places(:)
+      !> What these hold
+      integer, allocatable :: roles(:)
+      !> Their units
+      character(len=longest_word), allocatable :: units(:)
+      !> Whether the moduli are shear moduli
+      logical :: shear = .false.
+      !> How the numbers are written
+      type(decimals_t) :: decimals
+   end type plan_t
+
+contains
+
+   !> Which columns are read, as what and in which units
+   subroutine make_plan(header, columns, reading, name, line, plan, error)
+      !> What stands before the first number
+      type(header_t), intent(in) :: header
+      !> Number of columns of the first line of numbers
+      integer, intent(in) :: columns
+      !> What the user says
+      type(reading_t), intent(in) :: reading
+      !> Name of the file
+      character(len=*), intent(in) :: name
+      !> First line of numbers
+      integer, intent(in) :: line
+      !> The plan
+      type(plan_t), intent(out) :: plan
+      !> Error of code `error_input` or `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=longest_word) :: units(most_columns), word
+      character(len=:), allocatable :: place, head
+      integer :: roles(most_columns), i
+      logical :: shear(most_columns)
+
+      place = name//":"//integer_text(line)
+      head = place
+      if (header%lines > 0) head = name//":"//integer_text(header%line)
+      if (columns > most_columns .or. columns < 2 &
+         .or. (header%lines > 0 .and. columns /= header%count)) then
+         call raise(error, error_input, place//": found "//columns_text(columns) &
+            //", expected 2, a time and a modulus, or 3, a frequency, a storage and a " &
+            //"loss modulus"//expected_of(header, columns))
+         return
+      end if
+      plan%columns = columns
+      roles = role_none
+      units = ""
+      shear = .false.
+      do i = 1, header%count
+         call role_of(header%columns(i), roles(i), shear(i), units(i))
+      end do
+      if (size(reading%units) > 0) then
+         i = merge(role_time, role_frequency, contains_word(time_units, reading%units(1)))
+         if (any(roles == merge(role_frequency, role_time, i == role_time)) &
+            .and. all(roles /= i)) then
+            call raise(error, error_usage, "--units: found '"//trim(reading%units(1)) &
+               //"', but "//name//" has "//name_of(merge(role_frequency, role_time, &
+               i == role_time), "")//" in its first column")
+            return
+         end if
+         if (all(roles == role_none)) roles(1) = i
+      end if
+      call choose_columns(roles(:columns), plan)
+      if (size(reading%units) > 0 .and. allocated(plan%places)) then
+         if (size(reading%units) /= size(plan%places)) deallocate (plan%places)
+      end if
+      if (.not. allocated(plan%places)) then
+         call raise(error, error_input, head//": found "//integer_text(columns) &
+            //" columns that are not understood, expected time and relaxation modulus, or " &
+            //"frequency, storage and loss modulus; a header such as t,E or omega,E_stor,E_loss " &
+            //"tells which is which"//lacking(roles(:columns)))
+         return
+      end if
+      if (header%lines > 0) then
+         call check_names(header, roles(:columns), units, size(reading%units) > 0, plan, head, &
+            error)
+         if (allocated(error)) return
+      end if
+
+      plan%shear = reading%shear .or. any(shear(plan%places))
+      allocate (plan%units(size(plan%places)))
+      do i = 1, size(plan%places)
+         word = units(plan%places(i))
+         if (size(reading%units) > 0) then
+            if (reading%units(i) /= "" .and. plan%roles(i) /= role_tangent) word = reading%units(i)
+         end if
+         if (word == "" .and. plan%roles(i) == role_frequency .and. header%lines > 0) then
+            call raise(error, error_usage, head//": the unit of '" &
+               //shortened(trim(header%columns(plan%places(i))%name)) &
+               //"' is not told: give --units, such as Hz,Pa,Pa or rad/s,Pa,Pa")
+            return
+         end if
+         if (word == "") word = default_unit(plan%roles(i))
+         place = name
+         if (header%lines > 0) place = name//":" &
+            //integer_text(header%columns(plan%places(i))%line)
+         call check_unit(word, plan%roles(i), place, error)
+         if (allocated(error)) return
+         plan%units(i) = word
+      end do
+   end subroutine make_plan
+
+   !> Refuse a header that does not say which columns to read
+   subroutine check_names(header, roles, units, told, plan, head, error)
+      !> The header
+      type(header_t), intent(in) :: header
+      !> What each column holds, as far as the header says it, shape (n)
+      integer, intent(in) :: roles(:)
+      !> Their units, shape (>= n)
+      character(len=*), intent(in) :: units(:)
+      !> Whether the user tells the units
+      logical, intent(in) :: told
+      !> The columns to be read
+      type(plan_t), intent(in) :: plan
+      !> File and line of the header, for messages
+      character(len=*), intent(in) :: head
+      !> Error of code `error_input`, unallocated where it does
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+
+      do i = 1, size(plan%places)
+         associate (place => plan%places(i))
+            if (count(roles == plan%roles(i)) > 1) then
+               call raise(error, error_input, head//": found "//columns_text(count(roles &
+                  == plan%roles(i)))//" of "//name_of(plan%roles(i), "")//", expected one")
+            else if (roles(place) == role_none .and. units(place) == "" .and. .not. told) then
+               ! its place alone says nothing, the logarithm of a modulus may stand there
+               call raise(error, error_input, head//": found '" &
+                  //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
+                  //"expected one such as "//example(plan%roles(i)) &
+                  //", a unit beside it, or --units")
+            end if
+         end associate
+         if (allocated(error)) return
+      end do
+   end subroutine check_names
+
+   !> Choose the columns to be read: by what they hold, or by their places where there are two or
+   !> three
+   pure subroutine choose_columns(roles, plan)
+      !> What each column holds, as far as that is known
+      integer, intent(in) :: roles(:)
+      !> The plan; its places are not allocated where there is no choice
+      type(plan_t), intent(inout) :: plan
+
+      logical :: dynamic
+      integer :: i
+
+      dynamic = any(roles == role_frequency)
+      if (.not. dynamic .and. all(roles /= role_time)) dynamic = size(roles) > 2
+      if (dynamic) then
+         plan%roles = [role_frequency, role_storage, role_loss]
+         if (all(roles /= role_loss) .and. any(roles == role_tangent)) plan%roles(3) = role_tangent
+      else
+         plan%roles = [role_time, role_relaxation]
+      end if
+      if (all([(any(roles == plan%roles(i)), i=1, size(plan%roles))])) then
+         plan%places = [(findloc(roles, plan%roles(i), dim=1), i=1, size(plan%roles))]
+      else if (size(roles) == size(plan%roles)) then
+         if (all(roles == role_none .or. roles == plan%roles)) &
+            plan%places = [(i, i=1, size(roles))]
+      end if
+   end subroutine choose_columns
+
+   !> What a column holds, in words
+   pure function name_of(role, unit) result(name)
+      !> One of the `role_*` constants
+      integer, intent(in) :: role
+      !> Its unit
+      character(len=*), intent(in) :: unit
+      !> The name
+      character(len=:), allocatable :: name
+
+      select case (role)
+      case (role_time)
+         name = "time"
+      case (role_frequency)
+         name = "frequency"
+         if (index(unit, "rad") > 0) name = "angular frequency"
+      case (role_relaxation)
+         name = "relaxation modulus"
+      case (role_storage)
+         name = "storage modulus"
+      case (role_tangent)
+         name = "loss tangent"
+      case default
+         name = "loss modulus"
+      end select
+   end function name_of
+
+   !> Names of columns as an example
+   pure function example(role) result(text)
+      !> What the column holds
+      integer, intent(in) :: role
+      !> Some names
+      character(len=:), allocatable :: text
+
+      select case (role)
+      case (role_time)
+         text = "t or time"
+      case (role_frequency)
+         text = "f or omega"
+      case (role_relaxation)
+         text = "E or relaxation_modulus"
+      case (role_storage)
+         text = "E' or E_stor"
+      case default
+         text = "E'' or E_loss"
+      end select
+   end function example
+
+   !> What is missing of storage and loss modulus where one of them is there
+   pure function lacking(roles) result(text)
+      !> What each column holds
+      integer, intent(in) :: roles(:)
+      !> In words, or nothing
+      character(len=:), allocatable :: text
+
+      logical :: loss
+
+      text = ""
+      loss = any(roles == role_loss .or. roles == role_tangent)
+      if (any(roles == role_storage) .and. .not. loss) text = "; there is no loss modulus"
+      if (loss .and. all(roles /= role_storage)) text = "; there is no storage modulus"
+   end function lacking
+
+   !> A number of columns in words
+   pure function columns_text(columns) result(text)
+      !> The number
+      integer, intent(in) :: columns
+      !> `2 columns`
+      character(len=:), allocatable :: text
+
+      text = integer_text(columns)//" column"
+      if (columns /= 1) text = text//"s"
+   end function columns_text
+
+   !> What a header says against the number of columns
+   pure function expected_of(header, columns) result(text)
+      !> The header
+      type(header_t), intent(in) :: header
+      !> Number of columns of the first line of numbers
+      integer, intent(in) :: columns
+      !> In words, or nothing
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (header%lines == 0) return
+      text = "; the header has "//integer_text(header%count)
+      if (columns > header%count .and. columns <= 2*header%count) text = text//" (with decimal " &
+         //"commas expected semicolons or tabs between them)"
+   end function expected_of
+
+   !> Unit of the SI
+   pure function default_unit(role) result(unit)
+      !> What the column holds
+      integer, intent(in) :: role
+      !> The unit
+      character(len=5) :: unit
+
+      select case (role)
+      case (role_time)
+         unit = "s"
+      case (role_frequency)
+         unit = "rad/s"
+      case (role_tangent)
+         unit = "1"
+      case default
+         unit = "Pa"
+      end select
+   end function default_unit
+
+end module vcor_io_column_plan
