@@ -10,6 +10,7 @@ program test_numeric
    use vcor_numeric_linear, only : apply, factorise, factors_t
    use vcor_numeric_pairs, only : ratio, times
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
+   use vcor_numeric_settling, only : new_settling, settling_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : random_t, success
    implicit none
@@ -30,6 +31,8 @@ program test_numeric
    !> each stage: what is left of 16 digits with 2 .. 8 stages
    real(wp), parameter :: eigenvector_tolerance(2:8) = [1.0e-14_wp, 1.0e-13_wp, 1.0e-13_wp, &
       1.0e-12_wp, 1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
+   !> Powers of polynomials on nine points from their values: five digits of the 16
+   real(wp), parameter :: settling_tolerance = 1.0e-11_wp
    !> Rules that are tested
    integer, parameter :: most_stages = min(width, ubound(eigenvector_tolerance, 1))
 
@@ -42,6 +45,7 @@ program test_numeric
    call test_dot()
    call test_linear()
    call test_collocation()
+   call test_settling()
    call finish()
 
 contains
@@ -290,6 +294,44 @@ contains
          end do
       end do
    end subroutine test_collocation
+
+   !> What exponentials remember at the end of a panel in which time runs as y^2, against Gauss's rule
+   !> on geometric pieces of it; from slow ones to such that settle at once
+   subroutine test_settling()
+      integer, parameter :: pieces = 60, order = 20
+      real(wp), parameter :: product(9) = [1.0e-3_wp, 0.3_wp, 2.0_wp, 12.0_wp, 35.9_wp, 36.1_wp, &
+         1.0e2_wp, 1.0e4_wp, 1.0e8_wp]
+      real(wp), parameter :: scale = 2.0_wp, start = 0.7_wp
+      type(settling_t) :: rule
+      real(wp) :: point(0:8), node(8), x(0:8), gauss(order), weight(order), y, upper, expected
+      integer :: n, i, j, k, p
+
+      call gauss_nodes(gauss, weight)
+      do n = 7, 8
+         call radau_nodes(node(:n))
+         point = 0.0_wp
+         point(1:n) = node(:n)
+         call new_settling(rule, point(:n))
+         do k = 1, n
+            ! x = y^k, so -dx/dy = -k y^(k - 1)
+            x(:n) = (1.0_wp - point(:n))**k
+            do p = 1, size(product)
+               expected = start*exp(-min(product(p), 600.0_wp))
+               upper = 1.0_wp
+               do j = 1, pieces
+                  do i = 1, order
+                     y = upper*(0.5_wp + 0.5_wp*gauss(i))
+                     expected = expected - 0.5_wp*upper*weight(i)*real(k, wp)*y**(k - 1) &
+                        *exp(-min(product(p)*y**2, 600.0_wp))
+                  end do
+                  upper = 0.5_wp*upper
+               end do
+               call check_close(rule%total([3.0_wp], [product(p)/scale], scale, [start], x(:n)), &
+                  3.0_wp*expected, settling_tolerance, "an exponential settles")
+            end do
+         end do
+      end do
+   end subroutine test_settling
 
    !> B = A diag(slope + 2 bend c): B f is the integral of f(t) over t = slope theta + bend theta^2,
    !> exact for f of degree n - 2 in theta, and functions of B follow from its eigenvalues
