@@ -174,9 +174,11 @@ contains
       ! error of a panel, over what it may have, that can be put up with if it is inherited
       real(wp), parameter :: tolerable = 4.0_wp
       ! first step in x over the square root of the expected contact time, where the kernel relaxes
-      ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy
-      real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, fast = 3.0_wp
-      real(wp), parameter :: step_growth = 0.025_wp
+      ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy: with
+      ! the longest one two panels make an impact
+      real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, longest_step = 0.5_wp
+      real(wp), parameter :: fast = 3.0_wp
+      real(wp), parameter :: short_growth = 0.025_wp, long_growth = 0.084_wp
       ! residual indentation over the largest one that makes an end a smooth one
       real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
       type(start_t) :: start, coarse_start
@@ -203,10 +205,14 @@ contains
       coarse_start = start
       recedes = impact%law == law_receding
       inner = 0.0_wp
-      step%reach = long_step
-      if (recedes) step%reach = receding_reach*step%reach
-      if (any(modes%contact%rates*time_scale > fast)) step%reach = short_step
-      step%reach = step%reach*(accuracy/usual)**step_growth*sqrt(hertz_contact_time*time_scale)
+      if (any(modes%contact%rates*time_scale > fast)) then
+         step%reach = short_step*(accuracy/usual)**short_growth
+      else if (recedes) then
+         step%reach = receding_reach*long_step*(accuracy/usual)**short_growth
+      else
+         step%reach = min(longest_step, long_step*(accuracy/usual)**long_growth)
+      end if
+      step%reach = step%reach*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%rule, impact, trajectory)
@@ -465,7 +471,7 @@ contains
       real(wp), parameter :: rounding = 5.0e-13_wp
       ! the difference is the error of the companion: that of the solution is less, where
       ! the solution is smooth by orders, where it is not by a factor of this size
-      real(wp), parameter :: finer = 0.3_wp
+      real(wp), parameter :: finer = 0.5_wp
       real(wp) :: impulse_error, time_error, alpha_rate
 
       associate (n => rule%stages)
