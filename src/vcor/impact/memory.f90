@@ -25,6 +25,20 @@ module vcor_impact_memory
 
    public :: memory_t, new_memory
 
+   !> Zeros and poles of Q_b(-l) for a material that is a sum of exponentials: zero i lies between
+   !> pole i and pole i + 1, pole 1 = 0 being none of Q_b; with a dashpot there is one beyond the
+   !> last pole
+   type :: gaps_t
+      !> Poles [1/s]
+      real(wp), allocatable :: pole(:)
+      !> Number of the pole that each zero is counted from
+      integer, allocatable :: near(:)
+      !> Distance of the zero from it [1/s]
+      real(wp), allocatable :: offset(:)
+      !> Q_b over the product of the distances from zeros and poles
+      real(wp) :: scale = 0.0_wp
+   end type gaps_t
+
    !> Velocity of the plate per force as a modulus [m/(N s)], [m/(N s2)] in time
    type, extends(transform_t) :: memory_t
       private
@@ -32,6 +46,8 @@ module vcor_impact_memory
       class(material_t), allocatable :: material
       !> Coefficient A, the plane-strain factor in it [Pa^0.5 m/(N s)]
       real(wp) :: coefficient = 0.0_wp
+      !> Zeros and poles where the material is a sum of exponentials
+      type(gaps_t) :: gaps
    contains
       procedure :: complex_modulus
       procedure :: glassy
@@ -50,29 +66,53 @@ contains
       !> A such that an elastic plate has U' = A F/sqrt(E_b) [Pa^0.5 m/(N s)], > 0
       real(wp), intent(in) :: coefficient
 
+      type(exponential_sum_t) :: terms
       real(wp) :: modulus
 
       call self%prepare()
       allocate (self%material, source=material)
       self%coefficient = coefficient
       modulus = material%glassy()
-      if (material%discrete) modulus = glassy_of(material)
+      if (material%discrete) then
+         call material%exponentials(1.0_wp, 1.0_wp, terms)
+         modulus = terms%equilibrium + sum(terms%moduli)
+         call find_gaps(self%gaps, terms)
+      end if
       if (ieee_is_finite(modulus) .and. .not. material%viscosity > 0.0_wp) &
          self%viscosity = coefficient/sqrt(modulus)
    end subroutine new_memory
 
-   !> Glassy modulus of the sum of exponentials that a material is represented by
-   pure function glassy_of(material) result(modulus)
+   !> Find zeros and poles: Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)), with the equilibrium
+   !> modulus at d = 0
+   pure subroutine find_gaps(gaps, material)
+      !> Zeros and poles
+      type(gaps_t), intent(out) :: gaps
       !> The material
-      class(material_t), intent(in) :: material
-      !> Modulus [Pa]
-      real(wp) :: modulus
+      type(exponential_sum_t), intent(in) :: material
 
-      type(exponential_sum_t) :: terms
+      real(wp), allocatable :: weight(:)
+      integer :: zeros
 
-      call material%exponentials(1.0_wp, 1.0_wp, terms)
-      modulus = terms%equilibrium + sum(terms%moduli)
-   end function glassy_of
+      call sort(material, gaps%pole, weight)
+      if (material%equilibrium > 0.0_wp) then
+         gaps%pole = [0.0_wp, gaps%pole]
+         weight = [material%equilibrium, weight]
+      end if
+      zeros = size(gaps%pole) - 1
+      gaps%scale = material%equilibrium + sum(material%moduli)
+      if (material%viscosity > 0.0_wp) then
+         zeros = size(gaps%pole)
+         gaps%scale = material%viscosity
+      end if
+      allocate (gaps%near(zeros), gaps%offset(zeros))
+      call zeros_between_poles(gaps%pole, weight, material%viscosity, gaps%near, gaps%offset)
+      if (.not. material%equilibrium > 0.0_wp) then
+         ! the factor l is a zero at 0
+         gaps%near = [1, gaps%near + 1]
+         gaps%offset = [0.0_wp, gaps%offset]
+         gaps%pole = [0.0_wp, gaps%pole]
+      end if
+   end subroutine find_gaps
 
    !> A s/sqrt(Q_b(s)), on the branch that is positive for s > 0
    elemental function complex_modulus(self, s) result(modulus)
@@ -133,7 +173,8 @@ contains
       terms%error = huge(1.0_wp)
       do refinement = 0, most_refinements
          if (self%material%discrete) then
-            call sum_over_gaps(self, window, max(accuracy, rounding)**(refinement + 1), now)
+            call sum_over_gaps(self, self%gaps, window, &
+               max(accuracy, rounding)**(refinement + 1), now)
          else
             call rule_for_spectrum(self, window, accuracy, now, &
                finer=finer*much_finer**refinement, &
@@ -175,11 +216,12 @@ contains
 
    !> Sum for a material that is a sum of exponentials itself. Q_b(-l) is real, and negative between
    !> each of its zeros z and the pole b that follows; there w(l) = A/(pi sqrt(-Q_b)), with a branch
-   !> point at both ends. With a dashpot there is a zero beyond the last pole, and w goes on to
-   !> infinity
-   pure subroutine sum_over_gaps(self, window, accuracy, terms)
+   !> point at both ends. With a dashpot w goes on to infinity beyond the last pole
+   pure subroutine sum_over_gaps(self, gaps, window, accuracy, terms)
       !> The memory
       class(memory_t), intent(in) :: self
+      !> Zeros and poles of Q_b
+      type(gaps_t), intent(in) :: gaps
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window
       !> Wanted relative accuracy
@@ -191,59 +233,46 @@ contains
       real(wp), parameter :: growth = 2.0_wp
       ! beyond all rates that can be computed with, and what is a dashpot on the window
       real(wp), parameter :: slow = 0.1_wp, farthest = 600.0_wp, constant = 1.0e-14_wp
-      type(exponential_sum_t) :: material
-      real(wp), allocatable :: pole(:), weight(:), offset(:), from_zero(:), to_pole(:), share(:)
-      real(wp) :: scale, zero, before, after, h, low, high, x, y, w
-      integer, allocatable :: near(:)
-      integer :: i, k, n, zeros
+      ! terms that are collected at a time: no gap has as many
+      integer, parameter :: room = 256
+      real(wp), allocatable :: from_zero(:), to_pole(:), share(:)
+      real(wp) :: rates(room), moduli(room)
+      real(wp) :: zero, before, after, h, low, high, x, y, w
+      integer :: i, k, n, zeros, found
 
-      call self%material%exponentials(1.0_wp, 1.0_wp, material)
+      zeros = size(gaps%near)
+      n = size(gaps%pole) - 1
       terms%viscosity = self%viscosity
-      call sort(material, pole, weight)
-      n = size(pole)
-      ! Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)), with the equilibrium modulus at d = 0
-      if (material%equilibrium > 0.0_wp) then
-         pole = [0.0_wp, pole]
-         weight = [material%equilibrium, weight]
-      end if
-      zeros = size(pole) - 1
-      scale = material%equilibrium + sum(material%moduli)
-      if (material%viscosity > 0.0_wp) then
-         zeros = size(pole)
-         scale = material%viscosity
-      end if
-      allocate (near(zeros), offset(zeros))
-      call zeros_between_poles(pole, weight, material%viscosity, near, offset)
-      if (.not. material%equilibrium > 0.0_wp) then
-         ! the factor l is a zero at 0
-         near = [1, near + 1]
-         offset = [0.0_wp, offset]
-         pole = [0.0_wp, pole]
-         zeros = zeros + 1
-      end if
-      ! now zero i lies between pole(i) and pole(i + 1), pole(1) = 0 being none of Q_b
-
       allocate (terms%rates(0), terms%moduli(0))
+      found = 0
       do i = 1, n
-         zero = pole(near(i)) + offset(i)
-         before = (pole(near(i)) - pole(i)) + offset(i)
+         zero = gaps%pole(gaps%near(i)) + gaps%offset(i)
+         before = (gaps%pole(gaps%near(i)) - gaps%pole(i)) + gaps%offset(i)
          if (i == 1) before = zero + growth/window
          after = ieee_value(1.0_wp, ieee_positive_inf)
-         if (i < zeros) after = (pole(near(i + 1)) - pole(i + 1)) + offset(i + 1)
-         call branch_rule(before, (pole(i + 1) - pole(near(i))) - offset(i), after, accuracy, &
-            from_zero, to_pole, share)
+         if (i < zeros) after = (gaps%pole(gaps%near(i + 1)) - gaps%pole(i + 1)) &
+            + gaps%offset(i + 1)
+         call branch_rule(before, (gaps%pole(i + 1) - gaps%pole(gaps%near(i))) - gaps%offset(i), &
+            after, accuracy, from_zero, to_pole, share)
+         if (found + size(share) > room) then
+            terms%rates = [terms%rates, rates(:found)]
+            terms%moduli = [terms%moduli, moduli(:found)]
+            found = 0
+         end if
          do k = 1, size(share)
-            share(k) = share(k)*density(i, from_zero(k), to_pole(k))
+            found = found + 1
+            rates(found) = zero + from_zero(k)
+            moduli(found) = share(k)*density(i, from_zero(k), to_pole(k))
          end do
-         terms%rates = [terms%rates, zero + from_zero]
-         terms%moduli = [terms%moduli, share]
       end do
+      terms%rates = [terms%rates, rates(:found)]
+      terms%moduli = [terms%moduli, moduli(:found)]
       if (.not. zeros > n) return
 
       ! beyond the last pole l = z + exp(y), and y runs away doubly exponentially at both ends, as
       ! in `vcor_material_spectrum`
-      zero = pole(near(zeros)) + offset(zeros)
-      before = (pole(near(zeros)) - pole(zeros)) + offset(zeros)
+      zero = gaps%pole(gaps%near(zeros)) + gaps%offset(zeros)
+      before = (gaps%pole(gaps%near(zeros)) - gaps%pole(zeros)) + gaps%offset(zeros)
       if (.not. before > 0.0_wp) before = 1.0_wp/window
       h = -pi**2/log(accuracy)
       low = log(slow*min(1.0_wp/window, before))
@@ -278,18 +307,19 @@ contains
          real(wp) :: root, from
          integer :: j
 
-         root = 1.0_wp/sqrt(scale)
+         root = gaps%scale
          do j = 1, zeros
             from = x
-            if (j /= i) from = x + ((pole(near(i)) - pole(near(j))) + (offset(i) - offset(j)))
-            root = root/sqrt(abs(from))
-         end do
-         do j = 2, n + 1
+            if (j /= i) from = x + ((gaps%pole(gaps%near(i)) - gaps%pole(gaps%near(j))) &
+               + (gaps%offset(i) - gaps%offset(j)))
+            root = root*abs(from)
+            ! factor by factor the product stays in range
+            if (j > n) cycle
             from = y
-            if (j /= i + 1) from = x + ((pole(near(i)) - pole(j)) + offset(i))
-            root = root*sqrt(abs(from))
+            if (j /= i) from = x + ((gaps%pole(gaps%near(i)) - gaps%pole(j + 1)) + gaps%offset(i))
+            root = root/abs(from)
          end do
-         w = self%coefficient/pi*root
+         w = self%coefficient/(pi*sqrt(root))
       end function density
    end subroutine sum_over_gaps
 

@@ -1,4 +1,4 @@
-!> Paths: what there is, directories, and how a path stands in a message
+!> What there is at a path, directories, and how a path stands in a message
 !>
 !> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
 !> with the path and the system's reason.

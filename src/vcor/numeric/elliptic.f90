@@ -16,6 +16,23 @@ module vcor_numeric_elliptic
 
    public :: branch_rule
 
+   !> Steps after which the transformation has converged for any parameter
+   integer, parameter :: most_steps = 30
+
+   !> Landen's transformation for one parameter
+   type :: landen_t
+      !> Parameter m
+      real(wp) :: m = 0.0_wp
+      !> 1 - m
+      real(wp) :: complement = 1.0_wp
+      !> Number of steps
+      integer :: steps = 0
+      !> c/a of each step
+      real(wp) :: ratio(most_steps) = 0.0_wp
+      !> Factor of the argument after the last one
+      real(wp) :: factor = 1.0_wp
+   end type landen_t
+
 contains
 
    !> Nodes in (z, b) by their distances from both ends, and weights
@@ -38,6 +55,7 @@ contains
       integer, parameter :: most_nodes = 200
       ! the strip of the rule is not quite as wide where the integrand has other features
       real(wp), parameter :: margin = 1.1_wp
+      type(landen_t) :: landen
       real(wp) :: m, complement, quarter, sn, cn, dn, rest
       integer :: j, n
 
@@ -53,8 +71,9 @@ contains
       n = min(most_nodes, 1 + ceiling(-margin*log(accuracy)*quarter &
          *mean(1.0_wp, sqrt(m))/pi**2))
       allocate (from_lower(n), to_upper(n), weight(n))
+      call descend(m, complement, landen)
       do j = 1, n
-         call jacobi(quarter*(real(j, wp) - 0.5_wp)/real(n, wp), m, complement, sn, cn, dn)
+         call jacobi(landen, quarter*(real(j, wp) - 0.5_wp)/real(n, wp), sn, cn, dn)
          rest = (before + length*cn**2)/(before + length)
          from_lower(j) = before*length/(before + length)*sn**2/rest
          to_upper(j) = length*cn**2/rest
@@ -86,15 +105,41 @@ contains
       end do
    end function mean
 
-   !> Jacobi's elliptic functions by the descending Landen transformation: M. Abramowitz and
-   !> I. A. Stegun, Handbook of Mathematical Functions (1964), 16.4
-   pure subroutine jacobi(u, m, complement, sn, cn, dn)
-      !> Argument, between 0 and the quarter period
-      real(wp), intent(in) :: u
+   !> Descending Landen transformation for a parameter: M. Abramowitz and I. A. Stegun, Handbook of
+   !> Mathematical Functions (1964), 16.4
+   pure subroutine descend(m, complement, landen)
       !> Parameter m
       real(wp), intent(in) :: m
       !> 1 - m, > 0
       real(wp), intent(in) :: complement
+      !> The transformation
+      type(landen_t), intent(out) :: landen
+
+      real(wp) :: a, b, c, next
+
+      landen%m = m
+      landen%complement = complement
+      a = 1.0_wp
+      b = sqrt(complement)
+      c = sqrt(m)
+      landen%steps = 0
+      do while (landen%steps < most_steps .and. c > 1.0e-15_wp*a)
+         next = 0.5_wp*(a + b)
+         c = 0.5_wp*(a - b)
+         b = sqrt(a*b)
+         a = next
+         landen%steps = landen%steps + 1
+         landen%ratio(landen%steps) = c/a
+      end do
+      landen%factor = 2.0_wp**landen%steps*a
+   end subroutine descend
+
+   !> Jacobi's elliptic functions
+   pure subroutine jacobi(landen, u, sn, cn, dn)
+      !> The transformation of their parameter
+      type(landen_t), intent(in) :: landen
+      !> Argument, between 0 and the quarter period
+      real(wp), intent(in) :: u
       !> sn(u)
       real(wp), intent(out) :: sn
       !> cn(u)
@@ -102,27 +147,16 @@ contains
       !> dn(u)
       real(wp), intent(out) :: dn
 
-      integer, parameter :: most_steps = 30
-      real(wp) :: a(0:most_steps), c(0:most_steps), b, phi
+      real(wp) :: phi
       integer :: n
 
-      a(0) = 1.0_wp
-      b = sqrt(complement)
-      c(0) = sqrt(m)
-      n = 0
-      do while (n < most_steps .and. abs(c(n)) > 1.0e-15_wp*a(n))
-         a(n + 1) = 0.5_wp*(a(n) + b)
-         c(n + 1) = 0.5_wp*(a(n) - b)
-         b = sqrt(a(n)*b)
-         n = n + 1
-      end do
-      phi = 2.0_wp**n*a(n)*u
-      do n = n, 1, -1
-         phi = 0.5_wp*(phi + asin(max(-1.0_wp, min(1.0_wp, c(n)/a(n)*sin(phi)))))
+      phi = landen%factor*u
+      do n = landen%steps, 1, -1
+         phi = 0.5_wp*(phi + asin(max(-1.0_wp, min(1.0_wp, landen%ratio(n)*sin(phi)))))
       end do
       sn = sin(phi)
       cn = cos(phi)
-      dn = sqrt(complement + m*cn**2)
+      dn = sqrt(landen%complement + landen%m*cn**2)
    end subroutine jacobi
 
 end module vcor_numeric_elliptic

@@ -169,13 +169,15 @@ contains
       associate (stretch => self%stretch(j))
          past = 0.0_wp
          rate = contact%equilibrium
-         do k = 0, active - 1, block
+         k = 0
+         do while (k < active)
             n = min(block, active - k)
             share(:n) = contact%moduli(k + 1:k + n)*exp(-contact%rates(k + 1:k + n)*elapsed)
             do i = 1, n
                rate = rate + share(i)
                past = past + share(i)*stretch%past(:, k + i)
             end do
+            k = k + n
          end do
          if (t1 > 0.0_wp) then
             offset = t1 - stretch%start

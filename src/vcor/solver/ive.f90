@@ -38,7 +38,7 @@ module vcor_solver_ive
    public :: ive_t, new_ive
 
    !> Share of the wanted accuracy that the error of one panel may use up
-   real(wp), parameter :: panel_share = 1.2_wp
+   real(wp), parameter :: panel_share = 0.7_wp
 
    !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
    !> and better, and at most
