@@ -2,8 +2,9 @@
 !>
 !>     accuracy FOLDER
 !>
-!> writes two tables. FOLDER/accuracy.csv: time and true error of the paper's impacts over the
-!> accuracy asked for. FOLDER/modes.csv: time over the number of terms of a Prony series. A method
+!> writes three tables. FOLDER/accuracy.csv: time and true error of the paper's impacts over the
+!> accuracy asked for. FOLDER/modes.csv: time over the number of terms of a Prony series.
+!> FOLDER/models.csv: time of the exact models beside the paper's. A method
 !> that cannot do an impact, or takes longer than half a second for it, has no row
 program accuracy
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
@@ -26,6 +27,7 @@ program accuracy
    call get_command_argument(1, folder)
    call write_accuracy(trim(folder)//'/accuracy.csv')
    call write_modes(trim(folder)//'/modes.csv')
+   call write_models(trim(folder)//'/models.csv')
 
 contains
 
@@ -99,6 +101,43 @@ contains
       close (unit)
       write (output_unit, '(a)') 'written '//path
    end subroutine write_modes
+
+   !> Time of the impacts by the paper's model and by the exact ones, with the default accuracy
+   subroutine write_models(path)
+      !> The file
+      character(len=*), intent(in) :: path
+
+      character(len=*), parameter :: waves(2) = [character(len=10) :: 'relaxing', 'hereditary']
+      character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
+      type(case_t) :: case
+      type(measurement_t) :: measurement
+      type(error_t), allocatable :: error
+      integer :: unit, name, i, j
+
+      open (newunit=unit, file=path, status='replace', action='write')
+      write (unit, '(a)') 'problem,waves,law,microseconds,spread,steps,cor,estimate'
+      do name = 1, size(names)
+         call read_case(case, 'examples/paper/'//trim(names(name))//'.nml', error)
+         call stop_on(error)
+         do i = 1, size(waves)
+            do j = 1, size(laws)
+               call override(case, 'plate.waves='//trim(waves(i)), error)
+               call stop_on(error)
+               call override(case, 'contact.law='//trim(laws(j)), error)
+               call stop_on(error)
+               call measure(case, measurement, error)
+               call stop_on(error)
+               write (unit, '(a, f0.2, a, f5.3, a, i0, a, f9.7, a, es8.2)') trim(names(name)) &
+                  //','//trim(waves(i))//','//trim(laws(j))//',', measurement%time, ',', &
+                  measurement%spread, ',', measurement%outcome%steps, ',', &
+                  measurement%outcome%cor, ',', measurement%outcome%cor_error
+               flush (unit)
+            end do
+         end do
+      end do
+      close (unit)
+      write (output_unit, '(a)') 'written '//path
+   end subroutine write_models
 
    !> The case with n modes
    function prony_case(n) result(text)

@@ -111,6 +111,22 @@ def modes_table(rows):
     return table(head, lines, set(range(len(head))))
 
 
+def models_table(rows):
+    """Time of the exact models beside the paper's, a column per model."""
+    models = list(dict.fromkeys((row["waves"], row["law"]) for row in rows))
+    found = {(r["problem"], r["waves"], r["law"]): float(r["microseconds"]) for r in rows}
+    lines = []
+    for problem in dict.fromkeys(row["problem"] for row in rows):
+        paper = found[problem, "relaxing", "boltzmann"]
+        line = [f"`{problem}`"]
+        for model in models:
+            time = found[(problem, *model)]
+            line.append(cost(time) if time == paper else f"{cost(time)} ({time / paper:.1f})")
+        lines.append(line)
+    head = ["problem"] + [f"{waves}, {law}" for waves, law in models]
+    return table(head, lines, set(range(1, len(head))))
+
+
 def points_table(rows):
     """Time and memory of whole sweeps over their points, one thread, both files."""
     lines = [
@@ -338,6 +354,7 @@ def main():
         blocks["comparison"] = comparison_table(comparison)
         blocks["accuracy"] = accuracy_table(accuracy)
         blocks["modes"] = modes_table(modes)
+        blocks["models"] = models_table(read(folder / "models.csv"))
         FIGURE.write_text(figure(accuracy, comparison, modes))
         print(f"written {FIGURE.relative_to(TOP)}")
     # whole sweeps, where they were measured

@@ -108,15 +108,17 @@ contains
       integer, intent(in), optional :: law
 
       ! energies and their products stay far inside the range of the numbers
-      real(wp), parameter :: decades = 60.0_wp
+      real(wp), parameter :: largest = 1.0e60_wp
       real(wp) :: hertz_radius
 
-      if (.not. (velocity > 0.0_wp .and. mass > 0.0_wp .and. radius > 0.0_wp)) then
+      ! the mass of a tiny sphere may be nothing
+      if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. radius > 0.0_wp)) then
          call raise(error, error_input, 'velocity, mass and radius of the sphere must be positive')
       else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
          call raise(error, error_input, &
             'a concave surface must have a larger radius than the sphere, or Hertz does not apply')
-      else if (max(abs(log10(velocity)), abs(log10(mass)), abs(log10(radius))) > decades) then
+      else if (max(velocity, mass, radius) > largest &
+               .or. min(velocity, mass, radius) < 1.0_wp/largest) then
          call raise(error, error_input, &
             'velocity, mass or radius of the sphere are beyond all that can be computed')
       end if

@@ -38,7 +38,7 @@ module vcor_solver_ive
    public :: ive_t, new_ive
 
    !> Share of the wanted accuracy that the error of one panel may use up
-   real(wp), parameter :: panel_share = 0.7_wp
+   real(wp), parameter :: panel_share = 1.2_wp
 
    !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
    !> and better, and at most
@@ -470,15 +470,18 @@ contains
       ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
       real(wp), parameter :: rounding = 5.0e-13_wp
       ! the difference is the error of the companion: that of the solution is less, where
-      ! the solution is smooth by orders, where it is not by a factor of this size
-      real(wp), parameter :: finer = 0.5_wp
+      ! the solution is smooth by orders, where it is not by a factor of this size; with few panels
+      ! it is anybody's guess
+      real(wp), parameter :: finer = 0.3_wp
+      integer, parameter :: few = 2
       real(wp) :: impulse_error, time_error, alpha_rate
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
          time_error = abs((panel%force(n) - coarse%force(n - 1))/slope_at_end(rule, panel))
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
-         estimate = rounding*real(panels, wp) + merge(1.0_wp, finer, shallow)/impact%velocity &
+         estimate = rounding*real(panels, wp) &
+            + merge(1.0_wp, finer, shallow .or. panels <= few)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(panel%drift(n) - coarse%drift(n - 1)))
