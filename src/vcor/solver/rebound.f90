@@ -61,6 +61,8 @@ contains
       ! reduce it: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
+      ! what Newton's method may leave, over that in the indentation of a companion
+      real(wp), parameter :: share_of_tolerance = 3.0_wp
       ! relative error of the contact time that is rounding
       real(wp), parameter :: closest = 1.0e-13_wp
       ! t1 at the end, extrapolated, over that at the start of the last panel
@@ -79,7 +81,7 @@ contains
       logical :: ends, last, inherited
 
       n = collocator%rule%stages
-      tolerance = collocator%coarse_tolerance
+      tolerance = share_of_tolerance*collocator%coarse_tolerance
       refused = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
@@ -252,9 +254,12 @@ contains
          !> The panel
          type(rebound_panel_t), intent(in) :: panel
 
+         real(wp), parameter :: share_of_bend = 0.75_wp
          real(wp) :: fall, fall_rate
 
          call end_rates(panel%t1, rate, bend)
+         ! which becomes less and less
+         bend = share_of_bend*bend
          call end_rates(panel%condition, fall, fall_rate)
          fall = -fall
          rest = huge(1.0_wp)
@@ -310,7 +315,7 @@ contains
          type(rebound_panel_t), intent(inout) :: panel
 
          ! of the companion two digits of its difference to the solution are wanted
-         real(wp), parameter :: looser = 30.0_wp
+         real(wp), parameter :: looser = 10.0_wp
 
          call solve_rebound_panel(rule, rule%map(kind), length, impact, modes, approach, start, &
             merge(tolerance, looser*tolerance, rule%stages == n), panel)
