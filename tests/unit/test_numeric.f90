@@ -295,8 +295,8 @@ contains
       end do
    end subroutine test_collocation
 
-   !> What exponentials remember at the end of a panel in which time runs as y^2, against Gauss's rule
-   !> on geometric pieces of it; from slow ones to such that settle at once
+   !> What exponentials remember at the end of a panel in which time runs as y^2, against Gauss's
+   !> rule on geometric pieces of it; from slow ones to such that settle at once
    subroutine test_settling()
       integer, parameter :: pieces = 60, order = 20
       real(wp), parameter :: product(9) = [1.0e-3_wp, 0.3_wp, 2.0_wp, 12.0_wp, 35.9_wp, 36.1_wp, &
