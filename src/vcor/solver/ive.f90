@@ -176,7 +176,7 @@ contains
       ! first step in x over the square root of the expected contact time, where the kernel relaxes
       ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy: with
       ! the longest one two panels make an impact
-      real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, longest_step = 0.5_wp
+      real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, longest_step = 0.48_wp
       real(wp), parameter :: fast = 3.0_wp
       real(wp), parameter :: short_growth = 0.025_wp, long_growth = 0.084_wp
       ! residual indentation over the largest one that makes an end a smooth one

@@ -70,7 +70,7 @@ contains
       theta = self%rule%crossing(velocity, self%rule%point(j - 1), self%rule%point(j), closest)
       step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
       call guess(self%rule, impact, longer, start, step, panel)
-      call solve_near_step(self, step, impact, modes, start, self%tolerance, panel, factors)
+      call solve_near_step(self, step, impact, modes, start, self%near_tolerance, panel, factors)
    end subroutine land_on_largest
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero

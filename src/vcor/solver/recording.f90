@@ -139,11 +139,13 @@ contains
          !> Its time [s]
          real(wp), intent(inout) :: time
 
+         ! slope by theta at the end, over the value, of a panel that ends at its maximum
+         real(wp), parameter :: flat = 1.0e-6_wp
          real(wp) :: peak, peak_time
          integer :: j
 
          if (sum(self%rule%derivative(0, :)*value) > 0.0_wp .and. &
-             sum(self%rule%derivative(n, :)*value) < 0.0_wp) then
+             sum(self%rule%derivative(n, :)*value) < -flat*value(n)) then
             call find_peak(self%rule%slopes(value), of_indentation, peak, peak_time)
             if (peak > largest) then
                largest = peak
