@@ -72,6 +72,8 @@ contains
       real(wp), parameter :: least_cut = 0.8_wp, deepest_cut = 0.2_wp, order_at_end = 3.0_wp
       ! share of what is allowed that is aimed at
       real(wp), parameter :: aim = 0.3_wp
+      ! a panel over its start that is rounding: it has been cut and cut again
+      real(wp), parameter :: shortest = 1.0e-14_wp
       ! growth of t1 that is rounding, over the time of the approach, and its rate
       real(wp), parameter :: noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       type(rebound_panel_t) :: panel, companion, previous
@@ -101,6 +103,7 @@ contains
             ends = .false.
             taken = end_time - start%time
          end if
+         if (.not. taken > shortest*start%time) exit
          if (ends) then
             call guess(panel, closing, taken)
             call close_contact(collocator%rule, impact, modes, approach, start, tolerance, &

@@ -173,10 +173,12 @@ contains
       real(wp), parameter :: noticeable = 1.0e-7_wp
       ! polynomials run away beyond their own panel
       real(wp), parameter :: beyond = 1.2_wp
+      ! a panel over its start that is rounding: there is no end to be found
+      real(wp), parameter :: shortest = 1.0e-14_wp
       type(equations_t) :: equations
       type(newton_t) :: newton
       type(factors_t) :: factors
-      real(wp) :: elapsed(width), rate, correction, last_correction
+      real(wp) :: elapsed(width), fall, correction, last_correction
       integer :: n, iteration
 
       n = rule%stages
@@ -185,6 +187,7 @@ contains
       correction = huge(1.0_wp)
       associate (map => rule%map(closing))
          do iteration = 1, most_iterations
+            if (.not. length > shortest*start%time) return
             call set_up(equations, rule, map, length, impact, modes, start, panel)
             panel%t1(n) = 0.0_wp
             call correct(map, equations, modes, approach, tolerance, newton, factors, panel)
@@ -193,11 +196,12 @@ contains
             if (equations%damped) call settle_drift(rule, length, modes%plate, start, panel)
             call settle_condition(rule, length, impact, modes%contact, start, panel)
             ! N is linear in (1 - theta)^2 at the end
-            rate = -0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))/length
-            if (.not. rate < 0.0_wp) return
+            fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
+            if (.not. fall > 0.0_wp) return
             last_correction = correction
             correction = farthest*length
-            if (abs(panel%condition(n)) < -rate*correction) correction = -panel%condition(n)/rate
+            if (abs(panel%condition(n)) < farthest*fall) &
+               correction = panel%condition(n)/fall*length
             correction = sign(correction, panel%condition(n))
             panel%converged = newton%converged .and. (abs(correction) &
                <= time_tolerance*(start%time + length) &
