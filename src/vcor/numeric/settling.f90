@@ -6,32 +6,33 @@
 !>     w = w_start exp(-a) + int exp(-l (t_end - t)) x'(t) dt
 !>       = w_start exp(-a) - int_0^1 exp(-a y^2) dx/dy dy,   a = l D
 !>
-!> is taken of the polynomial x(y) itself: by Gauss's rule, and where exp(-a) is
-!> nothing by its powers, int_0^oo exp(-a y^2) k y^(k-1) dy = Gamma(k/2 + 1)/a^(k/2).
+!> is taken of the polynomial x(y) itself, by the moments m_k = int_0^1 exp(-a y^2) y^k dy, for
+!> which integration by parts gives 2 a m_(k+2) = (k + 1) m_k - exp(-a). That is a stable recursion
+!> upwards where a is large, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards where it is small,
+!> from series of positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
+!>
+!> The powers of y come from Legendre polynomials. In one step from the values they would have
+!> errors of their own, five digits of the 16; so they have those of a polynomial next to this one.
 module vcor_numeric_settling
+   use vcor_constants, only : pi
    use vcor_kinds, only : wp
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_legendre, only : gauss_nodes, legendre
    implicit none
    private
 
    public :: settling_t, new_settling
 
-   !> Nodes of Gauss's rule, and the largest a for which they give all digits
-   integer, parameter :: nodes = 24
-   real(wp), parameter :: largest = 36.0_wp
-   !> Highest degree of a polynomial
-   integer, parameter :: highest = 8
+   !> Highest degree of a polynomial's derivative
+   integer, parameter :: highest = 7
 
    !> Rule for polynomials that are given at some points
    type :: settling_t
       private
-      !> y^2 at the nodes
-      real(wp) :: square(nodes) = 0.0_wp
-      !> From the values at the points to -dx/dy times the weight at the nodes; zero beyond the
-      !> points
-      real(wp) :: slope(nodes, 0:highest) = 0.0_wp
-      !> From the values at the points to -c_k Gamma(k/2 + 1) of x = sum_k c_k y^k, shape (n, 0:n)
-      real(wp) :: power(highest, 0:highest) = 0.0_wp
+      !> From the values at the points to the coefficients of -dx/dy in Legendre polynomials
+      !> P_k(2 y - 1); zero beyond the points
+      real(wp) :: legendre(0:highest, 0:highest + 1) = 0.0_wp
+      !> Coefficients of y^k in them, shape (k, polynomial)
+      real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
       !> Sum over many exponentials
       procedure :: total
@@ -43,30 +44,26 @@ contains
    pure subroutine new_settling(self, point)
       !> The rule
       type(settling_t), intent(out) :: self
-      !> Points theta = 1 - y of the polynomials, all different, shape (0:n), n <= 8
+      !> Points theta = 1 - y of the polynomials, rising to 1, shape (0:n), n <= 8
       real(wp), intent(in) :: point(0:)
 
-      real(wp), dimension(nodes) :: y, weight
-      real(wp), dimension(0:ubound(point, 1)) :: own, basis
-      integer :: n, i, j, k
+      real(wp) :: y(highest + 1), weight(highest + 1), polynomial(0:highest)
+      integer :: i, j, k
 
-      n = ubound(point, 1)
       call gauss_nodes(y, weight)
-      self%square = y**2
-      own = 1.0_wp - point
-      do i = 0, n
-         do k = 1, nodes
-            self%slope(k, i) = -weight(k)*slope_of_basis(own, i, y(k))
+      do j = 1, highest + 1
+         polynomial = legendre(highest, 2.0_wp*y(j) - 1.0_wp)
+         do i = 0, ubound(point, 1)
+            do k = 0, ubound(point, 1) - 1
+               self%legendre(k, i) = self%legendre(k, i) - real(2*k + 1, wp)*weight(j) &
+                  *polynomial(k)*slope_of_basis(1.0_wp - point, i, y(j))
+            end do
          end do
-         ! Lagrange's polynomial, multiplied out factor by factor
-         basis = 0.0_wp
-         basis(0) = 1.0_wp
-         do j = 0, n
-            if (j == i) cycle
-            basis = (eoshift(basis, -1) - own(j)*basis)/(own(i) - own(j))
-         end do
-         do k = 1, n
-            self%power(k, i) = -gamma(0.5_wp*real(k, wp) + 1.0_wp)*basis(k)
+      end do
+      do j = 0, highest
+         self%power(0, j) = (-1.0_wp)**j
+         do k = 1, j
+            self%power(k, j) = -self%power(k - 1, j)*real((j + k)*(j - k + 1), wp)/real(k**2, wp)
          end do
       end do
    end subroutine new_settling
@@ -113,30 +110,76 @@ contains
       !> Sum
       real(wp) :: total
 
-      real(wp) :: slope(nodes), decay(nodes), power(highest), root, a, w
-      integer :: i, k
+      real(wp), dimension(0:highest) :: coefficient, g, moment
+      real(wp) :: decay
+      integer :: i, k, n
 
-      slope = 0.0_wp
-      power = 0.0_wp
-      do i = 0, ubound(x, 1)
-         slope = slope + self%slope(:, i)*x(i)
-         power = power + self%power(:, i)*x(i)
+      n = ubound(x, 1)
+      coefficient = 0.0_wp
+      do i = 0, n - 1
+         coefficient = coefficient + self%legendre(:, i)*(x(i) - x(n))
+      end do
+      g = 0.0_wp
+      do i = 0, highest
+         g = g + self%power(:, i)*coefficient(i)
       end do
       total = 0.0_wp
       do k = 1, size(moduli)
-         a = rates(k)*scale
-         if (a <= largest) then
-            decay = exp(-a*self%square)
-            w = sum(slope*decay) + start(k)*exp(-a)
-         else
-            root = 1.0_wp/sqrt(a)
-            w = 0.0_wp
-            do i = highest, 1, -1
-               w = (w + power(i))*root
-            end do
-         end if
-         total = total + moduli(k)*w
+         call find_moments(rates(k)*scale, moment, decay)
+         total = total + moduli(k)*(decay*start(k) &
+            + (((g(0)*moment(0) + g(1)*moment(1)) + (g(2)*moment(2) + g(3)*moment(3))) &
+            + ((g(4)*moment(4) + g(5)*moment(5)) + (g(6)*moment(6) + g(7)*moment(7)))))
       end do
    end function total
+
+   !> Moments m_k = int_0^1 exp(-a y^2) y^k dy
+   pure subroutine find_moments(a, moment, decay)
+      !> a, >= 0
+      real(wp), intent(in) :: a
+      !> Moments
+      real(wp), intent(out) :: moment(0:highest)
+      !> exp(-a), 0 where that is nothing
+      real(wp), intent(out) :: decay
+
+      ! least a for the recursion upwards, which then loses no digit, and largest one for exp(-a)
+      real(wp), parameter :: smallest = 1.0_wp, largest = 40.0_wp
+      ! terms of the series for as many digits at `smallest`
+      integer, parameter :: terms = 15
+      real(wp), parameter :: half_root_of_pi = 0.5_wp*sqrt(pi)
+      integer :: number
+      real(wp), parameter :: inverse(2*terms + highest) = &
+         [(1.0_wp/real(number, wp), number=1, 2*terms + highest)]
+      real(wp) :: double, half, root, even, odd
+      integer :: i, k
+
+      if (a < smallest) then
+         decay = exp(-a)
+         double = 2.0_wp*a
+         even = 1.0_wp
+         odd = 1.0_wp
+         do i = terms - 1, 1, -1
+            even = 1.0_wp + double*inverse(highest + 2*i)*even
+            odd = 1.0_wp + double*inverse(highest + 1 + 2*i)*odd
+         end do
+         moment(highest - 1) = decay*inverse(highest)*even
+         moment(highest) = decay*inverse(highest + 1)*odd
+         do k = highest - 2, 0, -1
+            moment(k) = (decay + double*moment(k + 2))*inverse(k + 1)
+         end do
+      else
+         half = 0.5_wp/a
+         root = sqrt(a)
+         decay = 0.0_wp
+         moment(0) = half_root_of_pi/root
+         if (a < largest) then
+            decay = exp(-a)
+            moment(0) = moment(0)*(1.0_wp - decay*erfc_scaled(root))
+         end if
+         moment(1) = (1.0_wp - decay)*half
+         do k = 0, highest - 2
+            moment(k + 2) = (real(k + 1, wp)*moment(k) - decay)*half
+         end do
+      end if
+   end subroutine find_moments
 
 end module vcor_numeric_settling
