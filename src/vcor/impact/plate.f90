@@ -38,6 +38,7 @@ module vcor_impact_plate
    contains
       !> Plate parameter alpha(t)
       procedure :: alpha
+      procedure :: alpha_at
       !> d alpha/dt
       procedure :: alpha_rate
       !> Both
@@ -112,6 +113,27 @@ contains
          value = self%initial
       end if
    end function alpha
+
+   !> The same at many times at once
+   pure subroutine alpha_at(self, t, value)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Times since first contact [s], t >= 0
+      real(wp), intent(in) :: t(:)
+      !> Deflection per impulse [m/(N s)], same shape
+      real(wp), intent(out) :: value(:)
+
+      integer :: j
+
+      if (allocated(self%material)) then
+         call self%material%relaxation_at(t, value)
+         do j = 1, size(t)
+            value(j) = self%coefficient/sqrt(max(value(j), tiny(1.0_wp)))
+         end do
+      else
+         value = self%initial
+      end if
+   end subroutine alpha_at
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
    elemental function frozen(self)

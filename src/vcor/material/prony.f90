@@ -23,6 +23,7 @@ module vcor_material_prony
       real(wp), allocatable :: rates(:)
    contains
       procedure :: relaxation
+      procedure :: relaxation_at
       procedure :: rate
       procedure :: integral
       procedure :: complex_modulus
@@ -142,6 +143,27 @@ contains
          value = value + self%moduli(i)*exp(-self%rates(i)*t)
       end do
    end function relaxation
+
+   !> Relaxation modulus E(t) at many times: the exponentials of one term are vector instructions
+   pure subroutine relaxation_at(self, t, value)
+      !> The material
+      class(prony_t), intent(in) :: self
+      !> Times since the strain step [s], t >= 0
+      real(wp), intent(in) :: t(:)
+      !> Modulus [Pa], same shape
+      real(wp), intent(out) :: value(:)
+
+      integer :: i, j
+
+      do j = 1, size(t)
+         value(j) = self%equilibrium
+      end do
+      do i = 1, size(self%moduli)
+         do j = 1, size(t)
+            value(j) = value(j) + self%moduli(i)*exp(-self%rates(i)*t(j))
+         end do
+      end do
+   end subroutine relaxation_at
 
    !> Rate of relaxation dE/dt
    elemental function rate(self, t) result(value)

@@ -26,6 +26,8 @@ module vcor_material_type
    contains
       !> Relaxation modulus E(t)
       procedure(of_time_i), deferred :: relaxation
+      !> Relaxation modulus E(t) at many times
+      procedure :: relaxation_at
       !> Rate of relaxation dE/dt
       procedure(of_time_i), deferred :: rate
       !> Integral of the relaxation modulus from 0 to t
@@ -91,6 +93,18 @@ module vcor_material_type
    end interface
 
 contains
+
+   !> Relaxation modulus E(t) at many times at once, for models that have a faster way to it
+   pure subroutine relaxation_at(self, t, value)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> Times since the strain step [s], t >= 0
+      real(wp), intent(in) :: t(:)
+      !> Modulus [Pa], same shape
+      real(wp), intent(out) :: value(:)
+
+      value = self%relaxation(t)
+   end subroutine relaxation_at
 
    !> Factor from E to the plane-strain modulus: E' = E/(1 - nu^2), Eq. (1)
    elemental function plane_strain_factor(self) result(factor)

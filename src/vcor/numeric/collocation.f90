@@ -77,6 +77,8 @@ module vcor_numeric_collocation
       real(wp) :: barycentric(0:width) = 0.0_wp
       !> Extrapolation from the points before the last one to the end
       real(wp) :: end_weight(0:width) = 0.0_wp
+      !> From values at `point` to the coefficients of 1, theta, theta^2 ...; five digits are lost
+      real(wp) :: power(0:width, 0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
       !> What settles at the end of the map `closing`
@@ -87,12 +89,14 @@ module vcor_numeric_collocation
    contains
       !> Value of a polynomial given at the points
       procedure :: interpolate
-      !> Values of such a polynomial at as many arguments as a panel has stages
+      !> About the values of such a polynomial at as many arguments as a panel has stages
       procedure :: extend
       !> Derivative of a polynomial at the points
       procedure :: slopes
-      !> Zero of a polynomial between two arguments
+      !> About the zero of a polynomial between two arguments
       procedure :: crossing
+      !> Coefficients of such a polynomial in powers of its argument
+      procedure, private :: powers
    end type collocation_t
 
 contains
@@ -115,6 +119,7 @@ contains
       call radau_nodes(self%node(1:stages))
       self%point(1:stages) = self%node(1:stages)
       self%barycentric(0:stages) = barycentric_weights(self%point(0:stages))
+      self%power(0:stages, 0:stages) = power_matrix(self%point(0:stages))
       self%derivative(0:stages, 0:stages) = &
          differentiation_matrix(self%point(0:stages), self%barycentric(0:stages))
       self%end_weight(0:stages - 1) = barycentric_weights(self%point(0:stages - 1)) &
@@ -276,6 +281,24 @@ contains
       end do
    end function barycentric_weights
 
+   !> Coefficients of the powers in Lagrange's polynomials, one to a column
+   pure function power_matrix(x) result(power)
+      !> Nodes, all different, shape (0:n)
+      real(wp), intent(in) :: x(0:)
+      !> Coefficients, shape (0:n, 0:n)
+      real(wp) :: power(0:ubound(x, 1), 0:ubound(x, 1))
+
+      integer :: i, j
+
+      power = 0.0_wp
+      power(0, :) = 1.0_wp
+      do i = 0, ubound(x, 1)
+         do j = 0, ubound(x, 1)
+            if (j /= i) power(:, i) = (eoshift(power(:, i), -1) - x(j)*power(:, i))/(x(i) - x(j))
+         end do
+      end do
+   end function power_matrix
+
    !> Differentiation matrix: the derivative at node i of the polynomial with values y is row i . y
    pure function differentiation_matrix(x, w) result(d)
       !> Nodes, shape (n)
@@ -324,8 +347,8 @@ contains
       end do
    end function interpolate
 
-   !> Values of the polynomial that takes the given values at the points: `interpolate` for many
-   !> arguments at once
+   !> Values of the polynomial that takes the given values at the points, for many arguments and
+   !> to ten digits: a guess
    pure function extend(self, value, theta) result(y)
       !> The rule
       class(collocation_t), intent(in) :: self
@@ -336,25 +359,45 @@ contains
       !> Values
       real(wp) :: y(width)
 
-      real(wp) :: before(width, 0:width), after(width), factor
-      integer :: i, j
+      real(wp) :: c(0:width)
+      integer :: i
 
-      before(:, 0) = 1.0_wp
-      do j = 1, self%stages
-         do i = 1, width
-            before(i, j) = before(i, j - 1)*(theta(i) - self%point(j - 1))
-         end do
-      end do
-      after = 1.0_wp
-      y = 0.0_wp
-      do j = self%stages, 0, -1
-         factor = value(j)*self%barycentric(j)
-         do i = 1, width
-            y(i) = y(i) + factor*before(i, j)*after(i)
-            after(i) = after(i)*(theta(i) - self%point(j))
-         end do
+      c = self%powers(value)
+      do i = 1, width
+         y(i) = c(0) + theta(i)*(c(1) + theta(i)*(c(2) + theta(i)*(c(3) + theta(i)*(c(4) &
+            + theta(i)*(c(5) + theta(i)*(c(6) + theta(i)*(c(7) + theta(i)*c(8))))))))
       end do
    end function extend
+
+   !> Coefficients of 1, theta, theta^2 ... of the polynomial that takes the given values at the
+   !> points
+   pure function powers(self, value) result(c)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Values at `point`
+      real(wp), intent(in) :: value(0:width)
+      !> Coefficients
+      real(wp) :: c(0:width)
+
+      c = combined(self%power, value)
+   end function powers
+
+   !> Product of a matrix and a vector of values at the points, written out as in `apply`
+   pure function combined(a, x) result(y)
+      !> Matrix
+      real(wp), intent(in) :: a(0:width, 0:width)
+      !> Vector
+      real(wp), intent(in) :: x(0:width)
+      !> a x
+      real(wp) :: y(0:width)
+
+      integer :: i
+
+      do i = 0, width
+         y(i) = (((a(i, 0)*x(0) + a(i, 1)*x(1)) + (a(i, 2)*x(2) + a(i, 3)*x(3))) &
+            + ((a(i, 4)*x(4) + a(i, 5)*x(5)) + (a(i, 6)*x(6) + a(i, 7)*x(7)))) + a(i, 8)*x(8)
+      end do
+   end function combined
 
    !> Derivative by theta, at the points, of the polynomial that takes the given values there
    pure function slopes(self, value) result(slope)
@@ -365,44 +408,40 @@ contains
       !> Derivative
       real(wp) :: slope(0:width)
 
-      integer :: j
-
-      slope = 0.0_wp
-      do j = 0, self%stages
-         slope = slope + self%derivative(:, j)*value(j)
-      end do
+      slope = combined(self%derivative, value)
    end function slopes
 
    !> Zero of the polynomial with the given values between two arguments where its signs differ,
-   !> by the Illinois method; the upper one where they do not
+   !> by the Illinois method, to ten digits; the upper one where they do not
    pure function crossing(self, value, lower, upper, tolerance) result(theta)
       !> The rule
       class(collocation_t), intent(in) :: self
-      !> Values at `point`, shape (0:stages)
-      real(wp), intent(in) :: value(0:)
+      !> Values at `point`
+      real(wp), intent(in) :: value(0:width)
       !> Lower end of the bracket
       real(wp), intent(in) :: lower
       !> Upper end of the bracket
       real(wp), intent(in) :: upper
-      !> Wanted width of the bracket
+      !> Last step of the iteration, the error is less
       real(wp), intent(in) :: tolerance
       !> Zero
       real(wp) :: theta
 
-      real(wp) :: a, b, fa, fb, f
+      real(wp) :: c(0:width), a, b, fa, fb, f, previous
       integer :: iteration
 
+      c = self%powers(value)
       a = lower
       b = upper
-      fa = self%interpolate(value, a)
-      fb = self%interpolate(value, b)
+      fa = at(a)
+      fb = at(b)
       theta = b
       if ((fa > 0.0_wp) .eqv. (fb > 0.0_wp)) return
       do iteration = 1, 100
-         if (abs(b - a) <= tolerance .or. .not. abs(fb - fa) > 0.0_wp) exit
+         previous = theta
          theta = (a*fb - b*fa)/(fb - fa)
-         f = self%interpolate(value, theta)
-         if (.not. abs(f) > 0.0_wp) exit
+         if (abs(theta - previous) <= tolerance) exit
+         f = at(theta)
          if ((f > 0.0_wp) .neqv. (fb > 0.0_wp)) then
             a = b
             fa = fb
@@ -411,7 +450,25 @@ contains
          end if
          b = theta
          fb = f
+         if (.not. abs(fb - fa) > 0.0_wp) exit
       end do
+
+   contains
+
+      !> Value of the polynomial, by a scheme whose products do not wait for each other
+      pure function at(x) result(y)
+         !> Argument
+         real(wp), intent(in) :: x
+         !> Value
+         real(wp) :: y
+
+         real(wp) :: x2, x4
+
+         x2 = x*x
+         x4 = x2*x2
+         y = ((c(0) + c(1)*x) + (c(2) + c(3)*x)*x2) &
+            + (((c(4) + c(5)*x) + (c(6) + c(7)*x)*x2) + c(8)*x4)*x4
+      end function at
    end function crossing
 
 end module vcor_numeric_collocation

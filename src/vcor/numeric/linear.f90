@@ -2,92 +2,56 @@
 !>
 !> For the eight equations of a panel, solved some dozen times per impact, the call of a library
 !> routine would cost more than the elimination; loops over columns of a length that the compiler
-!> knows become a few hundred vector instructions.
+!> knows become a few hundred vector instructions. An inverse takes a half more operations than
+!> factors do, but substitution is a chain in which each of sixteen steps waits for the one before,
+!> a product with the inverse is none.
 !>
 !> Rows are not interchanged: the matrices are Jacobians of Newton's method, unit matrix plus
 !> collocation matrix, whose residuals are evaluated afresh in each iteration. That makes it an
-!> iterative refinement, to which some lost digits of the factors do no harm.
+!> iterative refinement, to which some lost digits of the inverse do no harm.
 module vcor_numeric_linear
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : width
    implicit none
    private
 
-   public :: factors_t, factorise, apply
+   public :: invert, apply
 
    integer :: i_row, i_column
-   !> 1 below the diagonal, 0 elsewhere: whole columns are eliminated without a look at their start
-   real(wp), parameter :: below(width, width) = reshape([((merge(1.0_wp, 0.0_wp, &
-      i_row > i_column), i_row=1, width), i_column=1, width)], [width, width])
-
-   !> A matrix, and once factorised what solves its linear systems
-   type :: factors_t
-      !> The matrix, on factorising the upper triangle; what is below has no meaning then
-      real(wp) :: matrix(width, width)
-      !> Multiples of row k taken from the rows below, column by column; zero above
-      real(wp), private :: lower(width, width)
-      !> Inverse pivots
-      real(wp), private :: inverse(width)
-   contains
-      !> Solve for a right-hand side
-      procedure :: solve
-   end type factors_t
+   !> 0 on the diagonal, 1 elsewhere
+   real(wp), parameter :: others(width, width) = reshape([((merge(0.0_wp, 1.0_wp, &
+      i_row == i_column), i_row=1, width), i_column=1, width)], [width, width])
 
 contains
 
-   !> Factorise a matrix by Gauss's elimination
-   pure subroutine factorise(self, regular)
-      !> The matrix, on return its factors
-      class(factors_t), intent(inout) :: self
+   !> Invert a matrix by the elimination of Gauss and Jordan
+   pure subroutine invert(matrix, regular)
+      !> The matrix, on return its inverse
+      real(wp), intent(inout) :: matrix(width, width)
       !> Whether all pivots are nonzero numbers
       logical, intent(out) :: regular
 
-      real(wp) :: factor
+      real(wp) :: pivot, factor, direction(width)
       integer :: i, j, k
 
       regular = .false.
       do k = 1, width
-         if (.not. abs(self%matrix(k, k)) > 0.0_wp) return
-         self%inverse(k) = 1.0_wp/self%matrix(k, k)
-         do i = 1, width
-            self%lower(i, k) = self%matrix(i, k)*(self%inverse(k)*below(i, k))
-         end do
-         do j = k + 1, width
-            factor = self%matrix(k, j)
+         if (.not. abs(matrix(k, k)) > 0.0_wp) return
+         pivot = 1.0_wp/matrix(k, k)
+         direction = -matrix(:, k)
+         direction(k) = 1.0_wp
+         matrix(:, k) = 0.0_wp
+         matrix(k, k) = 1.0_wp
+         do j = 1, width
+            factor = matrix(k, j)*pivot
+            ! row k becomes the factors
             do i = 1, width
-               self%matrix(i, j) = self%matrix(i, j) - self%lower(i, k)*factor
+               matrix(i, j) = matrix(i, j)*others(i, k) + direction(i)*factor
             end do
          end do
       end do
       regular = .true.
-   end subroutine factorise
-
-   !> Solve the linear system for a right-hand side
-   pure subroutine solve(self, b)
-      !> Factors of the matrix
-      class(factors_t), intent(in) :: self
-      !> Right-hand side, on return the solution
-      real(wp), intent(inout) :: b(width)
-
-      real(wp) :: x
-      integer :: i, k
-
-      do k = 1, width - 1
-         x = b(k)
-!GCC$ novector
-         do i = k + 1, width
-            b(i) = b(i) - self%lower(i, k)*x
-         end do
-      end do
-      do k = width, 1, -1
-         x = b(k)*self%inverse(k)
-!GCC$ novector
-         do i = 1, k - 1
-            b(i) = b(i) - self%matrix(i, k)*x
-         end do
-         b(k) = x
-      end do
-   end subroutine solve
+   end subroutine invert
 
    !> Product of matrix and vector, written out: so the sums stay in registers
    pure function apply(a, x) result(y)

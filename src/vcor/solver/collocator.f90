@@ -5,7 +5,7 @@ module vcor_solver_collocator
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : collocation_t, new_collocation, width
-   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_linear, only : apply
    use vcor_solver_general_panel, only : solve_general_panel
    use vcor_solver_modes, only : advance_lags, modes_t, start_t
    use vcor_solver_panel, only : improve_panel, move_to_end, panel_t, solve_near_panel, &
@@ -119,7 +119,7 @@ contains
    end subroutine guess
 
    !> Solve the panel of a step
-   pure subroutine solve_step(self, step, impact, modes, start, panel, factors)
+   pure subroutine solve_step(self, step, impact, modes, start, panel, inverse)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
@@ -132,21 +132,21 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry its indentation is guessed
       type(panel_t), intent(inout) :: panel
-      !> Factors of its Jacobian, for its companion
-      type(factors_t), intent(out) :: factors
+      !> Inverse of its Jacobian, for its companion
+      real(wp), intent(out) :: inverse(width, width)
 
       if (is_general(self, impact)) then
          call solve_general_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
             modes, self%second_coefficient, start, panel, self%tolerance)
       else
          call solve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, modes, &
-            start, self%tolerance, panel, factors)
+            start, self%tolerance, panel, inverse)
       end if
    end subroutine solve_step
 
    !> Solve a panel next to one that has been solved: of the same start and a somewhat other length
    pure subroutine solve_near_step(self, step, impact, modes, start, tolerance, panel, &
-                                   factors)
+                                   inverse)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
@@ -161,19 +161,19 @@ contains
       real(wp), intent(in) :: tolerance
       !> The panel; on entry its indentation is guessed
       type(panel_t), intent(inout) :: panel
-      !> Factors of the Jacobian of the other panel, on return of one that serves
-      type(factors_t), intent(inout) :: factors
+      !> Inverse of the Jacobian of the other panel, on return of one that serves
+      real(wp), intent(inout) :: inverse(width, width)
 
       type(panel_t) :: guessed
 
       if (.not. is_general(self, impact)) then
          guessed = panel
          call solve_near_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
-            modes, start, tolerance, factors, panel)
+            modes, start, tolerance, inverse, panel)
          if (panel%converged) return
          panel = guessed
       end if
-      call solve_step(self, step, impact, modes, start, panel, factors)
+      call solve_step(self, step, impact, modes, start, panel, inverse)
    end subroutine solve_near_step
 
    !> Improve a guess at a panel to an accuracy that is less than that of the solution
@@ -194,7 +194,7 @@ contains
       type(panel_t), intent(inout) :: panel
 
       type(panel_t) :: guessed
-      type(factors_t) :: factors
+      real(wp) :: inverse(width, width)
 
       if (.not. is_general(self, impact)) then
          guessed = panel
@@ -203,11 +203,11 @@ contains
          if (panel%converged) return
          panel = guessed
       end if
-      call solve_step(self, step, impact, modes, start, panel, factors)
+      call solve_step(self, step, impact, modes, start, panel, inverse)
    end subroutine improve
 
    !> Solve the companion of a panel, from its own start
-   pure subroutine accompany(self, step, impact, modes, start, panel, factors, companion)
+   pure subroutine accompany(self, step, impact, modes, start, panel, inverse, companion)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> Step
@@ -220,12 +220,12 @@ contains
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> Factors of its Jacobian
-      type(factors_t), intent(in) :: factors
+      !> Inverse of its Jacobian
+      real(wp), intent(in) :: inverse(width, width)
       !> Its companion
       type(panel_t), intent(out) :: companion
 
-      type(factors_t) :: own_factors
+      real(wp) :: own_inverse(width, width)
       real(wp) :: scale
 
       scale = step%map_scale()
@@ -238,12 +238,12 @@ contains
             return
          end if
          call solve_near_panel(rule, map, scale, impact, modes, start, self%coarse_tolerance, &
-            factors, companion, self%from_coarse, self%to_coarse(:, 1:))
+            inverse, companion, self%from_coarse, self%to_coarse(:, 1:))
          if (companion%converged) return
          companion%indentation(1:) = self%to_coarse(:, 0)*panel%indentation(0) &
             + apply(self%to_coarse(:, 1:), panel%indentation(1:))
          call solve_panel(rule, map, scale, impact, modes, start, self%tolerance, companion, &
-            own_factors)
+            own_inverse)
       end associate
    end subroutine accompany
 

@@ -15,7 +15,7 @@ module vcor_solver_general_panel
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
-   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_linear, only : apply
    use vcor_numeric_pairs, only : constant, ratio, times
    use vcor_solver_modes, only : modes_t, resolve, resolve_contact, start_t
    use vcor_solver_newton, only : most_iterations, newton_t
@@ -56,7 +56,7 @@ contains
       real(wp) :: lag(width, width, size(modes%contact%rates))
       integer :: n, iteration, j, k
       type(newton_t) :: newton
-      type(factors_t) :: factors
+      real(wp) :: inverse(width, width)
       logical :: frozen, remembers
 
       n = rule%stages
@@ -123,9 +123,9 @@ contains
                jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
                jacobian(j, j) = jacobian(j, j) + 1.0_wp
             end do
-            factors%matrix = jacobian
+            inverse = jacobian
          end if
-         call newton%correct(factors, change, s, tolerance)
+         call newton%correct(inverse, change, s, tolerance)
          if (newton%converged .or. newton%failed) exit
       end do
       panel%converged = newton%converged

@@ -18,8 +18,8 @@ module vcor_solver_ive
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : collocation_t, linear
-   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_collocation, only : collocation_t, linear, width
+   use vcor_numeric_linear, only : apply
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
       new_collocator, plate_velocity, relative_velocity, solve_step
@@ -186,9 +186,9 @@ contains
       type(panel_t) :: panel, previous, coarse, recorded
       type(approach_t) :: stretches
       type(rebound_start_t) :: rebound
-      type(factors_t) :: factors
+      real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
-      real(wp) :: excess, refused, force_error, inner, velocity
+      real(wp) :: excess, refused, force_error, inner, velocity, fall
       integer :: trial, n
       logical :: ends, last, inherited, shallow, elastic, recedes, turns
 
@@ -230,26 +230,26 @@ contains
          last = start%time + step%duration() >= end_time
          if (last) step = step_to(start%time, end_time - start%time)
          call guess(self%collocator%rule, impact, previous, start, step, panel)
-         call solve_step(self%collocator, step, impact, modes, start, panel, factors)
+         call solve_step(self%collocator, step, impact, modes, start, panel, inverse)
          turns = .false.
          if (panel%converged .and. recedes) then
             velocity = trajectory%state(col_velocity, trajectory%final)
             turns = is_turning(impact, panel)
             if (turns) call land_on_largest(self%collocator, impact, modes, start, velocity, &
-               step, panel, factors)
+               step, panel, inverse)
          end if
          ends = .false.
          if (panel%converged .and. trajectory%status /= contact_separated .and. .not. recedes) &
             ends = first_without_force(panel) > 0
-         if (ends) call land(self%collocator, impact, modes, start, accuracy, step, panel, &
-            factors)
+         if (ends) call land(self%collocator, impact, modes, start, accuracy, &
+            shallow_end*trajectory%max_indentation, step, panel, inverse)
          if (.not. panel%converged) then
             call step%shorten(0.5_wp*step%duration())
             cycle
          end if
          previous = panel
 
-         call accompany(self%collocator, step, impact, modes, coarse_start, panel, factors, &
+         call accompany(self%collocator, step, impact, modes, coarse_start, panel, inverse, &
             coarse)
          if (.not. coarse%converged) then
             call step%shorten(0.5_wp*step%duration())
@@ -267,8 +267,8 @@ contains
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
             if (shallow) force_error = 100.0_wp*force_error
-            excess = max(excess, share(force_error, &
-               abs(slope_at_end(self%collocator%rule, panel))*(panel%time(n)*time_tolerance)))
+            fall = abs(slope_at_end(self%collocator%rule, panel, panel%force))
+            excess = max(excess, share(force_error, fall*(panel%time(n)*time_tolerance)))
          else if (maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
             excess = max(excess, share(force_error, largest_force*peak_tolerance))
          else
@@ -288,7 +288,11 @@ contains
             elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
             trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, coarse, &
                trajectory%steps + 1, elastic)
-            call end_at_zero(impact, slope_at_end(self%collocator%rule, panel), shallow, recorded)
+            if (shallow) then
+               recorded%force(n) = 0.0_wp
+            else
+               call end_at_zero(self%collocator%rule, impact, recorded)
+            end if
          end if
          call append(self%collocator, impact, modes, start, recorded, accuracy, trajectory)
          complete = .not. panel%time(n) > window
@@ -407,46 +411,66 @@ contains
       levels = max(0, ceiling(log(4.0e-7_wp/(panel_share*accuracy))/log(16.0_wp)))
    end function levels
 
-   !> Let the solution end where its force is zero, which is next to where the last panel ends
-   pure subroutine end_at_zero(impact, slope, shallow, panel)
+   !> Let the last panel end where its force is zero, which is next to where it ends: the polynomials
+   !> go on up to there, and all values move with their nodes, so that integrals stay sums over them
+   pure subroutine end_at_zero(rule, impact, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
       !> The impact
       type(impact_t), intent(in) :: impact
-      !> Rate of the force [N/s], < 0
-      real(wp), intent(in) :: slope
-      !> Whether the indentation ends next to zero, where the force is not linear in time
-      logical, intent(in) :: shallow
       !> The last panel
       type(panel_t), intent(inout) :: panel
 
-      real(wp) :: time
+      real(wp), dimension(0:width) :: shift, plate
+      real(wp) :: growth
 
-      associate (n => panel%stages)
-         if (.not. shallow) then
-            time = -panel%force(n)/slope
-            panel%time(n) = panel%time(n) + time
-            panel%impulse(n) = panel%impulse(n) + 0.5_wp*time*panel%force(n)
-            panel%second_impulse(n) = panel%second_impulse(n) + time*panel%impulse(n)
-            panel%indentation(n) = panel%indentation(n) + time*(impact%velocity &
-               - panel%impulse(n)/impact%mass - plate_velocity(impact, panel, n))
-            if (.not. impact%plate%hereditary()) &
-               panel%alpha(n) = impact%plate%alpha(panel%time(n))
+      associate (n => rule%stages, theta => rule%point, map => panel%map)
+         growth = -panel%force(n)/slope_at_end(rule, panel, panel%force)/sum(map)
+         ! in theta; the time of the nodes grows by this share
+         shift = growth*theta*(map(1) + map(2)*theta) &
+            /max(map(1) + 2.0_wp*map(2)*theta, tiny(1.0_wp))
+         plate = impact%velocity*panel%time - panel%second_impulse/impact%mass - panel%indentation
+         map = (1.0_wp + growth)*map
+         panel%time = panel%time(0) + (1.0_wp + growth)*(panel%time - panel%time(0))
+         call move(panel%force)
+         call move(panel%impulse)
+         call move(panel%second_impulse)
+         if (.not. impact%plate%hereditary()) &
+            call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
+         if (impact%plate%drifts()) then
+            call move(panel%drift)
+            call move(plate)
+         else
+            plate(1:n) = panel%alpha(1:n)*panel%impulse(1:n)
          end if
+         panel%indentation(1:n) = impact%velocity*panel%time(1:n) &
+            - panel%second_impulse(1:n)/impact%mass - plate(1:n)
          panel%force(n) = 0.0_wp
       end associate
+
+   contains
+
+      !> Move the values
+      pure subroutine move(value)
+         !> Values at the points
+         real(wp), intent(inout) :: value(0:width)
+
+         value = value + shift*rule%slopes(value)
+      end subroutine move
    end subroutine end_at_zero
 
-   !> Rate of the force at the end of a panel
-   pure function slope_at_end(rule, panel) result(slope)
+   !> Rate of a value at the end of a panel
+   pure function slope_at_end(rule, panel, value) result(slope)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> Rate [N/s]
+      !> Its values at the points of the panel
+      real(wp), intent(in) :: value(0:width)
+      !> Rate [1/s]
       real(wp) :: slope
 
-      associate (n => rule%stages)
-         slope = sum(rule%derivative(n, :)*panel%force)/(panel%map(1) + 2.0_wp*panel%map(2))
-      end associate
+      slope = sum(rule%derivative(rule%stages, :)*value)/(panel%map(1) + 2.0_wp*panel%map(2))
    end function slope_at_end
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
@@ -474,13 +498,15 @@ contains
       ! it is anybody's guess
       real(wp), parameter :: finer = 0.3_wp
       integer, parameter :: few = 2
-      real(wp) :: impulse_error, time_error, alpha_rate
+      real(wp) :: impulse_error, time_error, alpha_rate, fall
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
-         time_error = abs((panel%force(n) - coarse%force(n - 1))/slope_at_end(rule, panel))
+         fall = slope_at_end(rule, panel, panel%force)
+         time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
-         estimate = rounding*real(panels, wp) &
+         ! the end is moved to its zero along straight lines
+         estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
             + merge(1.0_wp, finer, shallow .or. panels <= few)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &

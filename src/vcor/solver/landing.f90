@@ -3,7 +3,6 @@ module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : width
-   use vcor_numeric_linear, only : factors_t
    use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, relative_velocity, &
       solve_near_step
    use vcor_solver_modes, only : modes_t, start_t
@@ -36,7 +35,7 @@ contains
    !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by
    !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
    !> power of the time since the maximum
-   subroutine land_on_largest(self, impact, modes, start, start_velocity, step, panel, factors)
+   subroutine land_on_largest(self, impact, modes, start, start_velocity, step, panel, inverse)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -51,15 +50,16 @@ contains
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the maximum; not converged on failure
       type(panel_t), intent(inout) :: panel
-      !> Factors of its Jacobian
-      type(factors_t), intent(inout) :: factors
+      !> Inverse of its Jacobian
+      real(wp), intent(inout) :: inverse(width, width)
 
       real(wp), parameter :: closest = 1.0e-8_wp
       type(panel_t) :: longer
-      real(wp) :: velocity(0:panel%stages), theta
+      real(wp) :: velocity(0:width), theta
       integer :: j
 
       longer = panel
+      velocity = 0.0_wp
       velocity(0) = start_velocity
       do j = 1, panel%stages
          velocity(j) = relative_velocity(impact, panel, j)
@@ -70,11 +70,11 @@ contains
       theta = self%rule%crossing(velocity, self%rule%point(j - 1), self%rule%point(j), closest)
       step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
       call guess(self%rule, impact, longer, start, step, panel)
-      call solve_near_step(self, step, impact, modes, start, self%near_tolerance, panel, factors)
+      call solve_near_step(self, step, impact, modes, start, self%near_tolerance, panel, inverse)
    end subroutine land_on_largest
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
-   subroutine land(self, impact, modes, start, accuracy, step, panel, factors)
+   subroutine land(self, impact, modes, start, accuracy, shallow, step, panel, inverse)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -85,19 +85,24 @@ contains
       type(start_t), intent(in) :: start
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
-      !> The step, on return the one that ends at the zero
+      !> Indentation above which the force is about linear in time next to its zero [m]
+      real(wp), intent(in) :: shallow
+      !> The step, on return the one that ends at the zero, or so close to it that its square does
+      !> not count where the force is linear
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the zero; not converged on failure
       type(panel_t), intent(inout) :: panel
-      !> Factors of its Jacobian
-      type(factors_t), intent(inout) :: factors
+      !> Inverse of its Jacobian
+      real(wp), intent(inout) :: inverse(width, width)
 
       integer, parameter :: most_iterations = 40
       ! a shorter correction tells nothing about slopes
       real(wp), parameter :: noticeable = 1.0e-7_wp
+      ! share of the tolerance that the square of a distance to the zero may have
+      real(wp), parameter :: share_of_square = 1.0e-2_wp
       type(panel_t) :: crossing, last
       real(wp) :: theta, time, correction, last_correction, tolerance, velocity
-      real(wp) :: kappa, memory_rate, old_memory, memory
+      real(wp) :: kappa, memory_rate, old_memory, memory, close
       integer :: iteration, n, k
 
       n = self%rule%stages
@@ -131,8 +136,7 @@ contains
          if (.not. time > 0.0_wp) return
          step = step_to(start%time, time)
          call guess(self%rule, impact, last, start, step, panel)
-         call solve_near_step(self, step, impact, modes, start, &
-            merge(tolerance, self%near_tolerance, iteration == 1), panel, factors)
+         call solve_near_step(self, step, impact, modes, start, self%near_tolerance, panel, inverse)
          if (.not. panel%converged) return
          last = panel
          velocity = impact%velocity - panel%impulse(n)/impact%mass &
@@ -144,7 +148,9 @@ contains
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
-         if (abs(correction) <= tolerance*(start%time + time) .and. iteration > 1) return
+         close = tolerance
+         if (panel%indentation(n) >= shallow) close = sqrt(share_of_square*tolerance)
+         if (abs(correction) <= close*(start%time + time)) return
          ! rounding in the force of a dashpot or of stiff internal variables ends it, too
          if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
              .and. abs(correction) >= 0.25_wp*abs(last_correction)) return

@@ -2,7 +2,7 @@
 module vcor_solver_newton
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : width
-   use vcor_numeric_linear, only : factorise, factors_t
+   use vcor_numeric_linear, only : apply, invert
    implicit none
    private
 
@@ -38,8 +38,8 @@ contains
    pure subroutine correct(self, jacobian, residual, s, tolerance)
       !> State of the iteration
       class(newton_t), intent(inout) :: self
-      !> Jacobian where `stale`, otherwise its factors; on return these
-      type(factors_t), intent(inout) :: jacobian
+      !> Jacobian where `stale`, otherwise its inverse; on return that
+      real(wp), intent(inout) :: jacobian(width, width)
       !> Residual, on return the correction
       real(wp), intent(inout) :: residual(width)
       !> Solution
@@ -55,11 +55,11 @@ contains
       logical :: regular
 
       if (self%stale) then
-         call factorise(jacobian, regular)
+         call invert(jacobian, regular)
          self%failed = .not. regular
          if (self%failed) return
       end if
-      call jacobian%solve(residual)
+      residual = apply(jacobian, residual)
       s = s + residual
       unit = self%unit
       if (.not. unit > 0.0_wp) unit = largest(s)

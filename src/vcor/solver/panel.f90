@@ -15,7 +15,7 @@ module vcor_solver_panel
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : collocation_t, pairs, panel_map_t, width
-   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_linear, only : apply
    use vcor_numeric_pairs, only : times
    use vcor_solver_modes, only : modes_t, resolve, resolve_contact, start_t
    use vcor_solver_newton, only : largest, most_iterations, newton_t
@@ -116,7 +116,7 @@ contains
       type(panel_t), intent(inout) :: panel
 
       real(wp) :: elapsed(width), impulse(width), yield(width), inverse_mass
-      integer :: i, n
+      integer :: n
 
       n = rule%stages
       panel%stages = n
@@ -125,9 +125,7 @@ contains
       panel%time(0) = start%time
       panel%time(1:) = start%time + elapsed
       panel%alpha(1:) = 0.0_wp
-      do i = 1, n
-         panel%alpha(i) = impact%plate%alpha(panel%time(i))
-      end do
+      call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
       ! what settles at once in a hereditary plate counts as alpha
       if (size(start%p) > 0) panel%alpha(1:n) = modes%plate%viscosity
       panel%indentation(0) = start%indentation
@@ -163,7 +161,7 @@ contains
    end subroutine set_up
 
    !> Solve the collocation equations on a panel by Newton's method
-   pure subroutine solve_panel(rule, map, scale, impact, modes, start, tolerance, panel, factors)
+   pure subroutine solve_panel(rule, map, scale, impact, modes, start, tolerance, panel, inverse)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -180,8 +178,8 @@ contains
       real(wp), intent(in) :: tolerance
       !> The panel; on entry `indentation` holds a guess at the stages
       type(panel_t), intent(inout) :: panel
-      !> Factors of the Jacobian, for panels next to this one
-      type(factors_t), intent(out) :: factors
+      !> Inverse of the Jacobian, for panels next to this one
+      real(wp), intent(out) :: inverse(width, width)
 
       type(equations_t) :: equations
       real(wp), dimension(width) :: s, u, root, change
@@ -201,12 +199,12 @@ contains
             root = 1.5_wp*root
             do j = 1, width
                do i = 1, width
-                  factors%matrix(i, j) = response(i, j)*root(j)
+                  inverse(i, j) = response(i, j)*root(j)
                end do
-               factors%matrix(j, j) = factors%matrix(j, j) + 1.0_wp
+               inverse(j, j) = inverse(j, j) + 1.0_wp
             end do
          end if
-         call newton%correct(factors, change, s, tolerance)
+         call newton%correct(inverse, change, s, tolerance)
          if (newton%converged .or. newton%failed) exit
       end do
       panel%converged = newton%converged
@@ -218,7 +216,7 @@ contains
    !> Solve the collocation equations on a panel with the Jacobian of one next to it, of another
    !> length or another rule. No matrix is formed, so this costs half of a solution. With another
    !> rule, what is wanted are the values at the end: force and impulses are left out elsewhere
-   pure subroutine solve_near_panel(rule, map, scale, impact, modes, start, tolerance, factors, &
+   pure subroutine solve_near_panel(rule, map, scale, impact, modes, start, tolerance, inverse, &
                                     panel, to, from)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
@@ -234,8 +232,8 @@ contains
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation at the end of the panel over its largest value
       real(wp), intent(in) :: tolerance
-      !> Factors of the Jacobian of the other panel
-      type(factors_t), intent(in) :: factors
+      !> Inverse of the Jacobian of the other panel
+      real(wp), intent(in) :: inverse(width, width)
       !> The panel; on entry `indentation` holds a guess at the stages. Not converged where the
       !> Jacobian does not serve
       type(panel_t), intent(inout) :: panel
@@ -260,7 +258,7 @@ contains
       do iteration = 1, most
          change = displaced(map, equations, panel%alpha(1:), s) - s
          if (present(to)) change = apply(to, change)
-         call factors%solve(change)
+         change = apply(inverse, change)
          if (present(from)) change = apply(from, change)
          size = largest(change)
          ! a guess that is no guess

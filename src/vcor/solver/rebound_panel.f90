@@ -10,7 +10,7 @@ module vcor_solver_rebound_panel
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : closing, collocation_t, panel_map_t, width
-   use vcor_numeric_linear, only : apply, factors_t
+   use vcor_numeric_linear, only : apply
    use vcor_solver_approach, only : approach_t
    use vcor_solver_modes, only : advance_lags, modes_t, start_t
    use vcor_solver_newton, only : newton_t
@@ -48,7 +48,7 @@ contains
 
    !> Correct the stage values of t1 by one iteration of Newton's method; condition and force are
    !> extrapolated to the corrected ones
-   pure subroutine correct(map, equations, modes, approach, tolerance, newton, factors, panel)
+   pure subroutine correct(map, equations, modes, approach, tolerance, newton, inverse, panel)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Equations of the panel
@@ -61,8 +61,8 @@ contains
       real(wp), intent(in) :: tolerance
       !> State of the iteration
       type(newton_t), intent(inout) :: newton
-      !> Factors of the Jacobian
-      type(factors_t), intent(inout) :: factors
+      !> Inverse of the Jacobian
+      real(wp), intent(inout) :: inverse(width, width)
       !> The panel
       type(rebound_panel_t), intent(inout) :: panel
 
@@ -84,15 +84,15 @@ contains
             do j = 1, width
                unit = 0.0_wp
                unit(j) = slope(j)
-               factors%matrix(:, j) = response(map, equations, viscosity, unit, &
+               inverse(:, j) = response(map, equations, viscosity, unit, &
                   slope(j)*map%left(:, j))
-               if (equations%closes) factors%matrix(n, j) = 0.0_wp
-               factors%matrix(j, j) = factors%matrix(j, j) + 1.0_wp
+               if (equations%closes) inverse(n, j) = 0.0_wp
+               inverse(j, j) = inverse(j, j) + 1.0_wp
             end do
          end if
       end associate
       if (equations%closes) change(n) = 0.0_wp
-      call newton%correct(factors, change, condition, tolerance)
+      call newton%correct(inverse, change, condition, tolerance)
       if (newton%failed) return
       do i = 1, n
          panel%t1(i) = approach%moved(panel%t1(i), change(i), rate(i))
@@ -126,13 +126,13 @@ contains
       integer, parameter :: most_iterations = 40
       type(equations_t) :: equations
       type(newton_t) :: newton
-      type(factors_t) :: factors
+      real(wp) :: inverse(width, width)
       integer :: iteration
 
       call set_up(equations, rule, map, scale, impact, modes, start, panel)
       newton = newton_t(unit=start%largest_condition, noise=noise)
       do iteration = 1, most_iterations
-         call correct(map, equations, modes, approach, tolerance, newton, factors, panel)
+         call correct(map, equations, modes, approach, tolerance, newton, inverse, panel)
          if (newton%converged .or. newton%failed) exit
       end do
       panel%converged = newton%converged
@@ -177,7 +177,7 @@ contains
       real(wp), parameter :: shortest = 1.0e-14_wp
       type(equations_t) :: equations
       type(newton_t) :: newton
-      type(factors_t) :: factors
+      real(wp) :: inverse(width, width)
       real(wp) :: elapsed(width), fall, correction, last_correction
       integer :: n, iteration
 
@@ -190,7 +190,7 @@ contains
             if (.not. length > shortest*start%time) return
             call set_up(equations, rule, map, length, impact, modes, start, panel)
             panel%t1(n) = 0.0_wp
-            call correct(map, equations, modes, approach, tolerance, newton, factors, panel)
+            call correct(map, equations, modes, approach, tolerance, newton, inverse, panel)
             if (newton%failed) return
             call integrate(map, equations, panel)
             if (equations%damped) call settle_drift(rule, length, modes%plate, start, panel)

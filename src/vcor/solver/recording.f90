@@ -82,9 +82,6 @@ contains
       trajectory%steps = trajectory%steps + 1
       trajectory%weight(first:trajectory%final) = rule%weight(1:n) &
          *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
-      ! what an end was moved by to its zero goes to the node there
-      trajectory%weight(trajectory%final) = trajectory%weight(trajectory%final) &
-         + (panel%time(n) - panel%time(0) - sum(panel%map))
       do j = 1, n
          associate (state => trajectory%state(:, first + j - 1))
             state(col_time) = panel%time(j)
