@@ -138,12 +138,15 @@ contains
 
          ! slope by theta at the end, over the value, of a panel that ends at its maximum
          real(wp), parameter :: flat = 1.0e-6_wp
-         real(wp) :: peak, peak_time
-         integer :: j
+         real(wp) :: peak, peak_time, slope
+         integer :: j, other
 
-         if (sum(self%rule%derivative(0, :)*value) > 0.0_wp .and. &
-             sum(self%rule%derivative(n, :)*value) < -flat*value(n)) then
-            call find_peak(self%rule%slopes(value), of_indentation, peak, peak_time)
+         ! a maximum is next to the largest of the values, on the side to which they rise there
+         j = maxloc(value(0:n), 1) - 1
+         slope = sum(self%rule%derivative(j, :)*value)
+         other = j + merge(1, -1, slope > 0.0_wp)
+         if (other >= 0 .and. other <= n .and. abs(slope) > flat*value(j)) then
+            call find_peak(self%rule%slopes(value), min(j, other), of_indentation, peak, peak_time)
             if (peak > largest) then
                largest = peak
                time = peak_time
@@ -159,9 +162,11 @@ contains
 
       !> Maximum inside the panel, by improving the panel up to there: the polynomials of the panel
       !> are less accurate inside of it than at its end
-      subroutine find_peak(slope, of_indentation, peak, time)
+      subroutine find_peak(slope, before, of_indentation, peak, time)
          !> Derivative by theta at the points of the panel
          real(wp), intent(in) :: slope(0:width)
+         !> Point before it
+         integer, intent(in) :: before
          !> Whether it is that of the indentation, otherwise of the force
          logical, intent(in) :: of_indentation
          !> Maximum
@@ -174,13 +179,9 @@ contains
          type(panel_t) :: cut
          type(step_t) :: step
          real(wp) :: theta
-         integer :: j
 
-         j = 1
-         do while (slope(j) > 0.0_wp .and. j < n)
-            j = j + 1
-         end do
-         theta = self%rule%crossing(slope, self%rule%point(j - 1), self%rule%point(j), tolerance)
+         theta = self%rule%crossing(slope, self%rule%point(before), self%rule%point(before + 1), &
+            tolerance)
          time = theta*(panel%map(1) + panel%map(2)*theta)
          step = step_to(start%time, time)
          call guess(self%rule, impact, panel, start, step, cut)
