@@ -411,8 +411,9 @@ contains
       levels = max(0, ceiling(log(4.0e-7_wp/(panel_share*accuracy))/log(16.0_wp)))
    end function levels
 
-   !> Let the last panel end where its force is zero, which is next to where it ends: the polynomials
-   !> go on up to there, and all values move with their nodes, so that integrals stay sums over them
+   !> Let the last panel end where its force is zero, which is next to where it ends: its
+   !> polynomials go on up to there, and all values move with their nodes, so that integrals stay
+   !> sums over them
    pure subroutine end_at_zero(rule, impact, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule

@@ -102,7 +102,7 @@ contains
       real(wp), parameter :: share_of_square = 1.0e-2_wp
       type(panel_t) :: crossing, last
       real(wp) :: theta, time, correction, last_correction, tolerance, velocity
-      real(wp) :: kappa, memory_rate, old_memory, memory, close
+      real(wp) :: kappa, memory_rate, old_memory, memory, enough
       integer :: iteration, n, k
 
       n = self%rule%stages
@@ -148,9 +148,9 @@ contains
          call look_ahead(kappa, panel%indentation(n), velocity, memory, memory_rate, correction, &
             panel%converged)
          if (.not. panel%converged) return
-         close = tolerance
-         if (panel%indentation(n) >= shallow) close = sqrt(share_of_square*tolerance)
-         if (abs(correction) <= close*(start%time + time)) return
+         enough = tolerance
+         if (panel%indentation(n) >= shallow) enough = sqrt(share_of_square*tolerance)
+         if (abs(correction) <= enough*(start%time + time)) return
          ! rounding in the force of a dashpot or of stiff internal variables ends it, too
          if (iteration > 3 .and. abs(correction) <= noticeable*(start%time + time) &
              .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
