@@ -34,14 +34,14 @@ module vcor_solver_approach
       real(wp) :: s(0:width) = 0.0_wp
       !> Rate of the indentation [m/s]
       real(wp) :: rate(0:width) = 0.0_wp
-      !> For each mode w_k [m] at the points, then p_k [m^1.5], shape (0:2*width + 1, modes)
+      !> For each mode w_k [m] at the points, then p_k [m^1.5], shape (2*points, modes)
       real(wp), allocatable :: past(:, :)
    end type stretch_t
 
    !> exp(-this) is nothing
    real(wp), parameter :: nothing = 42.0_wp
-   !> Modes are evaluated in blocks of this size at most, which spares an allocation
-   integer, parameter :: block = 32
+   !> Number of points of a panel
+   integer, parameter :: points = width + 1
 
    !> The approach
    type :: approach_t
@@ -51,10 +51,13 @@ module vcor_solver_approach
       real(wp), allocatable :: w(:)
       !> p_k at its end [m^1.5], shape (modes)
       real(wp), allocatable, private :: p(:)
+      !> Moduli of the modes [N/m^1.5], a zero added if they are odd in number: their sums are taken
+      !> in pairs
+      real(wp), allocatable, private :: moduli(:)
+      !> Rates of the modes, rising, a zero added likewise [1/s]
+      real(wp), allocatable, private :: rates(:)
       !> Number of panels
       integer, private :: count = 0
-      !> Number of stages of the panels
-      integer, private :: stages = 0
       !> Their points
       real(wp), private :: point(0:width) = 0.0_wp
       !> Barycentric weights of the points
@@ -98,12 +101,13 @@ contains
 
       stages = rule%stages
       if (.not. allocated(self%stretch)) then
-         self%stages = stages
          self%point = rule%point
          self%barycentric = rule%barycentric
          allocate (self%stretch(usual), self%w(size(contact%rates)), self%p(size(contact%rates)))
          self%w = 0.0_wp
          self%p = 0.0_wp
+         self%moduli = in_pairs(contact%moduli)
+         self%rates = in_pairs(contact%rates)
       else if (self%count == size(self%stretch)) then
          allocate (longer(2*self%count))
          longer(:self%count) = self%stretch
@@ -117,109 +121,187 @@ contains
          stretch%s = panel%indentation
          stretch%rate(0) = start_rate
          stretch%rate(1:stages) = rate(1:stages)
-         allocate (stretch%past(0:2*width + 1, size(self%w)))
+         allocate (stretch%past(2*points, size(self%rates)))
+         stretch%past(:, size(self%w) + 1:) = 0.0_wp
          ! from what is gained in the panel: the modes that settle at once leave no digits of s
          s = apply(map%left, panel%indentation(1:) - panel%indentation(0))
          u = apply(map%left, hertz(panel%indentation(1:)) - hertz(panel%indentation(0)))
          lambda = scale*map%eigenvalue
          do k = 1, size(self%w)
             lag = ratio(map%square, constant(1.0_wp), constant(1.0_wp) + contact%rates(k)*lambda)
-            stretch%past(0, k) = self%w(k)
-            stretch%past(1:width, k) = apply(map%right, &
+            stretch%past(1, k) = self%w(k)
+            stretch%past(2:points, k) = apply(map%right, &
                times(map%square, s + self%w(k)*map%left_one, lag))
-            stretch%past(width + 1, k) = self%p(k)
-            stretch%past(width + 2:, k) = apply(map%right, &
+            stretch%past(points + 1, k) = self%p(k)
+            stretch%past(points + 2:, k) = apply(map%right, &
                times(map%square, u + self%p(k)*map%left_one, lag))
-            self%w(k) = stretch%past(stages, k)
-            self%p(k) = stretch%past(width + 1 + stages, k)
+            self%w(k) = stretch%past(stages + 1, k)
+            self%p(k) = stretch%past(points + stages + 1, k)
          end do
       end associate
    end subroutine add
 
-   !> Force and condition by t1, and their derivatives
-   pure subroutine evaluate(self, contact, t, t1, condition, force, slope, rate)
+   !> The same numbers, with a zero behind them if they are odd in number
+   pure function in_pairs(numbers)
+      !> The numbers, shape (n)
+      real(wp), intent(in) :: numbers(:)
+      !> The same, shape (n + modulo(n, 2))
+      real(wp), allocatable :: in_pairs(:)
+
+      allocate (in_pairs(size(numbers) + modulo(size(numbers), 2)), source=0.0_wp)
+      in_pairs(:size(numbers)) = numbers
+   end function in_pairs
+
+   !> Force and condition by t1, and their derivatives, at the stages of a panel of the rebound
+   pure subroutine evaluate(self, equilibrium, stages, t, t1, condition, force, slope, rate)
       !> The approach
       class(approach_t), intent(in) :: self
-      !> Kernel of the contact
-      type(exponential_sum_t), intent(in) :: contact
-      !> Time [s]
-      real(wp), intent(in) :: t
+      !> Modulus of the kernel at rate 0 [N/m^1.5]
+      real(wp), intent(in) :: equilibrium
+      !> Number of stages; beyond them all is zero
+      integer, intent(in) :: stages
+      !> Times [s]
+      real(wp), intent(in) :: t(width)
       !> t1 [s], up to the end of the approach
-      real(wp), intent(in) :: t1
+      real(wp), intent(in) :: t1(width)
       !> N [N/m^0.5]
-      real(wp), intent(out) :: condition
+      real(wp), intent(out) :: condition(width)
       !> F [N]
-      real(wp), intent(out) :: force
+      real(wp), intent(out) :: force(width)
       !> dF/dN [m^0.5]
-      real(wp), intent(out) :: slope
+      real(wp), intent(out) :: slope(width)
       !> dN/dt1 [N/(m^0.5 s)]
-      real(wp), intent(out) :: rate
+      real(wp), intent(out) :: rate(width)
 
-      real(wp) :: basis(0:width), past(0:2*width + 1), share(block)
-      real(wp) :: theta, offset, elapsed, s, velocity
-      integer :: i, j, k, n, active
+      real(wp) :: theta(width), basis(width, points), past(2*points)
+      real(wp) :: offset, elapsed, s, root, velocity, stiffness, n_past, f_past
+      integer :: panel(width), i, j, active
 
-      elapsed = t - max(t1, 0.0_wp)
-      do active = size(contact%rates), 1, -1
-         if (contact%rates(active)*elapsed <= nothing) exit
-      end do
-      do j = self%count, 2, -1
-         if (t1 >= self%stretch(j)%start) exit
-      end do
-      associate (stretch => self%stretch(j))
-         past = 0.0_wp
-         rate = contact%equilibrium
-         k = 0
-         do while (k < active)
-            n = min(block, active - k)
-            share(:n) = contact%moduli(k + 1:k + n)*exp(-contact%rates(k + 1:k + n)*elapsed)
-            do i = 1, n
-               rate = rate + share(i)
-               past = past + share(i)*stretch%past(:, k + i)
-            end do
-            k = k + n
+      theta = 0.0_wp
+      do i = 1, stages
+         do active = self%count, 2, -1
+            if (t1(i) >= self%stretch(active)%start) exit
          end do
-         if (t1 > 0.0_wp) then
-            offset = t1 - stretch%start
-            theta = 2.0_wp*offset/(stretch%map(1) &
+         panel(i) = active
+         associate (stretch => self%stretch(panel(i)))
+            offset = max(t1(i), 0.0_wp) - stretch%start
+            theta(i) = 2.0_wp*offset/(stretch%map(1) &
                + sqrt(stretch%map(1)**2 + 4.0_wp*stretch%map(2)*offset))
-            basis = basis_at(self, theta)
-            s = sum(basis*stretch%s)
-            condition = contact%equilibrium*s + sum(basis*past(:width))
-            force = contact%equilibrium*hertz(s) + sum(basis*past(width + 1:))
-            velocity = sum(basis*stretch%rate)
-         else
-            velocity = stretch%rate(0)
-            s = velocity*t1
-            condition = rate*s
-            force = rate*hertz(s)
-         end if
-      end associate
-      slope = 1.5_wp*sqrt(abs(s))
-      rate = rate*velocity
+         end associate
+      end do
+      basis = basis_at(self, theta)
+      condition = 0.0_wp
+      force = 0.0_wp
+      slope = 0.0_wp
+      rate = 0.0_wp
+
+      do i = 1, stages
+         elapsed = t(i) - max(t1(i), 0.0_wp)
+         do active = size(self%w), 1, -1
+            if (self%rates(active)*elapsed <= nothing) exit
+         end do
+         associate (stretch => self%stretch(panel(i)))
+            stiffness = equilibrium
+            if (active > 0) then
+               call add_modes(active + modulo(active, 2), self%moduli, self%rates, stretch%past, &
+                  elapsed, stiffness, past)
+            else
+               past = 0.0_wp
+            end if
+            if (t1(i) > 0.0_wp) then
+               s = 0.0_wp
+               velocity = 0.0_wp
+               n_past = 0.0_wp
+               f_past = 0.0_wp
+               do j = 1, points
+                  s = s + basis(i, j)*stretch%s(j - 1)
+                  velocity = velocity + basis(i, j)*stretch%rate(j - 1)
+                  n_past = n_past + basis(i, j)*past(j)
+                  f_past = f_past + basis(i, j)*past(points + j)
+               end do
+               root = sqrt(abs(s))
+               condition(i) = equilibrium*s + n_past
+               force(i) = equilibrium*(s*root) + f_past
+            else
+               velocity = stretch%rate(0)
+               s = velocity*t1(i)
+               root = sqrt(abs(s))
+               condition(i) = stiffness*s
+               force(i) = stiffness*(s*root)
+            end if
+         end associate
+         slope(i) = 1.5_wp*root
+         rate(i) = stiffness*velocity
+      end do
    end subroutine evaluate
 
-   !> Lagrange's polynomials at a position in a panel
+   !> What has not relaxed yet, summed over the modes
+   pure subroutine add_modes(n, moduli, rates, past, elapsed, stiffness, total)
+      !> Number of modes that have not, even, > 0
+      integer, intent(in) :: n
+      !> Their moduli [N/m^1.5]
+      real(wp), intent(in) :: moduli(n)
+      !> Their rates [1/s]
+      real(wp), intent(in) :: rates(n)
+      !> What they remember, as in `stretch_t`
+      real(wp), intent(in) :: past(2*points, n)
+      !> Time since then [s]
+      real(wp), intent(in) :: elapsed
+      !> Stiffness, to which the moduli that are left are added [N/m^1.5]
+      real(wp), intent(inout) :: stiffness
+      !> Sum of what is remembered
+      real(wp), intent(out) :: total(2*points)
+
+      ! exponentials in one go, which spares an allocation; even
+      integer, parameter :: block = 64
+      real(wp) :: share(block)
+      integer :: first, i, k
+
+      do first = 0, n - 1, block
+         do k = 1, min(block, n - first)
+            share(k) = moduli(first + k)*exp(-rates(first + k)*elapsed)
+         end do
+         do k = 1, min(block, n - first), 2
+            stiffness = stiffness + (share(k) + share(k + 1))
+            if (first + k == 1) then
+               do i = 1, 2*points
+                  total(i) = share(1)*past(i, 1) + share(2)*past(i, 2)
+               end do
+            else
+               do i = 1, 2*points
+                  total(i) = total(i) + (share(k)*past(i, first + k) &
+                     + share(k + 1)*past(i, first + k + 1))
+               end do
+            end if
+         end do
+      end do
+   end subroutine add_modes
+
+   !> Lagrange's polynomials at positions in a panel
    pure function basis_at(self, theta) result(basis)
       !> The approach
       class(approach_t), intent(in) :: self
-      !> Position
-      real(wp), intent(in) :: theta
+      !> Positions
+      real(wp), intent(in) :: theta(width)
       !> Their values
-      real(wp) :: basis(0:width)
+      real(wp) :: basis(width, 0:width)
 
-      real(wp) :: before, after
-      integer :: i
+      real(wp) :: product(width)
+      integer :: i, j
 
-      before = 1.0_wp
-      do i = 0, width
-         basis(i) = self%barycentric(i)*before
-         before = before*(theta - self%point(i))
+      product = 1.0_wp
+      do j = 0, width
+         do i = 1, width
+            basis(i, j) = self%barycentric(j)*product(i)
+            product(i) = product(i)*(theta(i) - self%point(j))
+         end do
       end do
-      after = 1.0_wp
-      do i = self%stages, 0, -1
-         basis(i) = basis(i)*after
-         after = after*(theta - self%point(i))
+      product = 1.0_wp
+      do j = width, 0, -1
+         do i = 1, width
+            basis(i, j) = basis(i, j)*product(i)
+            product(i) = product(i)*(theta(i) - self%point(j))
+         end do
       end do
    end function basis_at
 

@@ -19,6 +19,9 @@ module vcor_solver_newton
       real(wp) :: unit = 0.0_wp
       !> Correction over that which ends the iteration once it does not fall any more: rounding
       real(wp) :: noise = 0.0_wp
+      !> Share of a correction that may be left, where the way from the guess is wanted rather than
+      !> the solution
+      real(wp) :: share = 0.0_wp
       !> Size of the last correction
       real(wp) :: last = 0.0_wp
       !> Whether the equations are solved
@@ -74,7 +77,7 @@ contains
          left = size*rate/(1.0_wp - 0.5_wp*rate)
          self%stale = rate > slow
       end if
-      self%converged = left <= tolerance &
+      self%converged = left <= max(tolerance, self%share*size) &
          .or. size <= self%noise .and. .not. size < 0.5_wp*self%last
       self%last = size
    end subroutine correct

@@ -11,6 +11,7 @@ module vcor_solver_rebound
    use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : closing, collocation_t, linear, width
+   use vcor_numeric_linear, only : apply
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : collocator_t
    use vcor_solver_modes, only : modes_t
@@ -317,11 +318,11 @@ contains
          !> The panel, its t1 guessed
          type(rebound_panel_t), intent(inout) :: panel
 
-         ! of the companion two digits of its difference to the solution are wanted
-         real(wp), parameter :: looser = 30.0_wp
+         ! of the companion its difference to the solution is wanted, from which it starts
+         real(wp), parameter :: companion = 0.05_wp
 
          call solve_rebound_panel(rule, rule%map(kind), length, impact, modes, approach, start, &
-            merge(tolerance, looser*tolerance, rule%stages == n), panel)
+            tolerance, merge(0.0_wp, companion, rule%stages == n), panel)
       end subroutine solve
 
       !> Guess t1 at the stages of the solution
@@ -338,7 +339,6 @@ contains
          ! of what t1 falls, as a guess, and for how long
          real(wp), parameter :: slowest = 0.5_wp, near = 0.1_wp
          real(wp), dimension(width) :: theta, time
-         integer :: j
 
          associate (map => collocator%rule%map(kind))
             time = length*collocator%rule%node*(map%slope + map%bend*collocator%rule%node)
@@ -349,10 +349,8 @@ contains
             - (start%t1 + length*(rate + 0.5_wp*bend*length))*(time/length)**2
          if (previous%stages > 0) then
             theta = previous%theta(start%time + time)
-            do j = 1, n
-               if (theta(j) <= farthest) &
-                  panel%t1(j) = collocator%rule%interpolate(previous%t1(0:n), theta(j))
-            end do
+            panel%t1(1:) = merge(collocator%rule%extend(previous%t1, min(theta, farthest)), &
+               panel%t1(1:), theta <= farthest)
          end if
          ! next to the largest indentation t1 falls at least as fast as time grows
          panel%t1(1:) = min(panel%t1(1:), approach%end &
@@ -366,11 +364,8 @@ contains
          !> Its companion
          type(rebound_panel_t), intent(inout) :: companion
 
-         integer :: j
-
-         do j = 1, collocator%coarse%stages
-            companion%t1(j) = collocator%rule%interpolate(panel%t1(0:n), collocator%coarse%node(j))
-         end do
+         companion%t1(1:) = collocator%to_coarse(:, 0)*panel%t1(0) &
+            + apply(collocator%to_coarse(:, 1:), panel%t1(1:))
       end subroutine copy_guess
    end subroutine follow_rebound
 

@@ -57,6 +57,10 @@ module vcor_solver_rebound_equations
       real(wp) :: plate(width)
       !> What an impulse takes of the velocity: 1/m and that [1/kg]
       real(wp) :: mobility(width)
+      !> R [s2/kg], but for the part of an alpha that varies
+      real(wp) :: yield(width)
+      !> S R likewise [m^-0.5]
+      real(wp) :: loss(width)
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(width)
       !> Its rate [m/(N s^2)]
@@ -156,7 +160,10 @@ contains
          e%gain(n + 1:) = 0.0_wp
          panel%alpha(1:) = e%alpha
 
+         e%yield = times(map%square, e%lambda, times(map%square, e%lambda, e%mobility))
+         if (.not. e%varies) e%yield = e%yield + e%alpha(1)*e%lambda
          call resolve(modes%contact, start%w, map, e%lambda, e%stiffness, past)
+         e%loss = times(map%square, e%stiffness, e%yield)
          e%condition = modes%contact%equilibrium*start%indentation &
             + apply(map%right, times(map%square, e%stiffness, apply(map%left, e%gain)) + past)
          if (e%damped) e%condition = e%condition + modes%contact%viscosity*e%velocity
@@ -182,8 +189,12 @@ contains
       real(wp) :: taken(width)
 
       associate (e => equations)
-         taken = apply(map%right, &
-            times(map%square, e%stiffness, lost_indentation(map, e, force, numbers)))
+         if (e%frozen .or. e%varies) then
+            taken = apply(map%right, &
+               times(map%square, e%stiffness, lost_indentation(map, e, force, numbers)))
+         else
+            taken = apply(map%right, times(map%square, e%loss, numbers))
+         end if
          if (e%damped) taken = taken + viscosity*lost_velocity(map, e, force, numbers)
       end associate
    end function response
@@ -201,19 +212,13 @@ contains
       !> Indentation [m]
       real(wp) :: x(width)
 
-      real(wp) :: impulse(width)
-
       associate (e => equations)
          if (e%frozen) then
             x = times(map%square, e%lambda, apply(map%left, lost_velocity(map, e, force, numbers)))
          else
-            impulse = times(map%square, e%lambda, numbers)
-            x = times(map%square, e%lambda, times(map%square, e%mobility, impulse))
-            if (e%varies) then
-               x = x + apply(map%left, e%alpha*apply(map%right, impulse))
-            else
-               x = x + e%alpha(1)*impulse
-            end if
+            x = times(map%square, e%yield, numbers)
+            if (e%varies) x = x + apply(map%left, &
+               e%alpha*apply(map%right, times(map%square, e%lambda, numbers)))
          end if
       end associate
    end function lost_indentation

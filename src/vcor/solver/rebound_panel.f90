@@ -70,13 +70,8 @@ contains
       integer :: n, i, j
 
       n = panel%stages
-      condition = 0.0_wp
-      force = 0.0_wp
-      slope = 0.0_wp
-      do i = 1, n
-         call approach%evaluate(modes%contact, panel%time(i), panel%t1(i), condition(i), force(i), &
-            slope(i), rate(i))
-      end do
+      call approach%evaluate(modes%contact%equilibrium, n, panel%time(1:), panel%t1(1:), &
+         condition, force, slope, rate)
       associate (viscosity => modes%contact%viscosity)
          change = equations%condition - condition &
             - response(map, equations, viscosity, force, apply(map%left, force))
@@ -103,7 +98,7 @@ contains
 
    !> Solve the collocation equations on a panel
    pure subroutine solve_rebound_panel(rule, map, scale, impact, modes, approach, start, &
-                                       tolerance, panel)
+                                       tolerance, share, panel)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Map of the panel
@@ -120,6 +115,8 @@ contains
       type(rebound_start_t), intent(in) :: start
       !> Wanted error of the condition over its largest value
       real(wp), intent(in) :: tolerance
+      !> Share of the difference to the guess that it may have instead
+      real(wp), intent(in) :: share
       !> The panel, its t1 guessed
       type(rebound_panel_t), intent(inout) :: panel
 
@@ -130,7 +127,7 @@ contains
       integer :: iteration
 
       call set_up(equations, rule, map, scale, impact, modes, start, panel)
-      newton = newton_t(unit=start%largest_condition, noise=noise)
+      newton = newton_t(unit=start%largest_condition, noise=noise, share=share)
       do iteration = 1, most_iterations
          call correct(map, equations, modes, approach, tolerance, newton, inverse, panel)
          if (newton%converged .or. newton%failed) exit
