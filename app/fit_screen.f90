@@ -134,6 +134,9 @@ contains
             text = text//'at its bound, the data say no more'
          case default
             text = text//'+- '//short(parameter%error)
+            ! not even its order of magnitude
+            if (.not. parameter%error < abs(parameter%value)) text = text &
+               //', the data do not determine it'
          end select
       end associate
       text = text//nl

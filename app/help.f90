@@ -1,7 +1,8 @@
-!> Help pages; the page of the input is made from the catalogue of keys
+!> Help pages
 module vcor_app_help
-   use vcor, only : catalogue, error_t, error_usage, groups, printable, quantities, raise, &
-      range_text, suggestion, version
+   use vcor, only : error_t, error_usage, nearest_name, printable, quantities, raise, &
+      suggestion, version
+   use vcor_app_input_help, only : input_page, input_words
    implicit none
    private
 
@@ -17,12 +18,14 @@ contains
 
    !> A help page
    subroutine help_text(topic, text, error)
-      !> Topic, empty for the overview
+      !> Topic, empty for the overview; also a group, a key or a choice of the input
       character(len=*), intent(in) :: topic
       !> The page
       character(len=:), allocatable, intent(out) :: text
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: words
 
       select case (topic)
       case ('', 'help')
@@ -42,12 +45,21 @@ contains
       case ('verify')
          text = verify_page()
       case ('input')
-         text = input_page()
+         text = 'A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units.' &
+            //nl//nl//input_page()
       case ('output')
          text = output_page()
       case default
-         call raise(error, error_usage, "no help on '"//printable(topic)//"'; " &
-            //suggestion(topic, topics))
+         text = input_page(topic)
+         if (text /= '') return
+         ! too many words to be listed, not to look for one nearby
+         words = topics//input_words()
+         if (nearest_name(topic, words) == '') then
+            text = suggestion(topic, topics)//', or a group, a key or a choice of the input'
+         else
+            text = suggestion(topic, words)
+         end if
+         call raise(error, error_usage, "no help on '"//printable(topic)//"'; "//text)
       end select
    end subroutine help_text
 
@@ -65,7 +77,8 @@ contains
          //'       vcor plot RESULT.h5 ...            figures of results'//nl &
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
          //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
-         //'                                          fit, plot, verify, input, output'//nl &
+         //'                                          fit, plot, verify, input, output,'//nl &
+         //'                                          or a group, key or choice of the input'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
@@ -249,67 +262,6 @@ contains
          //'the energies do not close or a solution fails. A contact that does not end is'//nl &
          //'no failure where both methods say so.'//nl
    end function verify_page
-
-   !> Page of the input, from the catalogue
-   function input_page() result(text)
-      !> The page
-      character(len=:), allocatable :: text
-
-      character(len=28) :: name
-      character(len=:), allocatable :: note
-      integer :: i, j
-
-      text = 'A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units.'//nl
-      do i = 1, size(groups)
-         text = text//nl//'&'//trim(groups(i)%name)//'  '//trim(groups(i)%meaning)
-         if (groups(i)%repeated) text = text//'; may be repeated'
-         if (.not. groups(i)%required) text = text//'; optional'
-         text = text//nl
-         do j = 1, size(catalogue)
-            associate (key => catalogue(j))
-               if (key%group /= groups(i)%name) cycle
-               name = key%name
-               note = ''
-               if (key%unit /= '') note = note//' ['//trim(key%unit)//']'
-               if (range_text(key) /= '') note = note//', '//range_text(key)
-               if (key%required) then
-                  note = note//', required'
-               else if (key%default /= '' .and. key%default /= "''") then
-                  note = note//', default '//trim(key%default)
-               end if
-               if (key%models /= '') note = note//'; '//trim(key%models)
-               ! a line fits a screen
-               if (len_trim(key%meaning) + len(note) > 66) then
-                  text = text//'   '//name//trim(key%meaning)//nl &
-                     //indented(note(verify(note, ' ,'):))
-               else
-                  text = text//'   '//name//trim(key%meaning)//note//nl
-               end if
-            end associate
-         end do
-      end do
-   end function input_page
-
-   !> A note below its key, in lines that fit a screen
-   pure function indented(note) result(text)
-      !> The note
-      character(len=*), intent(in) :: note
-      !> The same in lines of 100 characters at most, below the meanings
-      character(len=:), allocatable :: text
-
-      integer, parameter :: margin = 31, width = 100 - margin
-      integer :: first, last
-
-      text = ''
-      first = 1
-      do while (len(note) - first >= width)
-         last = first - 1 + index(note(first:first + width), ' ', back=.true.)
-         if (last < first) exit
-         text = text//repeat(' ', margin)//note(first:last - 1)//nl
-         first = last + 1
-      end do
-      text = text//repeat(' ', margin)//note(first:)//nl
-   end function indented
 
    !> Page of the output, from the table of quantities
    function output_page() result(text)

@@ -338,6 +338,19 @@ def test_wrong_model(vcor):
     assert "does not follow the data" not in vcor.succeeds(*words, "power_law")
 
 
+def test_what_the_data_do_not_determine(vcor):
+    """An equilibrium modulus far below all data: its standard error is larger than itself."""
+    times = np.logspace(-6, -4, 41)
+    noise = np.exp(0.01 * np.random.default_rng(1).standard_normal(41))
+    vcor.write(columns(times, (1e4 + 1e6 * times**-0.3) * noise), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", "power_law")
+    said = re.findall(r"^ +(\w+) +(\S+) .*\+- (\S+?)(, the data do not determine it)?$", out, re.M)
+    assert [name for name, *_, remark in said if remark] == ["equilibrium_modulus"]
+    assert len(said) == 3
+    for _, value, error, remark in said:
+        assert (float(error) >= float(value)) == bool(remark)
+
+
 # Sampled models
 
 

@@ -79,3 +79,39 @@ def test_pages_fit_the_screen(vcor):
 @pytest.mark.parametrize("topic, nearest", [("inptu", "input"), ("rum", "run"), ("chek", "check")])
 def test_unknown_topic(vcor, topic, nearest):
     vcor.refuses("help", topic, code=USAGE, says=[f"'{topic}'", f"'{nearest}'"])
+
+
+@pytest.mark.parametrize(
+    "word, groups, keys",
+    [
+        ("velocity", ["impact"], ["velocity"]),
+        ("beta", ["material"], ["beta", "beta"]),
+        ("material", None, None),
+        ("plate.material", ["plate"], ["material"]),
+        ("power_law", ["material"], ["model", "poisson_ratio", "equilibrium_modulus", "coefficient", "exponent", "valid_from", "valid_to"]),
+        ("direct", ["solver"], ["method"]),
+        ("sweep", ["sweep"], ["parameter", "values", "start", "stop", "count", "spacing"]),
+    ],
+)
+def test_words_of_the_input(vcor, word, groups, keys):
+    """A group, a key or a choice is shown as on the page of the input; a command comes first."""
+    page = vcor.succeeds("help", word)
+    if groups is None:
+        assert page.startswith("usage: vcor material")
+        return
+    lines = page.splitlines()
+    assert [line.split()[0] for line in lines if line.startswith("&")] == [f"&{name}" for name in groups]
+    assert [line.split()[0] for line in lines if line[:4].strip() and line[0] == " "] == keys
+    assert set(lines) <= set(vcor.succeeds("help", "input").splitlines())
+    vcor.refuses("help", word, "--man", code=USAGE, says=["no manual page", word])
+
+
+@pytest.mark.parametrize(
+    "word, says",
+    [("velosity", "'velocity'"), ("pronny", "'prony'"), ("nothing at all", "a key"), ("", None)],
+)
+def test_words_near_those_of_the_input(vcor, word, says):
+    if says:
+        vcor.refuses("help", word, code=USAGE, says=[f"'{word}'", says])
+    else:
+        assert vcor.succeeds("help", word) == vcor.succeeds("help")

@@ -25,13 +25,13 @@ module vcor_io_gnuplot
 
    !> End of a line
    character(len=*), parameter :: nl = new_line("a")
-   !> Colours of the styles, each of a lightness of its own
+   !> Colours of the styles, each of a lightness of its own, none so light that a thin line fades
    character(len=7), parameter :: colours(style_count) = [character(len=7) :: "#000000", &
-      & "#a83208", "#3a86c4", "#e0a01a", "#5b3472", "#2f8052", "#9fcdf0", "#b8b8b8"]
+      & "#922c06", "#2e75b2", "#c48a00", "#4a2a60", "#26704a", "#78b4e4", "#a0a0a0"]
    !> Dashes of the styles
    character(len=14), parameter :: dashes(style_count) = [character(len=14) :: "1", "'-'", &
-      & "(14,3,2,3)", "'.'", "(16,4)", "(8,3,2,3,2,3)", "1", "(4,4)"]
-   !> Markers of the styles
+      & "(14,3,2,3)", "(2,3)", "(16,4)", "(8,3,2,3,2,3)", "1", "(4,4)"]
+   !> Markers of the styles, filled ones first
    integer, parameter :: markers(style_count) = [7, 5, 9, 13, 6, 4, 8, 12]
    !> Lightest and darkest colour of filled shapes, red, green, blue
    real(wp), parameter :: lightest(3) = [234.0_wp, 241.0_wp, 248.0_wp]
@@ -72,8 +72,10 @@ contains
       call buffer%add("set output here."//in_quotes(name//"."//format)//nl//nl)
       do i = 1, style_count
          call buffer%add("set style line "//integer_text(i)//" lc rgb '"//colours(i) &
-            & //"' lw 1.5 pt "//integer_text(markers(i))//" ps 0.55 dt "//trim(dashes(i))//nl)
+            & //"' lw 1.5 pt "//integer_text(markers(i))//" ps 0.65 dt "//trim(dashes(i))//nl)
       end do
+      ! an interval below zero clears the ground of a marker, without which open ones look filled
+      call buffer%add("set pointintervalbox 0.5"//nl)
       call buffer%add("set border lw 0.7"//nl//"set tics scale 0.6 front"//nl &
          & //"set style textbox opaque noborder margins 0.4, 0.2"//nl)
       if (size(figure%panels) > 1) call buffer%add("set multiplot"//nl)
@@ -223,7 +225,7 @@ contains
          text = " with lines ls "//integer_text(curve%style)
          if (panel%with_markers) then
             every = max(1, size(curve%x)/marker_count)
-            text = " with linespoints ls "//integer_text(curve%style)//" dt 1 pointinterval " &
+            text = " with linespoints ls "//integer_text(curve%style)//" dt 1 pointinterval -" &
                & //integer_text(every + mod(place, 3))
          end if
       end select

@@ -246,11 +246,19 @@ contains
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
       !> The message
-      character(len=:), allocatable :: message
+      character(len=:), allocatable :: message, value
       integer :: n, i, shown_values
       integer, parameter :: most_shown = 8
 
       n = size(values)
+      if (n == 1) then
+         ! meant as arithmetic, which a namelist has not
+         value = shortened(text(values(1)%first:values(1)%last))
+         message = integer_text(values(1)%repeats)
+         message = "found more than one value: "//message//"*"//value//" is no product but " &
+            & //value//" given "//message//" times, expected "//wanted(key)
+         return
+      end if
       shown_values = min(n, most_shown)
       message = "found more than one value, '" &
          & //shortened(text(values(1)%first:values(shown_values)%last))

@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgelsy, dgesv, dgesvd
+   public :: dgeev, dgelsy, dgeqrf, dgesv, dgesvd, dormqr, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -72,6 +72,27 @@ module vcor_numeric_lapack
          integer, intent(out) :: info
       end subroutine dgelsy
 
+      !> QR factorisation of a general real matrix
+      pure subroutine dgeqrf(m, n, a, lda, tau, work, lwork, info)
+         import :: wp
+         !> Number of rows
+         integer, intent(in) :: m
+         !> Number of columns
+         integer, intent(in) :: n
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The matrix, on return R on and above the diagonal, reflections below, shape (lda, n)
+         real(wp), intent(inout) :: a(lda, *)
+         !> Scalars of the reflections, shape (min(m, n))
+         real(wp), intent(out) :: tau(*)
+         !> Work space, shape (lwork)
+         real(wp), intent(out) :: work(*)
+         !> Length of the work space, >= n
+         integer, intent(in) :: lwork
+         !> 0 on success
+         integer, intent(out) :: info
+      end subroutine dgeqrf
+
       !> Solve a general real system of linear equations
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
@@ -125,6 +146,62 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgesvd
+
+      !> Multiply a matrix by the orthogonal one of a QR factorisation
+      pure subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
+         import :: wp
+         !> 'L': from the left, 'R': from the right
+         character(len=1), intent(in) :: side
+         !> 'N': by Q, 'T': by its transpose
+         character(len=1), intent(in) :: trans
+         !> Number of rows of `c`
+         integer, intent(in) :: m
+         !> Number of columns of `c`
+         integer, intent(in) :: n
+         !> Number of reflections
+         integer, intent(in) :: k
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The reflections, as `dgeqrf` leaves them, shape (lda, k)
+         real(wp), intent(in) :: a(lda, *)
+         !> Their scalars, shape (k)
+         real(wp), intent(in) :: tau(*)
+         !> Leading dimension of `c`
+         integer, intent(in) :: ldc
+         !> The matrix, on return the product, shape (ldc, n)
+         real(wp), intent(inout) :: c(ldc, *)
+         !> Work space, shape (lwork)
+         real(wp), intent(out) :: work(*)
+         !> Length of the work space, >= n, from the right >= m
+         integer, intent(in) :: lwork
+         !> 0 on success
+         integer, intent(out) :: info
+      end subroutine dormqr
+
+      !> Solve a triangular system of linear equations
+      pure subroutine dtrtrs(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
+         import :: wp
+         !> 'U': upper, 'L': lower triangle
+         character(len=1), intent(in) :: uplo
+         !> 'N': A x = b, 'T': A' x = b
+         character(len=1), intent(in) :: trans
+         !> 'N': the diagonal is that of `a`, 'U': ones
+         character(len=1), intent(in) :: diag
+         !> Order of the matrix
+         integer, intent(in) :: n
+         !> Number of right-hand sides
+         integer, intent(in) :: nrhs
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> The triangle; the other one is not looked at, shape (lda, n)
+         real(wp), intent(in) :: a(lda, *)
+         !> Leading dimension of `b`
+         integer, intent(in) :: ldb
+         !> Right-hand sides, on return the solutions, shape (ldb, nrhs)
+         real(wp), intent(inout) :: b(ldb, *)
+         !> 0 on success, > 0: a zero on the diagonal
+         integer, intent(out) :: info
+      end subroutine dtrtrs
    end interface
 
 end module vcor_numeric_lapack

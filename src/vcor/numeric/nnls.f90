@@ -1,17 +1,17 @@
 !> Non-negative least squares: minimise |A x - b| with x >= 0
 !>
 !> The active-set method of C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems" (1974),
-!> chapter 23. All columns of A, in use or not, and b are kept multiplied by the same orthogonal
-!> matrix, such that the columns in use are triangular. Then to take a column in is one Householder
-!> reflection, to let one go a few plane rotations, and the gradient of the columns not in use is a
-!> scalar product each: O(m n) per change, where a factorisation by a library for each set of
-!> columns would be O(m k^2), and no normal equations, which would halve the digits.
+!> chapter 23, on LAPACK's QR factorisation. All columns of A, in use or not, and b are kept
+!> multiplied by the same orthogonal matrix, such that the columns in use are triangular. So what
+!> stands before a column that comes or goes is not factorised again, and the gradient of the
+!> columns not in use is a scalar product each. No normal equations, which would halve the digits.
 !>
 !> It ends whatever the columns are. A column that is dependent on those in use is not taken in; nor
 !> is one whose coefficient rounding makes negative; the residual must fall from one feasible
 !> solution to the next; and the changes are counted.
 module vcor_numeric_nnls
    use vcor_kinds, only : wp
+   use vcor_numeric_lapack, only : dgeqrf, dormqr, dtrtrs
    implicit none
    private
 
@@ -21,19 +21,6 @@ module vcor_numeric_nnls
    real(wp), parameter :: independent = 1.0e-11_wp
    !> Part of |b| below which a gradient, for columns of length 1, is rounding
    real(wp), parameter :: rounding = 1.0e-14_wp
-
-   !> The problem on its way
-   type :: work_t
-      !> Columns of A of length 1 and b as the last one, all multiplied by one orthogonal matrix,
-      !> shape (m, n + 1)
-      real(wp), allocatable :: a(:, :)
-      !> Columns in use, the first `count` of them, shape (n)
-      integer, allocatable :: set(:)
-      !> Number of columns in use
-      integer :: count = 0
-      !> Whether a column is in use, shape (n)
-      logical, allocatable :: used(:)
-   end type work_t
 
 contains
 
@@ -48,67 +35,56 @@ contains
       !> Columns that are likely in use, a guess that saves time; shape (n)
       logical, intent(in), optional :: start(:)
 
-      type(work_t) :: work
-      real(wp), allocatable :: length(:), z(:)
-      logical, allocatable :: blocked(:)
+      ! columns of length 1 and b as the last one, multiplied; their lengths; numbers of those in
+      ! use; those that are not to be taken
+      real(wp) :: q(size(b), size(x) + 1), length(size(x)), z(size(x))
+      integer, allocatable :: set(:)
+      logical :: blocked(size(x))
       real(wp) :: residual, before
-      integer :: i, j, n, trial
-      logical :: taken
+      integer :: j, trial
 
-      n = size(a, 2)
-      allocate (work%a(size(a, 1), n + 1), work%set(n), work%used(n), length(n), z(n), blocked(n))
-      work%used = .false.
-      do j = 1, n
-         length(j) = norm2(a(:, j))
-         work%a(:, j) = a(:, j)
-         if (length(j) > 0.0_wp) work%a(:, j) = a(:, j)/length(j)
-      end do
-      work%a(:, n + 1) = b
+      length = norm2(a, dim=1)
+      where (.not. length > 0.0_wp) length = 1.0_wp
+      q(:, :size(x)) = a/spread(length, 1, size(b))
+      q(:, size(x) + 1) = b
       x = 0.0_wp
-      blocked = .not. length > 0.0_wp
-      residual = norm2(b)
-      before = residual
-
+      allocate (set(0))
       if (present(start)) then
-         do j = 1, n
-            if (start(j) .and. .not. blocked(j)) call take_in(work, j, taken)
+         do j = 1, size(x)
+            if (start(j)) call take_in(q, set, j)
          end do
-         call make_feasible(work, x, z)
-         residual = norm2(work%a(work%count + 1:, n + 1))
+         z = solution(q, set)
+         call make_feasible(q, set, x, z)
       end if
+      residual = norm2(q(size(set) + 1:, size(x) + 1))
 
-      do trial = 1, 10*n
-         j = steepest(work, blocked, rounding*norm2(b))
+      blocked = .false.
+      do trial = 1, 10*size(x)
+         blocked(set) = .true.
+         j = steepest(q, size(set), blocked, rounding*norm2(b))
          if (j == 0) exit
-         call take_in(work, j, taken)
-         if (taken) then
-            call solve_triangle(work, z)
-            if (.not. z(j) > 0.0_wp) then
-               call let_go(work, work%count)
-               taken = .false.
-            end if
-         end if
-         if (.not. taken) then
-            blocked(j) = .true.
+         blocked(j) = .true.
+         call take_in(q, set, j)
+         z = solution(q, set)
+         if (.not. z(j) > 0.0_wp) then
+            set = pack(set, set /= j)
             cycle
          end if
-         call make_feasible(work, x, z)
+         call make_feasible(q, set, x, z)
          before = residual
-         residual = norm2(work%a(work%count + 1:, n + 1))
+         residual = norm2(q(size(set) + 1:, size(x) + 1))
          if (.not. residual < before) exit
-         blocked = .not. length > 0.0_wp
+         blocked = .false.
       end do
-
-      do i = 1, work%count
-         j = work%set(i)
-         x(j) = x(j)/length(j)
-      end do
+      x = x/length
    end subroutine solve_nnls
 
    !> Column not in use with the steepest descent
-   pure function steepest(work, blocked, least) result(column)
-      !> The problem
-      type(work_t), intent(in) :: work
+   pure function steepest(q, count, blocked, least) result(column)
+      !> The columns, shape (m, n + 1)
+      real(wp), intent(in) :: q(:, :)
+      !> Number of those in use
+      integer, intent(in) :: count
       !> Columns that are not to be taken, shape (n)
       logical, intent(in) :: blocked(:)
       !> Descent that counts as none
@@ -116,149 +92,100 @@ contains
       !> Column; 0: none goes down
       integer :: column
 
-      real(wp) :: descent, largest
-      integer :: j, n
+      real(wp) :: descent(size(blocked))
 
-      n = size(blocked)
-      column = 0
-      largest = least
-      if (work%count == size(work%a, 1)) return
-      do j = 1, n
-         if (work%used(j) .or. blocked(j)) cycle
-         descent = dot_product(work%a(work%count + 1:, j), work%a(work%count + 1:, n + 1))
-         if (descent > largest) then
-            largest = descent
-            column = j
-         end if
-      end do
+      descent = matmul(q(count + 1:, size(q, 2)), q(count + 1:, :size(blocked)))
+      column = maxloc(descent, dim=1, mask=descent > least .and. .not. blocked)
    end function steepest
 
-   !> Take a column in, unless it depends on those in use: a Householder reflection of the rows
-   !> below the triangle, I - v v'/h
-   pure subroutine take_in(work, column, taken)
-      !> The problem
-      type(work_t), intent(inout) :: work
-      !> The column, not in use
+   !> Take a column in, unless it depends on those in use
+   pure subroutine take_in(q, set, column)
+      !> The columns, shape (m, n + 1)
+      real(wp), intent(inout) :: q(:, :)
+      !> Numbers of those in use
+      integer, allocatable, intent(inout) :: set(:)
+      !> Number of the column
       integer, intent(in) :: column
-      !> Whether it was taken
-      logical, intent(out) :: taken
 
-      real(wp) :: v(size(work%a, 1)), pivot, h, factor
-      integer :: j, k
-
-      k = work%count + 1
-      taken = .false.
-      if (k > size(work%a, 1)) return
-      v(k:) = work%a(k:, column)
-      ! the sign that does not cancel
-      pivot = -sign(norm2(v(k:)), v(k))
-      if (.not. abs(pivot) > independent) return
-      h = pivot*(pivot - v(k))
-      v(k) = v(k) - pivot
-      work%used(column) = .true.
-      do j = 1, size(work%a, 2)
-         if (j <= size(work%used)) then
-            ! columns in use are zero there
-            if (work%used(j)) cycle
-         end if
-         factor = dot_product(v(k:), work%a(k:, j))/h
-         work%a(k:, j) = work%a(k:, j) - factor*v(k:)
-      end do
-      work%a(k, column) = pivot
-      work%a(k + 1:, column) = 0.0_wp
-      work%set(k) = column
-      work%count = k
-      taken = .true.
+      if (size(set) == size(q, 1)) return
+      set = [set, column]
+      call make_triangular(q, set, size(set), size(q, 1))
+      if (.not. abs(q(size(set), column)) > independent) set = set(:size(set) - 1)
    end subroutine take_in
 
-   !> Let a column go: those after it lose what stands below the diagonal by plane rotations
-   pure subroutine let_go(work, place)
-      !> The problem
-      type(work_t), intent(inout) :: work
-      !> Its place in `set`
-      integer, intent(in) :: place
+   !> Make the columns in use triangular from one of them on: QR of their lower rows
+   pure subroutine make_triangular(q, set, first, last)
+      !> The columns, shape (m, n + 1)
+      real(wp), intent(inout) :: q(:, :)
+      !> Numbers of those in use
+      integer, intent(in) :: set(:)
+      !> Place in `set` of the first one that is not yet triangular
+      integer, intent(in) :: first
+      !> Last row in which they are not zero
+      integer, intent(in) :: last
 
-      real(wp) :: c, s, r, upper
-      integer :: i, j
+      real(wp) :: used(first:last, first:size(set)), rows(first:last, size(q, 2))
+      real(wp) :: factors(size(set)), work(size(q, 2))
+      integer :: info
 
-      work%used(work%set(place)) = .false.
-      work%set(place:work%count - 1) = work%set(place + 1:work%count)
-      work%count = work%count - 1
-      do i = place, work%count
-         associate (a => work%a(:, work%set(i)))
-            r = norm2(a(i:i + 1))
-            c = a(i)/r
-            s = a(i + 1)/r
-         end associate
-         do j = 1, size(work%a, 2)
-            upper = work%a(i, j)
-            work%a(i, j) = c*upper + s*work%a(i + 1, j)
-            work%a(i + 1, j) = c*work%a(i + 1, j) - s*upper
-         end do
-         work%a(i + 1, work%set(i)) = 0.0_wp
-      end do
-   end subroutine let_go
+      used = q(first:last, set(first:))
+      rows = q(first:last, :)
+      associate (m => size(used, 1), n => size(used, 2))
+         call dgeqrf(m, n, used, m, factors, work, size(work), info)
+         call dormqr('L', 'T', m, size(rows, 2), n, used, m, factors, rows, m, work, size(work), &
+            info)
+      end associate
+      q(first:last, :) = rows
+   end subroutine make_triangular
 
    !> Least squares with the columns in use
-   pure subroutine solve_triangle(work, z)
-      !> The problem
-      type(work_t), intent(in) :: work
+   pure function solution(q, set) result(z)
+      !> The columns, shape (m, n + 1)
+      real(wp), intent(in) :: q(:, :)
+      !> Numbers of those in use
+      integer, intent(in) :: set(:)
       !> Solution, 0 for other columns, shape (n)
-      real(wp), intent(out) :: z(:)
+      real(wp) :: z(size(q, 2) - 1)
 
-      real(wp) :: right(work%count)
-      integer :: i
+      real(wp) :: triangle(size(set), size(set)), right(size(set))
+      integer :: info
 
+      associate (n => size(set))
+         triangle = q(:n, set)
+         right = q(:n, size(q, 2))
+         call dtrtrs('U', 'N', 'N', n, 1, triangle, max(1, n), right, max(1, n), info)
+      end associate
       z = 0.0_wp
-      right = work%a(:work%count, size(work%a, 2))
-      do i = work%count, 1, -1
-         associate (a => work%a(:, work%set(i)))
-            right(i) = right(i)/a(i)
-            right(:i - 1) = right(:i - 1) - right(i)*a(:i - 1)
-            z(work%set(i)) = right(i)
-         end associate
-      end do
-   end subroutine solve_triangle
+      z(set) = right
+   end function solution
 
    !> Go from a feasible solution towards least squares with the columns in use, and let go those
    !> whose bound is in the way, until it is reached
-   pure subroutine make_feasible(work, x, z)
-      !> The problem
-      type(work_t), intent(inout) :: work
+   pure subroutine make_feasible(q, set, x, z)
+      !> The columns, shape (m, n + 1)
+      real(wp), intent(inout) :: q(:, :)
+      !> Numbers of those in use
+      integer, allocatable, intent(inout) :: set(:)
       !> A feasible solution, on return the one of least squares with the columns that are left
       real(wp), intent(inout) :: x(:)
-      !> Work space, shape (n)
-      real(wp), intent(out) :: z(:)
+      !> Least squares with the columns in use
+      real(wp), intent(inout) :: z(:)
 
-      real(wp) :: step
-      integer :: i, j, nearest
+      real(wp) :: part(size(x)), step
+      logical, allocatable :: stays(:)
+      integer :: last
 
-      do
-         call solve_triangle(work, z)
-         nearest = 0
-         step = 1.0_wp
-         do i = 1, work%count
-            j = work%set(i)
-            if (z(j) > 0.0_wp) cycle
-            ! x may be 0, and z as well
-            if (x(j) > step*(x(j) - z(j)) .and. nearest > 0) cycle
-            nearest = i
-            if (x(j) > 0.0_wp) then
-               step = x(j)/(x(j) - z(j))
-            else
-               step = 0.0_wp
-            end if
-         end do
-         if (nearest == 0) exit
-         do i = 1, work%count
-            j = work%set(i)
-            x(j) = max(0.0_wp, x(j) + step*(z(j) - x(j)))
-         end do
-         x(work%set(nearest)) = 0.0_wp
-         do i = work%count, 1, -1
-            if (.not. x(work%set(i)) > 0.0_wp .and. .not. z(work%set(i)) > 0.0_wp) &
-               call let_go(work, i)
-         end do
+      do while (any(.not. z(set) > 0.0_wp))
+         ! part of the way to z that leaves each x >= 0; both may be 0
+         part = 1.0_wp
+         where (.not. z > 0.0_wp) part = x/max(x - z, tiny(1.0_wp))
+         step = minval(part(set))
+         x = max(0.0_wp, x + step*(z - x))
+         stays = z(set) > 0.0_wp .or. part(set) > step
+         last = size(set)
+         set = pack(set, stays)
+         call make_triangular(q, set, findloc(stays, .false., dim=1), last)
+         z = solution(q, set)
       end do
       x = z
    end subroutine make_feasible
