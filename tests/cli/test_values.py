@@ -388,20 +388,6 @@ def test_time_step_not_below_end_time(vcor):
     vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "time_step", "end_time"])
 
 
-@pytest.mark.parametrize("method", ["auto", "ive"])
-def test_time_step_without_effect(vcor, method):
-    """Internal variables have no use for a step: refused, not passed over; in a sweep too."""
-    words = ["case.nml:", "time_step", "'direct'", f"'{method}'"]
-    fixed, _ = edit(SLS, "solver", "method", f"'{method}'")
-    vcor.write(fixed + "&sweep parameter = 'solver.time_step', values = 1e-6, 2e-6 /\n")
-    vcor.refuses("run", "case.nml", code=INPUT, says=words)
-    fixed, _ = edit(fixed, "solver", "time_step", "1.0e-6")
-    vcor.write(fixed)
-    vcor.refuses("run", "case.nml", code=INPUT, says=words)
-    vcor.write(fixed.replace(f"'{method}'", "'direct'"))
-    vcor.succeeds("run", "case.nml")
-
-
 @pytest.mark.parametrize("value", ["'a/b'", "'../x'", "'/proc/x'"])
 def test_stem_with_a_folder(vcor, value):
     """A stem is a name: the folder is output.directory."""

@@ -498,8 +498,7 @@ contains
       call round_trip(good//"&case title = 'a ''tricky'' ""title"" ! / & , = Stoß' /", &
          & "tricky title")
       call round_trip(good &
-         & //"&solver method = 'direct' time_step = 1.2345678901234567e-6, accuracy=1e-9" &
-         & //" volterra_coefficient=-.1 /" &
+         & //"&solver time_step = 1.2345678901234567e-6, accuracy=1e-9 volterra_coefficient=-.1 /" &
          & //"&output stem = 'it''s', csv = f, directory = '/tmp/a b' /", "many digits")
       call round_trip(good &
          & //"&material name='p' model='prony' poisson_ratio=.3 equilibrium_modulus=1e5" &

@@ -3,7 +3,7 @@
 module vcor_study_consistency
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_solver, only : hereditary_without_papers_scheme, method_for, receding_without_ghost, &
+   use vcor_solver, only : hereditary_without_papers_scheme, receding_without_ghost, &
       & receding_without_papers_scheme, receding_without_second_term
    use vcor_study_entries, only : entries_t
    use vcor_study_keys, only : catalogue, find_key, key_t, wanted
@@ -36,17 +36,15 @@ contains
       if (allocated(error)) return
       call check_times(self, swept, error)
       if (allocated(error)) return
-      call check_choices(self, swept, error)
+      call check_choices(self, error)
       if (allocated(error)) return
       call check_mechanics(self, error)
    end subroutine check_consistency
 
-   !> Check scheme and time step against the method, and the name of the files
-   subroutine check_choices(self, swept, error)
+   !> Check the scheme against the method, and the name of the files
+   subroutine check_choices(self, error)
       !> The case
       class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: method, scheme, stem
@@ -57,11 +55,6 @@ contains
       if (method == "ive" .and. scheme /= "product") then
          call raise(error, error_input, self%location("solver", "scheme")//": scheme = '" &
             & //scheme//"' is one of method = 'direct', found method = 'ive'")
-      else if (method_for(method, scheme) == "ive" .and. (self%given("solver", "time_step") &
-         & .or. is_swept(self, swept, "solver", "time_step"))) then
-         call raise(error, error_input, self%location("solver", "time_step") &
-            & //": time_step is one of method = 'direct', found method = '"//method &
-            & //"', whose steps follow from accuracy")
       else if (index(stem, "/") > 0 .or. stem == "." .or. stem == "..") then
          call raise(error, error_input, self%location("output", "stem")//": found stem = '" &
             & //shortened(stem)//"', expected a name without a folder (that is output.directory)")

@@ -176,7 +176,7 @@ module vcor_study_keys
       &    choices="auto ive direct", default="auto"), &
       & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
       &    choices="product adams_bashforth", default="product"), &
-      & key_t("solver", "time_step", real_key, "Time step of method direct; chosen when not given", &
+      & key_t("solver", "time_step", real_key, "Time step; chosen by the solver when not given", &
       &    "s", positive), &
       & key_t("solver", "end_time", real_key, "Longest time; chosen by the solver when not given", &
       &    "s", positive), &
