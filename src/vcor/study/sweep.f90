@@ -34,8 +34,9 @@ module vcor_study_sweep
    public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points, &
       lacking
 
-   !> Most points that a thread takes at a time
-   integer, parameter :: longest_chunk = 64
+   !> Most points that a thread takes at a time: a line of the cache has eight numbers, and what a
+   !> thread waits for another at the end is half of them on average
+   integer, parameter :: longest_chunk = 16
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t

@@ -197,8 +197,8 @@ contains
 
       length = real(max(pace%last, task%least), wp)
       if (pace%rate > 0.0_wp) length = min(real(growth, wp)*length, pace%rate*time)
-      ! what is left makes a few chunks for each rank
-      length = min(length, real(todo%left, wp)/real(2*ranks, wp))
+      ! what is left makes a few chunks for each of several ranks
+      if (ranks > 1) length = min(length, real(todo%left, wp)/real(2*ranks, wp))
       call todo%take(max(task%least, int(length)), first, last)
       pace%last = last - first + 1
    end subroutine take_chunk
