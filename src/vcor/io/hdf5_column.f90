@@ -13,8 +13,8 @@ module vcor_io_hdf5_column
    use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_loc, c_null_char, c_ptr
    use hdf5, only : h5dcreate_f, h5dget_space_f, h5dwrite_f, h5pcopy_f, h5pset_chunk_f, &
       & h5pset_deflate_f, h5pset_fill_value_f, h5pset_shuffle_f, h5s_select_set_f, h5sclose_f, &
-      & h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, &
-      & h5t_std_i32le, hid_t, hsize_t
+      & h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, h5t_native_double, &
+      & h5t_native_integer, h5t_std_i32le, hid_t, hsize_t
    use vcor_io_column, only : column_t, integer_column, real_column, text_column
    use vcor_io_hdf5_image, only : close_list, note, nothing, put_attribute, writer_t
    implicit none
