@@ -17,6 +17,7 @@ module vcor_study_sweep
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver, only : check_settings, new_solver, solver_settings_t, solver_t
+   use vcor_study_aside, only : aside_t
    use vcor_study_axes, only : new_grid
    use vcor_study_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
    use vcor_study_build, only : locate
@@ -234,7 +235,7 @@ contains
    end subroutine prepare_solver
 
    !> Solve points of a sweep, by several threads
-   subroutine solve_points(self, first, last, threads, summary, failures, part)
+   subroutine solve_points(self, first, last, threads, summary, failures, part, aside)
       !> The sweep
       type(sweep_t), intent(in) :: self
       !> First point; with `part`, first place in it
@@ -249,6 +250,8 @@ contains
       type(failures_t), intent(inout) :: failures
       !> Part of the sweep; all of it where there is none
       type(part_t), intent(in), optional :: part
+      !> What one of the threads does first
+      class(aside_t), intent(inout), optional :: aside
 
       type(part_t) :: places
       integer :: team
@@ -256,8 +259,11 @@ contains
       places = new_part(self%grid%count(), 1, 1)
       if (present(part)) places = part
       team = max(1, min(threads, last - first + 1))
-!$omp parallel default(none) shared(self, places, first, last, team, summary, failures) &
+!$omp parallel default(none) shared(self, places, first, last, team, summary, failures, aside) &
 !$omp num_threads(team)
+!$omp single
+      if (present(aside)) call aside%run()
+!$omp end single nowait
       call work_off(self, places, first, last, team, summary, failures)
 !$omp end parallel
       call failures%sort()
