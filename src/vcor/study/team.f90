@@ -76,7 +76,7 @@ module vcor_study_team
    end interface
 
    !> Time that a chunk should take [s]: of a rank alone
-   real(wp), parameter :: time_alone = 0.1_wp
+   real(wp), parameter :: time_alone = 0.05_wp
    !> Of the first rank, which others wait for [s]
    real(wp), parameter :: time_first = 0.02_wp
    !> Of the others, per rank [s] and at least
@@ -197,8 +197,8 @@ contains
 
       length = real(max(pace%last, task%least), wp)
       if (pace%rate > 0.0_wp) length = min(real(growth, wp)*length, pace%rate*time)
-      ! what is left makes a few chunks for each of several ranks
-      if (ranks > 1) length = min(length, real(todo%left, wp)/real(2*ranks, wp))
+      ! what is left makes a few chunks for each rank
+      length = min(length, real(todo%left, wp)/real(2*ranks, wp))
       call todo%take(max(task%least, int(length)), first, last)
       pace%last = last - first + 1
    end subroutine take_chunk
