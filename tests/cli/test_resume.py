@@ -201,7 +201,9 @@ def test_in_use(long):
         process = begin(long)
         part = long.folder / "out" / PART
         wait_for(part, process)
-        while part.exists() and done_in(part)[0] == 0:  # it is at work, not only begun
+        # the file is locked a moment after it is there, and before more points come to it
+        begun = done_in(part)[0]
+        while part.exists() and done_in(part)[0] == begun:
             assert process.poll() is None, process.communicate()
         process.send_signal(signal.SIGSTOP)
         if process.poll() is None and part.exists():
