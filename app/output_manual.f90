@@ -158,7 +158,8 @@ contains
          //'for texts) and `long_name`. Dimensions are dimension scales, which h5py, xarray ' &
          //'(with h5netcdf), netCDF-4 and h5dump show as named axes. Numbers are binary64 or ' &
          //'32-bit integers, little endian; texts are UTF-8 of variable length. More than 50,000 ' &
-         //'numbers most of which repeat the one before are compressed (deflate).')
+         //'numbers most of which repeat the one before are compressed (deflate); as many texts ' &
+         //'that are all the same are not stored but read as the fill value of their dataset.')
       call page%block('python', 'import xarray'//nl//nl &
          //'summary = xarray.open_dataset("sls.h5", group="summary", engine="h5netcdf")'//nl)
    end subroutine put_hdf5

@@ -195,13 +195,22 @@ def test_refused(long):
     same_files(long.folder / "out", long.folder / "ref")
 
 
+def checks_in(path):
+    """The check sums of a file that another process may be writing to: of no two columns the same
+    moment is seen."""
+    with h5py.File(path) as file:
+        return file["summary/check"][:]
+
+
 def test_in_use(long):
     """Two at work on one sweep would take each other's points."""
     for _ in range(5):
         process = begin(long)
         part = long.folder / "out" / PART
         wait_for(part, process)
-        while part.exists() and done_in(part)[0] == 0:  # it is at work, not only begun
+        # the file is locked a moment after it is there, and before more points come to it
+        begun = checks_in(part)
+        while part.exists() and (checks_in(part) == begun).all():
             assert process.poll() is None, process.communicate()
         process.send_signal(signal.SIGSTOP)
         if process.poll() is None and part.exists():

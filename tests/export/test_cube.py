@@ -148,6 +148,30 @@ def test_long_columns_are_compressed(vcor, tmp_path):
         assert dict(data.sizes) == {"impact.velocity": 300, "sphere.radius": 200}
 
 
+@pytest.mark.parametrize("first", [-399, -390])
+def test_long_texts(vcor, tmp_path, first):
+    """A text that all points share takes no room and reads as if it did."""
+    sweeps = f"""
+        &sweep parameter = 'impact.velocity' start = {first} stop = {first + 399} count = 400 /
+        &sweep parameter = 'sphere.radius' start = 1e-3 stop = 1e-2 count = 200 /
+    """
+    table, path = solve(vcor, tmp_path, sweeps, 5)
+    good = numpy.repeat(first + numpy.arange(400) > 0, 200)
+    expected = numpy.where(good, "separated", "invalid")
+    assert (pandas.read_csv(table, comment="#")["status"] == expected).all()
+    with h5py.File(path) as file:
+        status = file["summary/status"]
+        assert (status.asstr()[:].ravel() == expected).all()
+        assert (status.asstr()[395:, 7] == expected[-1]).all()
+        assert (status.id.get_storage_size() == 0) == (not good.any())
+    with xarray.open_dataset(path, group="summary", engine="h5netcdf") as data:
+        assert (data["status"].values.ravel() == expected).all()
+    shown = subprocess.run(
+        ["h5dump", "-d", "/summary/status", str(path)], capture_output=True, text=True, check=True
+    )
+    assert shown.stdout.count('"separated"') == good.sum()
+
+
 def test_h5dump(cube):
     whole = subprocess.run(["h5dump", str(cube[1])], capture_output=True, text=True, check=True)
     assert "DIMENSION_SCALE" in whole.stdout

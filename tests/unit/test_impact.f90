@@ -155,6 +155,16 @@ contains
       call pair_of(power_law, steel, "power law and steel")
       call pair_of(cerf, sls, "CERF and SLS")
       call pair_of(power_law, cerf, "power law and CERF")
+      call beside_elastic(sls, steel, 4, "SLS and steel")
+      call beside_elastic(sls, glass, 4, "SLS and glass")
+      call new_prony(soft, 1.0e7_wp, [1.0e9_wp, 4.0e8_wp, 3.0e7_wp], &
+         [1.0e6_wp, 1.0e4_wp, 3.0e2_wp], 0.0_wp, error)
+      call beside_elastic(soft, glass, 150, "three relaxation times and glass")
+      ! powers of 1/2, and of more than 1
+      call new_elastic(soft, 22.0e6_wp, error)
+      call beside_elastic(sls, soft, 60, "SLS and something as hard")
+      call new_elastic(soft, 1.0e6_wp, error)
+      call pair_of(sls, soft, "SLS and something softer")
 
       ! An SLS of glassy modulus g and rubbery r beside an elastic body of modulus s: with
       ! y = exp(-b t), E' = s (r + d y)/(s + r + d y), whose transform is a hypergeometric series;
@@ -246,6 +256,46 @@ contains
          + sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*window))), &
          modulus%integral(window), fit_tolerance, what//": and its integral")
    end subroutine pair_of
+
+   !> Check the sum of a pair of an elastic body and one that relaxes: it holds from the start
+   subroutine beside_elastic(relaxing, elastic, most, what)
+      !> The one that relaxes
+      class(material_t), intent(in) :: relaxing
+      !> The elastic one
+      class(material_t), intent(in) :: elastic
+      !> Most terms that it takes
+      integer, intent(in) :: most
+      !> What they are
+      character(len=*), intent(in) :: what
+
+      real(wp), parameter :: window = 4.0e-3_wp
+      type(contact_modulus_t) :: modulus, other
+      type(error_t), allocatable :: error
+      type(exponential_sum_t) :: terms, others
+      real(wp) :: accuracy, time, difference
+      integer :: i, k
+
+      call new_contact_modulus(modulus, relaxing, elastic, .false., error)
+      call success(error, what//" make a pair")
+      call new_contact_modulus(other, elastic, relaxing, .false., error)
+      do k = 4, 8, 4
+         accuracy = 0.1_wp**k
+         call modulus%exponentials(window, accuracy, terms)
+         call check(size(terms%moduli) <= most, what//": a short sum")
+         call check(terms%error <= 1.0e-2_wp*accuracy, what//": much better than asked for")
+         difference = 0.0_wp
+         do i = -1, 30
+            time = 0.0_wp
+            if (i >= 0) time = window*0.5_wp**i
+            difference = max(difference, abs((terms%equilibrium + sum(terms%moduli &
+               *exp(-terms%rates*time)))/modulus%relaxation(time) - 1.0_wp))
+         end do
+         call check(difference <= terms%error + rounding, what//": the sum is within its error")
+      end do
+      call other%exponentials(window, accuracy, others)
+      call check_relative(others%equilibrium + sum(others%moduli), terms%equilibrium &
+         + sum(terms%moduli), rounding, what//": the other way round")
+   end subroutine beside_elastic
 
    !> Pairs that make no contact modulus
    subroutine test_refused_pairs()

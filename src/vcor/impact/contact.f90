@@ -1,6 +1,7 @@
 !> Contact modulus E'(t) of the two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_beside_elastic, only : sum_beside_elastic
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
@@ -288,9 +289,11 @@ contains
       ! what is far from the accuracy asked for, and could be better
       real(wp), parameter :: poor = 1.0e-7_wp, far = 30.0_wp
       type(exponential_sum_t) :: one
+      logical :: is_found
 
       if (allocated(self%second)) then
-         call fit_pair(self, window, terms)
+         call expand_pair(self, window, accuracy, terms, is_found)
+         if (.not. is_found) call fit_pair(self, window, terms)
       else
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
@@ -303,6 +306,40 @@ contains
          end if
       end if
    end subroutine exponentials
+
+   !> Sum of exponentials for a pair of an elastic body and one that is itself such a sum, in powers
+   !> of what relaxes
+   pure subroutine expand_pair(self, window, accuracy, terms, is_found)
+      !> Contact modulus of a pair
+      class(contact_modulus_t), intent(in) :: self
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Wanted relative accuracy, > 0
+      real(wp), intent(in) :: accuracy
+      !> The sum
+      type(exponential_sum_t), intent(out) :: terms
+      !> Whether it is such a pair, and has a short sum
+      logical, intent(out) :: is_found
+
+      ! a digit costs little; rounding
+      real(wp), parameter :: finer = 1.0e-2_wp, finest = 1.0e-13_wp
+      type(exponential_sum_t) :: other
+      real(wp) :: elastic
+
+      is_found = .false.
+      if (self%first%elastic() .and. self%second%discrete) then
+         elastic = self%first_factor*self%first%glassy()
+         call self%second%exponentials(window, accuracy, other)
+         other = other%scaled(self%second_factor)
+      else if (self%second%elastic() .and. self%first%discrete) then
+         elastic = self%second_factor*self%second%glassy()
+         call self%first%exponentials(window, accuracy, other)
+         other = other%scaled(self%first_factor)
+      else
+         return
+      end if
+      call sum_beside_elastic(elastic, other, window, max(finer*accuracy, finest), terms, is_found)
+   end subroutine expand_pair
 
    !> Sum of exponentials for a pair. By Eq. (1) its modulus is no completely monotone function even
    !> where both of its bodies have one: an elastic body beside an SLS gives powers of exp(-b t)

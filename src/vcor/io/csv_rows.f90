@@ -23,10 +23,6 @@ module vcor_io_csv_rows
       type(decimal_t), private :: decimal
       !> Room for a row
       integer, private :: width = 0
-      !> Whether texts stand between quotation marks, by dimension
-      logical, allocatable, private :: quotes_of_dimensions(:)
-      !> The same by column
-      logical, allocatable, private :: quotes_of_columns(:)
    contains
       !> Make text of rows
       procedure :: take
@@ -43,37 +39,26 @@ contains
       integer :: i
 
       call new_decimal(self%decimal)
-      allocate(self%quotes_of_dimensions(table%dimension_count))
-      allocate(self%quotes_of_columns(table%column_count))
       self%width = 1
       do i = 1, table%dimension_count
-         call look_at(table%dimensions(i)%coordinate, self%quotes_of_dimensions(i))
+         self%width = self%width + widest(table%dimensions(i)%coordinate)
       end do
       do i = 1, table%column_count
-         call look_at(table%columns(i), self%quotes_of_columns(i))
+         self%width = self%width + widest(table%columns(i))
       end do
 
    contains
 
-      !> See what a column needs
-      subroutine look_at(column, quotes)
+      !> Most letters that a value takes, with what stands around it
+      pure function widest(column) result(letters)
          !> The column
          type(column_t), intent(in) :: column
-         !> Whether any of its texts may need quotation marks
-         logical, intent(out) :: quotes
-         integer :: k
+         !> Number of letters
+         integer :: letters
 
          ! every letter may be one that is written twice
-         self%width = self%width + 3 + max(longest_real, longest_integer, 2*column%width)
-         quotes = .false.
-         if (column%kind /= text_column) return
-         quotes = scan(column%texts, special) > 0
-         do k = 1, column%length
-            ! empty, or with a blank before it
-            quotes = quotes .or. column%texts((k - 1)*column%width + 1: &
-               & (k - 1)*column%width + min(1, column%width)) == " "
-         end do
-      end subroutine look_at
+         letters = 3 + max(longest_real, longest_integer, 2*column%width)
+      end function widest
    end subroutine new_row_writer
 
    !> Make text of rows
@@ -100,10 +85,10 @@ contains
          do i = 1, table%dimension_count
             if (table%dimensions(i)%is_index) cycle
             call put_value(self, table%dimensions(i)%coordinate, coordinate_row(table, i, row), &
-               & self%quotes_of_dimensions(i), is_first)
+               & is_first)
          end do
          do i = 1, table%column_count
-            call put_value(self, table%columns(i), row, self%quotes_of_columns(i), is_first)
+            call put_value(self, table%columns(i), row, is_first)
          end do
          self%last = self%last + 1
          self%text(self%last:self%last) = c_new_line
@@ -111,15 +96,13 @@ contains
    end subroutine take
 
    !> Add one value
-   subroutine put_value(self, column, row, quotes, is_first)
+   subroutine put_value(self, column, row, is_first)
       !> What the thread writes with
       type(row_writer_t), intent(inout) :: self
       !> Column
       type(column_t), intent(in) :: column
       !> Number of the value
       integer, intent(in) :: row
-      !> Whether a text may need quotation marks
-      logical, intent(in) :: quotes
       !> Whether it is the first of the line; false afterwards
       logical, intent(inout) :: is_first
 
@@ -135,7 +118,7 @@ contains
          call put_integer(column%integers(row), self%text, self%last)
       case default
          associate (from => (row - 1)*column%width + 1, to => row*column%width)
-            if (quotes) then
+            if (needs_quotes(column%texts(from:to))) then
                ! one thread at a time: the length of what a function returns is static
 !$omp critical (vcor_quotes)
                call add(field(column%texts(from:to)))
@@ -158,6 +141,18 @@ contains
       end subroutine add
    end subroutine put_value
 
+   !> Whether a text has to stand between quotation marks
+   pure function needs_quotes(text)
+      !> Any text; blanks at its end do not count
+      character(len=*), intent(in) :: text
+      !> Whether it has to
+      logical :: needs_quotes
+
+      ! An empty field might make an empty line, which readers skip
+      needs_quotes = len_trim(text) == 0
+      if (.not. needs_quotes) needs_quotes = text(1:1) == " " .or. scan(text, special) > 0
+   end function needs_quotes
+
    !> A text as a field of a row
    pure function field(text)
       !> Any text; blanks at its end do not count
@@ -167,10 +162,7 @@ contains
       integer :: i
 
       field = trim(text)
-      ! An empty field might make an empty line, which readers skip
-      if (len(field) > 0) then
-         if (scan(field, special) == 0 .and. field(1:1) /= " ") return
-      end if
+      if (.not. needs_quotes(text)) return
 
       field = '"'
       do i = 1, len_trim(text)

@@ -5,13 +5,17 @@
 !> without result. Such a column all but vanishes. The digits of different impacts do not repeat:
 !> deflate takes a quarter off, in a time in which a tenth of them is solved, on one core, whatever
 !> the number of threads and ranks.
+!>
+!> Text HDF5 keeps one by one, apart from the dataset, and cannot compress. A column of nothing but
+!> one text, as `status` is where all goes well, is not written at all: the text is its fill value,
+!> and it reads as if it were.
 module vcor_io_hdf5_column
    use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_loc, c_null_char, c_ptr
    use hdf5, only : h5dcreate_f, h5dget_space_f, h5dwrite_f, h5pcopy_f, h5pset_chunk_f, &
-      & h5pset_deflate_f, h5pset_shuffle_f, h5s_select_set_f, h5sclose_f, h5screate_simple_f, &
-      & h5sselect_hyperslab_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, &
-      & h5t_std_i32le, hid_t, hsize_t
-   use vcor_io_column, only : column_t, integer_column, real_column
+      & h5pset_deflate_f, h5pset_fill_value_f, h5pset_shuffle_f, h5s_select_set_f, h5sclose_f, &
+      & h5screate_simple_f, h5sselect_hyperslab_f, h5t_ieee_f64le, h5t_native_double, &
+      & h5t_native_integer, h5t_std_i32le, hid_t, hsize_t
+   use vcor_io_column, only : column_t, integer_column, real_column, text_column
    use vcor_io_hdf5_image, only : close_list, note, nothing, put_attribute, writer_t
    implicit none
    private
@@ -44,6 +48,7 @@ contains
       integer(hid_t) :: creation, file_type, memory_type, space
       integer(hsize_t) :: backwards(size(lengths))
       integer :: status
+      logical :: is_filled
 
       dataset = nothing
       if (allocated(writer%fault)) return
@@ -67,6 +72,8 @@ contains
       if (writer%compresses .and. .not. writer%is_plain) then
          if (pays(column)) call prepare_compression(writer, backwards, creation)
       end if
+      is_filled = is_uniform(column)
+      if (is_filled) call prepare_text(writer, column, creation)
       call h5dcreate_f(group, link_name(column%name), file_type, space, dataset, status, &
          & dcpl_id=creation)
       call note(writer, status, "create '"//column%name//"'")
@@ -76,7 +83,7 @@ contains
       if (allocated(writer%fault)) return
 
       ! An array without elements has no address
-      if (column%length > 0) then
+      if (column%length > 0 .and. .not. is_filled) then
          select case (column%kind)
          case (real_column)
             call h5dwrite_f(dataset, memory_type, c_loc(column%reals), status)
@@ -145,6 +152,45 @@ contains
       call h5pset_deflate_f(creation, compression, status)
       call note(writer, status, "compress")
    end subroutine prepare_compression
+
+   !> Whether a column is nothing but one text, and long
+   pure function is_uniform(column)
+      !> The column
+      type(column_t), intent(in) :: column
+      !> Whether it is
+      logical :: is_uniform
+      integer :: i
+
+      is_uniform = column%kind == text_column .and. column%length > longest_plain
+      if (.not. is_uniform) return
+      associate (width => column%width)
+         do i = 2, column%length
+            is_uniform = column%texts((i - 1)*width + 1:i*width) == column%texts(:width)
+            if (.not. is_uniform) return
+         end do
+      end associate
+   end function is_uniform
+
+   !> How to create a dataset of nothing but one text
+   subroutine prepare_text(writer, column, creation)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Text column
+      type(column_t), intent(in) :: column
+      !> Property list, to be closed; the common one is its model
+      integer(hid_t), intent(inout) :: creation
+      character(len=column%width+1, kind=c_char), target :: text
+      type(c_ptr), target :: place
+      integer :: status
+
+      call h5pcopy_f(writer%dataset_creation, creation, status)
+      call note(writer, status, "make a property list")
+      text = column%texts(:column%width)
+      text(len_trim(text)+1:len_trim(text)+1) = c_null_char
+      place = c_loc(text)
+      call h5pset_fill_value_f(creation, writer%text_type, c_loc(place), status)
+      call note(writer, status, "set a fill value")
+   end subroutine prepare_text
 
    !> Write the values of a text column, some at a time: HDF5 wants an address for each
    subroutine write_texts(column, lengths, dataset, memory_type, status)

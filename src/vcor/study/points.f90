@@ -3,8 +3,10 @@ module vcor_study_points
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_impact_trajectory, only : contact_lasting, contact_sticking
+   use vcor_study_aside, only : aside_t
    use vcor_study_failures, only : failures_t
    use vcor_study_monitor, only : monitor_t
+   use vcor_study_mpi, only : rank_count
    use vcor_study_partition, only : new_todo, part_t, todo_t
    use vcor_study_quantity, only : point_failed, point_invalid, point_pending
    use vcor_study_summary, only : new_summary, numbers_per_point, summary_t
@@ -15,6 +17,27 @@ module vcor_study_points
 
    public :: solve_part
 
+   !> Outcomes that the first rank has to keep
+   type, extends(aside_t) :: keeping_t
+      !> First place
+      integer :: first = 0
+      !> Last place
+      integer :: last = 0
+      !> Outcomes of these places as `solve` made them, shape (n); not allocated: there are none
+      real(wp), allocatable :: result(:)
+      !> Where they are kept, all places of the part
+      type(summary_t), pointer :: summary => null()
+      !> What has no result and why
+      type(failures_t), pointer :: failures => null()
+      !> Who watches
+      class(monitor_t), pointer :: monitor => null()
+      !> What ends the sweep
+      type(error_t), allocatable :: error
+   contains
+      !> Keep them
+      procedure :: run
+   end type keeping_t
+
    !> Points as a task
    type, extends(task_t) :: points_t
       !> The sweep
@@ -23,12 +46,11 @@ module vcor_study_points
       type(part_t) :: part
       !> Threads of this rank
       integer :: threads = 1
-      !> Outcomes of all places of the part, on the first rank
-      type(summary_t), pointer :: summary => null()
-      !> What has no result and why, on the first rank
-      type(failures_t), pointer :: failures => null()
-      !> Who watches
-      class(monitor_t), pointer :: monitor => null()
+      !> What is to be kept, on the first rank
+      type(keeping_t) :: keeping
+      !> Whether a thread keeps outcomes while others solve the next ones: where there are threads,
+      !> and no other ranks that wait for this one
+      logical :: overlaps = .false.
    contains
       !> Solve places
       procedure :: solve
@@ -72,9 +94,10 @@ contains
       task%threads = threads
       task%least = 2*threads
       if (threads == 1) task%least = 1
-      task%summary => summary
-      task%failures => failures
-      task%monitor => monitor
+      task%overlaps = threads > 1 .and. rank_count() == 1
+      task%keeping%summary => summary
+      task%keeping%failures => failures
+      task%keeping%monitor => monitor
       if (allocated(summary%status)) then
          do i = 1, size(summary%status)
             if (any(summary%status(i) == [contact_lasting, contact_sticking])) &
@@ -84,6 +107,10 @@ contains
             .or. summary%status == point_invalid .or. summary%status == point_failed))
       end if
       call work_together(task, todo, stopped, error)
+      if (.not. allocated(error)) then
+         call task%keeping%run()
+         call move_alloc(task%keeping%error, error)
+      end if
       call failures%sort()
    end subroutine solve_part
 
@@ -107,7 +134,14 @@ contains
       n = last - first + 1
       call new_summary(summary, n, error, before=first - 1)
       if (allocated(error)) return
-      call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part)
+      if (self%overlaps) then
+         call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part, &
+            self%keeping)
+         call move_alloc(self%keeping%error, error)
+         if (allocated(error)) return
+      else
+         call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part)
+      end if
       associate (reasons => failures%pack())
          allocate (result(n*numbers_per_point + size(reasons)))
          result(n*numbers_per_point + 1:) = reasons
@@ -125,7 +159,7 @@ contains
       end subroutine pack_into
    end subroutine solve
 
-   !> Take the outcomes of places
+   !> Take the outcomes of places; with threads they are kept along with the next ones at work
    subroutine take(self, first, last, result, error)
       !> The points
       class(points_t), intent(inout) :: self
@@ -138,12 +172,27 @@ contains
       !> What ends the sweep; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      self%keeping%first = first
+      self%keeping%last = last
+      self%keeping%result = result
+      if (self%overlaps) return
+      call self%keeping%run()
+      call move_alloc(self%keeping%error, error)
+   end subroutine take
+
+   !> Keep outcomes
+   subroutine run(self)
+      !> The outcomes; none afterwards
+      class(keeping_t), intent(inout) :: self
+
       integer :: n
 
-      n = last - first + 1
-      call unpack_from(result)
-      call self%failures%add_packed(result(n*numbers_per_point + 1:))
-      call self%monitor%finished(first, last, self%summary, error)
+      if (.not. allocated(self%result)) return
+      n = self%last - self%first + 1
+      call unpack_from(self%result)
+      call self%failures%add_packed(self%result(n*numbers_per_point + 1:))
+      call self%monitor%finished(self%first, self%last, self%summary, self%error)
+      deallocate (self%result)
 
    contains
 
@@ -152,9 +201,9 @@ contains
          !> Numbers, by point and quantity
          real(wp), intent(in) :: numbers(n, numbers_per_point)
 
-         call self%summary%unpack(first, numbers)
+         call self%summary%unpack(self%first, numbers)
       end subroutine unpack_from
-   end subroutine take
+   end subroutine run
 
    !> Whether to stop
    function stop_code(self) result(code)
@@ -163,7 +212,7 @@ contains
       !> 0 to go on
       integer :: code
 
-      code = self%monitor%stop_code()
+      code = self%keeping%monitor%stop_code()
    end function stop_code
 
 end module vcor_study_points

@@ -17,6 +17,7 @@ module vcor_study_sweep
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver, only : check_settings, new_solver, solver_settings_t, solver_t
+   use vcor_study_aside, only : aside_t
    use vcor_study_axes, only : new_grid
    use vcor_study_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
    use vcor_study_build, only : locate
@@ -34,8 +35,9 @@ module vcor_study_sweep
    public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points, &
       lacking
 
-   !> Most points that a thread takes at a time
-   integer, parameter :: longest_chunk = 64
+   !> Most points that a thread takes at a time: a line of the cache has eight numbers, and what a
+   !> thread waits for another at the end is half of them on average
+   integer, parameter :: longest_chunk = 16
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t
@@ -233,7 +235,7 @@ contains
    end subroutine prepare_solver
 
    !> Solve points of a sweep, by several threads
-   subroutine solve_points(self, first, last, threads, summary, failures, part)
+   subroutine solve_points(self, first, last, threads, summary, failures, part, aside)
       !> The sweep
       type(sweep_t), intent(in) :: self
       !> First point; with `part`, first place in it
@@ -248,6 +250,8 @@ contains
       type(failures_t), intent(inout) :: failures
       !> Part of the sweep; all of it where there is none
       type(part_t), intent(in), optional :: part
+      !> What one of the threads does first
+      class(aside_t), intent(inout), optional :: aside
 
       type(part_t) :: places
       integer :: team
@@ -255,8 +259,11 @@ contains
       places = new_part(self%grid%count(), 1, 1)
       if (present(part)) places = part
       team = max(1, min(threads, last - first + 1))
-!$omp parallel default(none) shared(self, places, first, last, team, summary, failures) &
+!$omp parallel default(none) shared(self, places, first, last, team, summary, failures, aside) &
 !$omp num_threads(team)
+!$omp single
+      if (present(aside)) call aside%run()
+!$omp end single nowait
       call work_off(self, places, first, last, team, summary, failures)
 !$omp end parallel
       call failures%sort()

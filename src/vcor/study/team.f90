@@ -76,11 +76,11 @@ module vcor_study_team
    end interface
 
    !> Time that a chunk should take [s]: of a rank alone
-   real(wp), parameter :: time_alone = 0.1_wp
+   real(wp), parameter :: time_alone = 0.05_wp
    !> Of the first rank, which others wait for [s]
    real(wp), parameter :: time_first = 0.02_wp
    !> Of the others, per rank [s] and at least
-   real(wp), parameter :: time_others = 0.1_wp, time_per_rank = 0.003_wp
+   real(wp), parameter :: time_others = 0.2_wp, time_per_rank = 0.003_wp
    !> How much longer than the one before a chunk may be
    integer, parameter :: growth = 4
    !> Chunks that a rank has in hand
