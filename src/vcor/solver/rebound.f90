@@ -204,20 +204,23 @@ contains
          real(wp), parameter :: expected = 1.0_wp, first_rate = -1.2_wp
          ! first panel over that where the kernel relaxes within it and where it does not, at the
          ! usual accuracy, and its power of the accuracy
-         real(wp), parameter :: rough_first = 0.36_wp, short_first = 0.42_wp, &
+         real(wp), parameter :: rough_first = 0.36_wp, short_first = 0.50_wp, &
             long_first = 0.58_wp, fast = 3.0_wp, growth_of_first = 0.12_wp
          ! last panel over that, and its power: of a continuous spectrum, in contact or plate, the
          ! collocation of a panel does not resolve the modes that settle next to its end
-         real(wp), parameter :: smooth_end = 0.48_wp, growth_of_smooth = 0.12_wp
+         real(wp), parameter :: fast_end = 0.54_wp, smooth_end = 0.48_wp, growth_of_smooth = 0.12_wp
          real(wp), parameter :: half_rough_end = 0.27_wp
          real(wp), parameter :: rough_end = 0.1_wp, growth_of_rough = 0.3_wp
+         logical :: relaxes
 
          rate = first_rate
          bend = 0.0_wp
          rest = expected*approach%end
-         length = merge(short_first, long_first, any(modes%contact%rates*approach%end > fast)) &
-            *approach%end*(accuracy/usual)**growth_of_first
-         end_length = smooth_end*approach%end*(accuracy/usual)**growth_of_smooth
+         relaxes = any(modes%contact%rates*approach%end > fast)
+         length = merge(short_first, long_first, relaxes)*approach%end &
+            *(accuracy/usual)**growth_of_first
+         end_length = merge(fast_end, smooth_end, relaxes)*approach%end &
+            *(accuracy/usual)**growth_of_smooth
          if (modes%contact%error > 0.0_wp) &
             end_length = half_rough_end*approach%end*(accuracy/usual)**growth_of_smooth
          if (modes%contact%error > 0.0_wp .and. impact%plate%hereditary()) then
