@@ -19,7 +19,7 @@ module vcor_solver_general_panel
    use vcor_numeric_pairs, only : constant, ratio, times
    use vcor_solver_modes, only : modes_t, resolve, resolve_contact, start_t
    use vcor_solver_newton, only : most_iterations, newton_t
-   use vcor_solver_panel, only : panel_t
+   use vcor_solver_panel, only : begin_panel, panel_t
    implicit none
    private
 
@@ -50,27 +50,25 @@ contains
       real(wp), intent(in) :: tolerance
 
       real(wp), dimension(width) :: lambda, stiffness, memory
-      real(wp), dimension(width) :: s, u, time, elapsed, alpha, alpha_rate, right, change, force, b
+      real(wp), dimension(width) :: s, u, elapsed, alpha, alpha_rate, right, change, force, b
       real(wp), dimension(width) :: impulse, drift, share, past
-      real(wp), dimension(width, width) :: h, response, s_matrix, slope, jacobian, plate
+      real(wp), dimension(width, width) :: h, response, s_matrix, slope, plate, inverse
       real(wp) :: lag(width, width, size(modes%contact%rates))
       integer :: n, iteration, j, k
       type(newton_t) :: newton
-      real(wp) :: inverse(width, width)
       logical :: frozen, remembers
 
       n = rule%stages
       frozen = impact%plate%frozen()
       remembers = size(start%p) > 0
-      panel%stages = n
-      panel%map = scale*[map%slope, map%bend]
-      elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
-      time = start%time + elapsed
+      s = 0.0_wp
+      s(1:n) = panel%indentation(1:n)
+      call begin_panel(rule, map, scale, start, panel, elapsed)
       alpha = 0.0_wp
-      alpha(1:n) = impact%plate%alpha(time(1:n))
+      call impact%plate%alpha_at(panel%time(1:n), alpha(1:n))
       if (remembers) alpha(1:n) = modes%plate%viscosity
       alpha_rate = 0.0_wp
-      if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(time(1:n))
+      if (frozen) alpha_rate(1:n) = impact%plate%alpha_rate(panel%time(1:n))
 
       h = scale*map%matrix
       lambda = scale*map%eigenvalue
@@ -86,7 +84,8 @@ contains
       end if
 
       ! s = right - response F
-      right = impact%velocity*time - (start%second_impulse + start%impulse*elapsed)/impact%mass
+      right = impact%velocity*panel%time(1:) &
+         - (start%second_impulse + start%impulse*elapsed)/impact%mass
       response = matmul(h, h)
       if (frozen) then
          right = right - start%deflection + start%drift*elapsed
@@ -108,8 +107,6 @@ contains
          end if
       end if
 
-      s = 0.0_wp
-      s(1:n) = panel%indentation(1:n)
       right(n + 1:) = 0.0_wp
       do iteration = 1, most_iterations
          u = hertz(s)
@@ -118,12 +115,11 @@ contains
          call add_second_term(modes%contact, coefficient, u, start%q, lag, force, slope)
          change = right - s - matmul(response, force)
          if (newton%stale) then
-            jacobian = matmul(response, slope)
+            inverse = matmul(response, slope)
             do j = 1, width
-               jacobian(:, j) = jacobian(:, j)*1.5_wp*sqrt(abs(s(j)))
-               jacobian(j, j) = jacobian(j, j) + 1.0_wp
+               inverse(:, j) = inverse(:, j)*1.5_wp*sqrt(abs(s(j)))
+               inverse(j, j) = inverse(j, j) + 1.0_wp
             end do
-            inverse = jacobian
          end if
          call newton%correct(inverse, change, s, tolerance)
          if (newton%converged .or. newton%failed) exit
@@ -138,19 +134,11 @@ contains
       impulse = start%impulse + matmul(h, force)
       drift = start%drift + matmul(h, alpha_rate*force)
       if (remembers) drift = -past - apply(plate, force)
-      panel%time(0) = start%time
-      panel%time(1:) = time
-      panel%indentation(0) = start%indentation
       panel%indentation(1:) = s
-      panel%force(0) = start%force
       panel%force(1:) = force
-      panel%impulse(0) = start%impulse
       panel%impulse(1:) = impulse
-      panel%second_impulse(0) = start%second_impulse
       panel%second_impulse(1:) = start%second_impulse + matmul(h, impulse)
-      panel%drift(0) = start%drift
       panel%drift(1:) = drift
-      panel%deflection(0) = start%deflection
       if (remembers) then
          panel%deflection(1:) = start%deflection - matmul(h, drift)
       else

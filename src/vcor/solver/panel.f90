@@ -23,7 +23,7 @@ module vcor_solver_panel
    private
 
    public :: panel_t
-   public :: solve_panel, solve_near_panel, improve_panel, move_to_end
+   public :: begin_panel, solve_panel, solve_near_panel, improve_panel, move_to_end
 
    !> Solution on a panel; index 0 is its start
    type :: panel_t
@@ -96,6 +96,34 @@ contains
          + sqrt(max(self%map(1)**2 + 4.0_wp*self%map(2)*theta, 0.0_wp)))
    end function theta
 
+   !> Set what is known of a panel before it is solved: its times, and all values at its start
+   pure subroutine begin_panel(rule, map, scale, start, panel, elapsed)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> State at the start
+      class(start_t), intent(in) :: start
+      !> The panel
+      class(panel_t), intent(inout) :: panel
+      !> Times of the stages since the start [s]
+      real(wp), intent(out) :: elapsed(width)
+
+      panel%stages = rule%stages
+      panel%map = scale*[map%slope, map%bend]
+      elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
+      panel%time(0) = start%time
+      panel%time(1:) = start%time + elapsed
+      panel%indentation(0) = start%indentation
+      panel%force(0) = start%force
+      panel%impulse(0) = start%impulse
+      panel%second_impulse(0) = start%second_impulse
+      panel%deflection(0) = start%deflection
+      panel%drift(0) = start%drift
+   end subroutine begin_panel
+
    !> Set up the equations of a panel
    pure subroutine set_up(equations, rule, map, scale, impact, modes, start, panel)
       !> The equations
@@ -119,19 +147,11 @@ contains
       integer :: n
 
       n = rule%stages
-      panel%stages = n
-      panel%map = scale*[map%slope, map%bend]
-      elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
-      panel%time(0) = start%time
-      panel%time(1:) = start%time + elapsed
+      call begin_panel(rule, map, scale, start, panel, elapsed)
       panel%alpha(1:) = 0.0_wp
       call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
       ! what settles at once in a hereditary plate counts as alpha
       if (size(start%p) > 0) panel%alpha(1:n) = modes%plate%viscosity
-      panel%indentation(0) = start%indentation
-      panel%force(0) = start%force
-      panel%impulse(0) = start%impulse
-      panel%second_impulse(0) = start%second_impulse
 
       inverse_mass = 1.0_wp/impact%mass
       associate (e => equations)
@@ -148,8 +168,6 @@ contains
          e%remembers = size(start%p) > 0
          if (e%remembers) then
             ! U has V with V' = R H F + c beside alpha I
-            panel%deflection(0) = start%deflection
-            panel%drift(0) = start%drift
             call resolve(modes%plate, start%p, map, e%lambda, e%plate, e%past)
             yield = times(map%square, e%lambda, e%plate)
             e%inertial = e%inertial + times(map%square, yield, e%impulsive)

@@ -20,7 +20,7 @@ module vcor_solver_rebound_equations
    use vcor_numeric_linear, only : apply
    use vcor_numeric_pairs, only : constant, times
    use vcor_solver_modes, only : modes_t, resolve, start_t
-   use vcor_solver_panel, only : panel_t
+   use vcor_solver_panel, only : begin_panel, panel_t
    implicit none
    private
 
@@ -106,17 +106,7 @@ contains
       integer :: n, i
 
       n = rule%stages
-      panel%stages = n
-      panel%map = scale*[map%slope, map%bend]
-      elapsed = rule%node*(panel%map(1) + panel%map(2)*rule%node)
-      panel%time(0) = start%time
-      panel%time(1:) = start%time + elapsed
-      panel%indentation(0) = start%indentation
-      panel%force(0) = start%force
-      panel%impulse(0) = start%impulse
-      panel%second_impulse(0) = start%second_impulse
-      panel%deflection(0) = start%deflection
-      panel%drift(0) = start%drift
+      call begin_panel(rule, map, scale, start, panel, elapsed)
       panel%condition(0) = start%condition
       panel%t1(0) = start%t1
 
