@@ -36,7 +36,7 @@ NAMES = [
 ALL = ",".join(NAMES)
 
 # Seconds after which a run counts as one that does not end
-LIMIT = 30
+LIMIT = 100
 
 
 def program():

@@ -64,7 +64,7 @@ def test_kill_at_random(long):
         process.kill()
         process.communicate()
         if part.exists():
-            now, _ = done_in(part)
+            now, _ = done_in(part, killed=True)
             assert now >= done
             done = now
     for path in (long.folder / "out").glob("vcor-*.tmp"):

@@ -190,7 +190,10 @@ contains
       if (.not. allocated(self%result)) return
       n = self%last - self%first + 1
       call unpack_from(self%result)
+      ! other threads may be noting theirs: one at a time, see vcor_study_sweep
+!$omp critical (vcor_failures)
       call self%failures%add_packed(self%result(n*numbers_per_point + 1:))
+!$omp end critical (vcor_failures)
       call self%monitor%finished(self%first, self%last, self%summary, self%error)
       deallocate (self%result)
 
