@@ -361,6 +361,8 @@ contains
       real(wp), parameter :: dependent = 1.0e-13_wp
       ! first sample over the time of the fastest term; share of the window with full weight
       real(wp), parameter :: earliest = 0.3_wp, full_weight = 0.03_wp, checked = 0.01_wp
+      ! shares of the window at which the integral is checked
+      real(wp), parameter :: early(4) = [3.0e-3_wp, 1.0e-3_wp, 3.0e-4_wp, 1.0e-4_wp]
       ! LAPACK's blocks of 64 columns need no more than this
       integer, parameter :: terms_of_grid = 2 + int(log(fastest/slowest)/spacing)
       integer, parameter :: samples = 4*terms_of_grid, work_length = 70*terms_of_grid
@@ -407,6 +409,12 @@ contains
          - sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*(checked*window))))
       terms%moduli = [terms%moduli, 1.0e3_wp*lacking*terms%rates(terms_of_grid - 1)]
       terms%rates = [terms%rates, 1.0e3_wp*terms%rates(terms_of_grid - 1)]
+      ! what the impulse feels of the early error
+      do i = 1, size(early)
+         lacking = self%integral(early(i)*window) - terms%equilibrium*(early(i)*window) &
+            - sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*(early(i)*window))))
+         terms%error = max(terms%error, abs(lacking)/self%integral(checked*window))
+      end do
    end subroutine fit_pair
 
 end module vcor_impact_contact

@@ -22,6 +22,10 @@ module vcor_impact_plate
    !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a viscoelastic plate
    integer, parameter :: waves_hereditary = 4
 
+   !> Modulus that counts as one [Pa]: what has decayed to nothing is kept off zero, so far that
+   !> products with alpha and its rate are numbers; the plate then gives way at once
+   real(wp), parameter :: least = 1.0e-60_wp
+
    !> Deflection U of the plate's mid-plane under the impulse I of the contact force
    type :: plate_t
       private
@@ -107,8 +111,7 @@ contains
       real(wp) :: value
 
       if (allocated(self%material)) then
-         ! a modulus that has decayed to nothing is kept off zero: the plate then gives way at once
-         value = self%coefficient/sqrt(max(self%material%relaxation(t), tiny(1.0_wp)))
+         value = self%coefficient/sqrt(max(self%material%relaxation(t), least))
       else
          value = self%initial
       end if
@@ -128,7 +131,7 @@ contains
       if (allocated(self%material)) then
          call self%material%relaxation_at(t, value)
          do j = 1, size(t)
-            value(j) = self%coefficient/sqrt(max(value(j), tiny(1.0_wp)))
+            value(j) = self%coefficient/sqrt(max(value(j), least))
          end do
       else
          value = self%initial
@@ -228,7 +231,7 @@ contains
       real(wp) :: inverse
 
       if (allocated(self%material)) then
-         inverse = 1.0_wp/max(self%material%relaxation(t), tiny(1.0_wp))
+         inverse = 1.0_wp/max(self%material%relaxation(t), least)
          alpha = self%coefficient*sqrt(inverse)
          rate = -0.5_wp*alpha*self%material%rate(t)*inverse
       else

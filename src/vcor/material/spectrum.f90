@@ -76,7 +76,9 @@ contains
 
       ! beyond all rates that can be computed with
       real(wp), parameter :: farthest = 650.0_wp, fewest_digits = 1.0e-2_wp
-      real(wp) :: h, x, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift
+      ! what the last node adds to the dashpot, over the dashpot and the accuracy
+      real(wp), parameter :: negligible = 1.0e-3_wp
+      real(wp) :: h, x, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
@@ -106,6 +108,7 @@ contains
       allocate (rates(last - first + 1), moduli(last - first + 1))
       terms%equilibrium = material%rubbery()
       n = 0
+      tail = 0.0_wp
       do j = first, last
          x = real(j, wp)*h
          y = x - exp(turn_low - x) + exp(x - turn_high)
@@ -121,7 +124,8 @@ contains
          if (rate*window < constant) then
             terms%equilibrium = terms%equilibrium + modulus
          else if (rate*window > 1.0_wp/constant) then
-            terms%viscosity = terms%viscosity + modulus/rate
+            tail = modulus/rate
+            terms%viscosity = terms%viscosity + tail
          else
             n = n + 1
             rates(n) = rate
@@ -130,7 +134,23 @@ contains
       end do
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
+      ! an exponent next to 1 has a part of its dashpot beyond all rates: the integral tells it
+      if (tail > negligible*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
+         + (material%integral(window) - integral_of(terms, window))
    end subroutine rule_for_spectrum
+
+   !> Integral of a sum from 0 to t
+   pure function integral_of(terms, t) result(value)
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Upper limit [s], > 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      value = terms%viscosity + terms%equilibrium*t &
+         + sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*t)))
+   end function integral_of
 
    !> Sum of exponentials for a material whose spectrum has its features where it pleases: refined
    !> until the modulus and its integral are met. Where that does not happen the best sum is
@@ -163,8 +183,7 @@ contains
          sum_now%error = largest_error(material, window, sum_now)
          do i = 1, size(part)
             expected = material%integral(part(i)*window)
-            found = sum_now%viscosity + sum_now%equilibrium*part(i)*window + sum(sum_now%moduli &
-               /sum_now%rates*(1.0_wp - exp(-sum_now%rates*(part(i)*window))))
+            found = integral_of(sum_now, part(i)*window)
             sum_now%error = max(sum_now%error, share_of_integral*abs(found/expected - 1.0_wp))
          end do
          if (sum_now%error < terms%error) terms = sum_now

@@ -185,7 +185,7 @@ contains
          panel(i) = active
          associate (stretch => self%stretch(panel(i)))
             offset = max(t1(i), 0.0_wp) - stretch%start
-            theta(i) = 2.0_wp*offset/(stretch%map(1) &
+            theta(i) = 2.0_wp*offset/max(tiny(1.0_wp), stretch%map(1) &
                + sqrt(stretch%map(1)**2 + 4.0_wp*stretch%map(2)*offset))
          end associate
       end do
@@ -196,7 +196,8 @@ contains
       rate = 0.0_wp
 
       do i = 1, stages
-         elapsed = t(i) - max(t1(i), 0.0_wp)
+         ! an iteration on its way may be anywhere
+         elapsed = max(t(i) - max(t1(i), 0.0_wp), 0.0_wp)
          do active = size(self%w), 1, -1
             if (self%rates(active)*elapsed <= nothing) exit
          end do

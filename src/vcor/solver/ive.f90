@@ -51,6 +51,10 @@ module vcor_solver_ive
    !> First step over the usual one where the contact recedes and the kernel does not relax within
    !> it: two panels make the approach
    real(wp), parameter :: receding_reach = 1.1_wp
+   !> Relative error of a sum of exponentials that makes it none
+   real(wp), parameter :: no_sum = 1.0_wp
+   !> Loosest accuracy that a receding contact is solved to
+   real(wp), parameter :: loosest_receding = 1.0e-6_wp
    !> What the rebound feels of the difference of the two solutions between the ends of the panels,
    !> measured
    real(wp), parameter :: share_of_inner = 5.0e-3_wp
@@ -120,6 +124,11 @@ contains
       window = margin*hertz_contact_time*time_scale
       do
          call impact%kernel_exponentials(window, share*self%accuracy, modes%contact)
+         if (.not. modes%contact%error < no_sum) then
+            call raise(error, error_numerical, 'no sum of exponentials stands for the kernel of ' &
+               //"this contact: use method = 'direct'")
+            return
+         end if
          if (impact%plate%hereditary()) then
             call impact%plate%memory_exponentials(window, plate_share*share*self%accuracy, &
                modes%plate)
@@ -204,6 +213,8 @@ contains
       start%p = 0.0_wp
       coarse_start = start
       recedes = impact%law == law_receding
+      ! the rebound reads the approach between the nodes
+      if (recedes) accuracy = min(accuracy, loosest_receding)
       inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth

@@ -62,6 +62,8 @@ contains
       ! reduce it: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
+      ! panels in which t1 grows, each half of the one before, that make it a fact
+      integer, parameter :: enough_growths = 5
       ! what Newton's method may leave, over that in the indentation of a companion
       real(wp), parameter :: share_of_tolerance = 3.0_wp
       ! relative error of the contact time that is rounding
@@ -80,7 +82,7 @@ contains
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end
       real(wp) :: end_found, error_now, error_sum, alpha_rate, tolerance
-      integer :: trial, n, kind, closings
+      integer :: trial, n, kind, closings, growths
       logical :: ends, last, inherited
 
       n = collocator%rule%stages
@@ -88,6 +90,7 @@ contains
       refused = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
+      growths = 0
       end_found = 0.0_wp
       kind = linear
       if (modes%contact%error > 0.0_wp .or. modes%contact%viscosity > 0.0_wp) kind = 0
@@ -166,11 +169,19 @@ contains
          refused = huge(1.0_wp)
          if (any(panel%t1(1:n) - panel%t1(0:n - 1) > noticeable*approach%end &
              + growing*(panel%time(1:n) - panel%time(0:n - 1)))) then
+            ! a shorter panel knows more of what is inside
+            growths = growths + 1
+            if (growths <= enough_growths) then
+               length = 0.5_wp*taken
+               end_length = min(end_length, length)
+               cycle
+            end if
             call raise(error, error_numerical, "the contact grows again before it has ended, " &
                //"which law = 'receding' does not cover: use law = 'boltzmann'")
             return
          end if
 
+         growths = 0
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
          call record(collocator%rule, impact, panel%panel_t, trajectory)

@@ -147,17 +147,15 @@ contains
          other = j + merge(1, -1, slope > 0.0_wp)
          if (other >= 0 .and. other <= n .and. abs(slope) > flat*value(j)) then
             call find_peak(self%rule%slopes(value), min(j, other), of_indentation, peak, peak_time)
-            if (peak > largest) then
-               largest = peak
-               time = peak_time
-            end if
+         else
+            peak = value(j)
+            peak_time = panel%time(j)
          end if
-         do j = 1, n
-            if (value(j) > largest) then
-               largest = value(j)
-               time = panel%time(j)
-            end if
-         end do
+         ! where the values rose up to the start of the panel, the start is no maximum
+         if (peak > largest .or. value(0) >= largest) then
+            largest = peak
+            time = peak_time
+         end if
       end subroutine look_for_peak
 
       !> Maximum inside the panel, by improving the panel up to there: the polynomials of the panel
