@@ -143,6 +143,14 @@ contains
          call check_relative(integral(terms, 1.0e-3_wp), material%integral(1.0e-3_wp), &
             1.0e-9_wp + 10.0_wp*epsilon(1.0_wp)/distance(i), "its integral")
       end do
+
+      ! a power law has half of its integral beyond any rate
+      do i = 1, 3
+         call make("power_law", 1.0_wp - distance(i), material)
+         call material%exponentials(1.0e-3_wp, 1.0e-10_wp, terms)
+         call check_relative(integral(terms, 1.0e-5_wp), material%integral(1.0e-5_wp), 1.0e-8_wp, &
+            "the integral of a power law next to a dashpot")
+      end do
    end subroutine test_near_one
 
    !> Impact of a steel sphere on a half space

@@ -71,7 +71,8 @@ contains
       type(prony_t) :: rubber
       type(impact_t) :: impact
       type(outcome_t) :: outcome
-      integer :: i
+      type(ive_t) :: loose
+      integer :: i, digits
 
       call make_rubber(rubber)
       do i = 1, size(cor)
@@ -85,6 +86,12 @@ contains
             trim(name(i))//": ive, contact time")
          call check_close(outcome%cor, cor(i), 3.0_wp*outcome%cor_error + 1.0e-10_wp, &
             trim(name(i))//": ive, the error is what it says")
+         do digits = 1, 6
+            call make_ive(10.0_wp**(-digits), loose)
+            call run(loose, impact, outcome)
+            call check_close(outcome%cor, cor(i), 10.0_wp**(-digits), &
+               trim(name(i))//": ive with few digits, cor")
+         end do
          call run(direct, impact, outcome)
          call check_close(outcome%cor, cor(i), direct_tolerance, trim(name(i))//": direct, cor")
          call check_relative(outcome%contact_time, contact_time(i), direct_tolerance, &
