@@ -278,10 +278,10 @@ def power(exponent):
 
 def figure(accuracy, comparison, modes):
     """Error over time, and time over modes."""
-    left = Axes(72, 16, 420, 380, (1e1, 1e6), (1e-13, 1e-3))
+    left = Axes(72, 16, 420, 380, (1e0, 1e6), (1e-13, 1e-2))
     left.grid(
-        [(10.0**n, power(n)) for n in range(1, 7)],
-        [(10.0**n, power(n)) for n in range(-13, -2)],
+        [(10.0**n, power(n)) for n in range(0, 7)],
+        [(10.0**n, power(n)) for n in range(-13, -1)],
         "time per impact, µs",
         "error of the COR, absolute",
     )
@@ -307,10 +307,10 @@ def figure(accuracy, comparison, modes):
                 COLOURS[row["problem"]],
             )
 
-    right = Axes(570, 16, 220, 380, (0.9, 300.0), (1e1, 1e3))
+    right = Axes(570, 16, 220, 380, (0.9, 300.0), (1e0, 1e3))
     right.grid(
         [(2.0**n, str(2**n)) for n in range(0, 9, 2)],
-        [(10.0**n, power(n)) for n in range(1, 4)],
+        [(10.0**n, power(n)) for n in range(0, 4)],
         "terms of the Prony series",
         "time per impact, µs",
     )
