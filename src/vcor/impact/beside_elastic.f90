@@ -20,7 +20,7 @@ module vcor_impact_beside_elastic
 
    public :: sum_beside_elastic
 
-   !> Most exponentials: an impact takes 2 us for each, a fit of a hundred takes 6 ms
+   !> Most exponentials: an impact takes 1 us for each, a fit of a hundred takes 6 ms
    integer, parameter :: most = 400
 
 contains

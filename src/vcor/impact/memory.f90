@@ -208,8 +208,7 @@ contains
          ! the rule for gaps converges geometrically: one time tells
          if (self%material%discrete .and. i > 1) exit
          expected = self%viscosity + self%integral(part(i)*window)
-         found = terms%viscosity + sum(terms%moduli/terms%rates &
-            *(1.0_wp - exp(-terms%rates*(part(i)*window))))
+         found = terms%integral(part(i)*window)
          error = max(error, abs(found/expected - 1.0_wp))
       end do
    end function error_of

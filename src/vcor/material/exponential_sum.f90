@@ -23,6 +23,8 @@ module vcor_material_exponential_sum
    contains
       !> The same sum times a factor
       procedure :: scaled
+      !> Its integral from 0 to t, dashpot included
+      procedure :: integral
    end type exponential_sum_t
 
 contains
@@ -43,5 +45,18 @@ contains
       product%viscosity = factor*self%viscosity
       product%error = self%error
    end function scaled
+
+   !> Integral from 0 to t, dashpot included
+   pure function integral(self, t) result(value)
+      !> The sum
+      class(exponential_sum_t), intent(in) :: self
+      !> Upper limit [s], >= 0
+      real(wp), intent(in) :: t
+      !> Integral [Pa s]
+      real(wp) :: value
+
+      value = self%viscosity + self%equilibrium*t &
+         + sum(self%moduli/self%rates*(1.0_wp - exp(-self%rates*t)))
+   end function integral
 
 end module vcor_material_exponential_sum

@@ -136,21 +136,8 @@ contains
       allocate (terms%rates, source=rates(:n))
       ! an exponent next to 1 has a part of its dashpot beyond all rates: the integral tells it
       if (tail > negligible*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
-         + (material%integral(window) - integral_of(terms, window))
+         + (material%integral(window) - terms%integral(window))
    end subroutine rule_for_spectrum
-
-   !> Integral of a sum from 0 to t
-   pure function integral_of(terms, t) result(value)
-      !> The sum
-      type(exponential_sum_t), intent(in) :: terms
-      !> Upper limit [s], > 0
-      real(wp), intent(in) :: t
-      !> Integral [Pa s]
-      real(wp) :: value
-
-      value = terms%viscosity + terms%equilibrium*t &
-         + sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*t)))
-   end function integral_of
 
    !> Sum of exponentials for a material whose spectrum has its features where it pleases: refined
    !> until the modulus and its integral are met. Where that does not happen the best sum is
@@ -183,7 +170,7 @@ contains
          sum_now%error = largest_error(material, window, sum_now)
          do i = 1, size(part)
             expected = material%integral(part(i)*window)
-            found = integral_of(sum_now, part(i)*window)
+            found = sum_now%integral(part(i)*window)
             sum_now%error = max(sum_now%error, share_of_integral*abs(found/expected - 1.0_wp))
          end do
          if (sum_now%error < terms%error) terms = sum_now

@@ -200,8 +200,7 @@ contains
       type(panel_t) :: guessed
       real(wp) :: inverse(width, width)
 
-      ! the force of a dashpot is a derivative, with all of the error that integrals leave out
-      if (.not. (is_general(self, impact) .or. modes%contact%viscosity > 0.0_wp)) then
+      if (.not. is_general(self, impact)) then
          guessed = panel
          call improve_panel(self%rule, self%rule%map(step%index), step%map_scale(), impact, &
             modes, start, tolerance, panel)
