@@ -78,7 +78,8 @@ contains
       real(wp), parameter :: farthest = 650.0_wp, fewest_digits = 1.0e-2_wp
       ! what the last node adds to the dashpot, over the dashpot and the accuracy
       real(wp), parameter :: negligible = 1.0e-3_wp
-      real(wp) :: h, x, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
+      real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
+      real(wp) :: ratio, run_low, run_high
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
@@ -109,10 +110,14 @@ contains
       terms%equilibrium = material%rubbery()
       n = 0
       tail = 0.0_wp
+      ratio = exp(h)
+      run_low = exp(turn_low - real(first - 1, wp)*h)
+      run_high = exp(real(first - 1, wp)*h - turn_high)
       do j = first, last
-         x = real(j, wp)*h
-         y = x - exp(turn_low - x) + exp(x - turn_high)
-         slope = 1.0_wp + exp(turn_low - x) + exp(x - turn_high)
+         run_low = run_low/ratio
+         run_high = run_high*ratio
+         y = real(j, wp)*h - run_low + run_high
+         slope = 1.0_wp + run_low + run_high
          if (abs(y) > farthest) cycle
          if (c > 0.0_wp) then
             w = spread_over_peak((y - y_p)/d, c/d)
@@ -211,18 +216,24 @@ contains
       !> Error
       real(wp) :: error
 
-      real(wp), parameter :: part(5) = [1.0_wp, 0.7_wp, 0.5_wp, 0.35_wp, 0.25_wp]
-      real(wp) :: value, expected
+      ! the window in parts of equal length: one exponential tells a term at the ends of them all
+      integer, parameter :: parts = 5
+      real(wp) :: value(parts), decay, term
       integer :: i, k
 
-      error = 0.0_wp
-      do i = 1, size(part)
-         expected = material%relaxation(part(i)*window)
-         value = terms%equilibrium
-         do k = 1, size(terms%rates)
-            value = value + terms%moduli(k)*exp(-terms%rates(k)*(part(i)*window))
+      value = terms%equilibrium
+      do k = 1, size(terms%rates)
+         decay = exp(-terms%rates(k)*(window/real(parts, wp)))
+         term = terms%moduli(k)
+         do i = 1, parts
+            term = term*decay
+            value(i) = value(i) + term
          end do
-         error = max(error, abs(value/expected - 1.0_wp))
+      end do
+      error = 0.0_wp
+      do i = 1, parts
+         error = max(error, abs(value(i)/material%relaxation(real(i, wp)/real(parts, wp)*window) &
+            - 1.0_wp))
       end do
    end function largest_error
 
