@@ -18,6 +18,7 @@ module vcor_solver_ive
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : collocation_t, linear, width
    use vcor_numeric_linear, only : apply
    use vcor_solver_approach, only : approach_t
@@ -40,11 +41,11 @@ module vcor_solver_ive
    !> Share of the wanted accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 1.2_wp
 
-   !> Share of the wanted accuracy that the kernel is approximated to: where that is the usual one
-   !> and better, and at most
-   real(wp), parameter :: kernel_share = 0.01_wp, usual = 1.0e-8_wp, largest_share = 0.05_wp
-   !> The same of the memory of a plate, over that: the plate takes a part of the motion only
-   real(wp), parameter :: plate_share = 10.0_wp
+   !> Share of the wanted accuracy that the kernel is approximated to, and the memory of a plate,
+   !> which takes a part of the motion only
+   real(wp), parameter :: kernel_share = 0.01_wp, plate_share = 0.1_wp
+   !> The usual accuracy, that the lengths of the steps are given for
+   real(wp), parameter :: usual = 1.0e-8_wp
    !> Error of the coefficient of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
@@ -114,24 +115,22 @@ contains
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
       type(modes_t) :: modes
-      real(wp) :: share, end_time, window, time_scale
+      real(wp) :: end_time, window, time_scale
       logical :: complete
 
-      share = min(kernel_share*max(1.0_wp, self%accuracy/usual), largest_share)
       time_scale = impact%time_scale()
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
       window = margin*hertz_contact_time*time_scale
       do
-         call impact%kernel_exponentials(window, share*self%accuracy, modes%contact)
+         call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
          if (.not. modes%contact%error < no_sum) then
             call raise(error, error_numerical, 'no sum of exponentials stands for the kernel of ' &
                //"this contact: use method = 'direct'")
             return
          end if
          if (impact%plate%hereditary()) then
-            call impact%plate%memory_exponentials(window, plate_share*share*self%accuracy, &
-               modes%plate)
+            call impact%plate%memory_exponentials(window, plate_share*self%accuracy, modes%plate)
          else if (.not. allocated(modes%plate%rates)) then
             allocate (modes%plate%moduli(0), modes%plate%rates(0))
          end if
@@ -144,13 +143,42 @@ contains
          window = growth*window
       end do
       if (trajectory%status == contact_separated) &
-         trajectory%cor_error = trajectory%cor_error &
-         + sensitivity*(modes%contact%error + modes%plate%error)
+         trajectory%cor_error = trajectory%cor_error + sensitivity &
+         *(error_felt(impact, modes%contact, window, trajectory%time_of_max_force) &
+         + modes%plate%error)
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error
       end associate
    end subroutine solve
+
+   !> Error of the kernel as an impact feels it: where heavy losses end the loading early in the
+   !> window, that of the kernel's integral up to there, if that is more
+   pure function error_felt(impact, contact, window, loading) result(error)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its kernel as a sum of exponentials
+      type(exponential_sum_t), intent(in) :: contact
+      !> Time up to which the sum holds [s]
+      real(wp), intent(in) :: window
+      !> Time of the largest force [s]
+      real(wp), intent(in) :: loading
+      !> Relative error
+      real(wp) :: error
+
+      ! the error oscillates in the logarithm of the time
+      real(wp), parameter :: early = 0.05_wp, part(2) = [1.0_wp, 1.5_wp]
+      real(wp) :: t
+      integer :: i
+
+      error = contact%error
+      if (.not. (error > 0.0_wp .and. loading < early*window)) return
+      do i = 1, size(part)
+         t = part(i)*loading
+         error = max(error, abs(contact%integral(t) &
+            /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp))
+      end do
+   end function error_felt
 
    !> Follow the contact with the kernel as a sum of exponentials
    subroutine follow(self, impact, modes, time_scale, patience, window, trajectory, &
@@ -184,10 +212,15 @@ contains
       real(wp), parameter :: tolerable = 4.0_wp
       ! first step in x over the square root of the expected contact time, where the kernel relaxes
       ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy: with
-      ! the longest one two panels make an impact
+      ! `three_panels`, which serves where nothing is halved, three make an impact, with the longest
+      ! one two
       real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, longest_step = 0.48_wp
+      real(wp), parameter :: three_panels = 0.35_wp
       real(wp), parameter :: fast = 3.0_wp
       real(wp), parameter :: short_growth = 0.025_wp, long_growth = 0.084_wp
+      ! what the two solutions differ by at the end of a panel may cancel in the next ones: of the
+      ! largest difference, that much is left as an error
+      real(wp), parameter :: share_of_growth = 0.03_wp
       ! residual indentation over the largest one that makes an end a smooth one
       real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
       type(start_t) :: start, coarse_start
@@ -197,7 +230,7 @@ contains
       type(rebound_start_t) :: rebound
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
-      real(wp) :: excess, refused, force_error, inner, velocity, fall
+      real(wp) :: excess, refused, growth, largest_growth, force_error, inner, velocity, fall
       integer :: trial, n
       logical :: ends, last, inherited, shallow, elastic, recedes, turns
 
@@ -218,6 +251,7 @@ contains
       inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth
+         if (levels(accuracy) == 0 .and. .not. recedes) step%reach = three_panels
       else if (recedes) then
          step%reach = receding_reach*long_step*(accuracy/usual)**short_growth
       else
@@ -228,6 +262,7 @@ contains
       if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
       call begin(self%collocator%rule, impact, trajectory)
       largest_force = 0.0_wp
+      largest_growth = 0.0_wp
       refused = huge(1.0_wp)
       shallow = .false.
       ! the force counts where it has its maximum, and at the end; elsewhere it is what is left of
@@ -235,7 +270,7 @@ contains
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
       ! between the two solutions; the one that counts is better by an order
-      time_tolerance = max(3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.3_wp), 1.0e-9_wp)
+      time_tolerance = max(3.0_wp*accuracy, 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time
@@ -267,9 +302,9 @@ contains
             cycle
          end if
          largest_force = max(largest_force, maxval(panel%force(1:n)))
-         excess = (growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity) &
-            + growth_of(panel%indentation, coarse%indentation)/(impact%velocity*time_scale)) &
-            /(panel_share*accuracy)
+         growth = growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity)
+         excess = (growth + growth_of(panel%indentation, coarse%indentation) &
+            /(impact%velocity*time_scale))/(panel_share*accuracy)
          if (impact%plate%drifts()) excess = excess + growth_of(panel%drift, coarse%drift) &
             /(impact%velocity*panel_share*accuracy)
          force_error = max(0.0_wp, min(growth_of(panel%force, coarse%force), &
@@ -295,10 +330,12 @@ contains
 
          refused = huge(1.0_wp)
          recorded = panel
+         largest_growth = max(largest_growth, growth)
          if (ends) then
             elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
-            trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, coarse, &
-               trajectory%steps + 1, elastic)
+            trajectory%cor_error = max(share_of_growth*largest_growth, &
+               error_of_cor(self%collocator%rule, impact, panel, coarse, trajectory%steps + 1, &
+               elastic))
             if (shallow) then
                recorded%force(n) = 0.0_wp
             else
