@@ -8,6 +8,7 @@ Standard library only. Run by make_document.sh. What is compared runs in turn, a
 so many runs counts: other programs on the machine only ever make one longer.
 """
 
+import concurrent.futures
 import csv
 import os
 import pathlib
@@ -56,15 +57,23 @@ def measure(command, threads, points, files):
         return spent, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024, *sizes
 
 
+def measure_all(programs, *arguments):
+    """So many programs at once, each with the whole sweep: the largest of each number."""
+    with concurrent.futures.ThreadPoolExecutor() as pool:
+        runs = [pool.submit(measure, *arguments) for _ in range(programs)]
+        return list(map(max, zip(*(run.result() for run in runs), strict=True)))
+
+
 def compare(variants, points, files):
-    """A row for each way to run a sweep: ranks, threads, command."""
+    """A row for each way to run a sweep: programs at once, ranks, threads, command."""
     found = [[] for _ in variants]
     for _ in range(RUNS[points]):
-        for (_, threads, command), runs in zip(variants, found, strict=True):
-            runs.append(measure(command, threads, points, files))
+        for (programs, _, threads, command), runs in zip(variants, found, strict=True):
+            runs.append(measure_all(programs, command, threads, points, files))
     rows = []
-    for (ranks, threads, _), runs in zip(variants, found, strict=True):
-        rows.append([points, files, ranks, threads, *map(min, zip(*runs, strict=True))])
+    for (programs, ranks, threads, _), runs in zip(variants, found, strict=True):
+        numbers = map(min, zip(*runs, strict=True))
+        rows.append([points, files, programs, ranks, threads, *numbers])
         print(*rows[-1], flush=True)
     return rows
 
@@ -74,16 +83,18 @@ def main():
     if len(sys.argv) not in {3, 4}:
         sys.exit("usage: sweeps.py PROGRAM FOLDER [MPI_PROGRAM]")
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    names = ["points", "files", "ranks", "threads", "seconds", "cpu", "memory", "csv", "hdf5"]
+    names = ["points", "files", "programs", "ranks", "threads"]
+    names += ["seconds", "cpu", "memory", "csv", "hdf5"]
     rows = []
     for points in RUNS:
         for files in ("none", "both"):
-            rows += compare([(0, n, [program]) for n in (1, 2)], points, files)
+            ways = [(1, 0, 1, [program]), (1, 0, 2, [program]), (2, 0, 1, [program])]
+            rows += compare(ways, points, files)
     if len(sys.argv) == 4:
         os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
         for points in (100000, 1000000):
             for files in ("none", "both"):
-                ways = [(n, 1, ["mpirun", "-n", n, sys.argv[3]]) for n in (1, 2)]
+                ways = [(1, n, 1, ["mpirun", "-n", n, sys.argv[3]]) for n in (1, 2)]
                 rows += compare(ways, points, files)
     with open(folder / "sweeps.csv", "w", newline="") as file:
         csv.writer(file).writerows([names, *rows])

@@ -1,6 +1,6 @@
 !> Both solvers: convergence, what a trajectory holds, contacts that do not end, refusals
 program test_solver
-   use vcor_error, only : error_input, error_t
+   use vcor_error, only : error_input, error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
@@ -16,7 +16,8 @@ program test_solver
    use vcor_solver_product, only : product_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
-   use vcor_test_cases, only : make_ive, make_product, rigid_on_plate, run, success
+   use vcor_test_cases, only : body_on_body, make_ive, make_product, random_t, rigid_on_plate, &
+      run, success
    implicit none
 
    !> Sums and differences of the state, each rounded
@@ -37,6 +38,9 @@ program test_solver
    call suite("solver")
    call make_impacts()
    call test_ive_accuracy()
+   call test_estimates()
+   call test_two_maxima()
+   call test_no_sum()
    call test_product_order()
    call test_product_accuracy()
    call test_trajectory()
@@ -88,6 +92,102 @@ contains
          end do
       end do
    end subroutine test_ive_accuracy
+
+   !> At every accuracy the error of random impacts is below it, and their estimates are its size:
+   !> losses from nothing to nearly all, kernels that are sums of exponentials and one that is not
+   subroutine test_estimates()
+      integer, parameter :: trials = 60
+      ! an estimate may be too small by so much, and rounding; too large, for most, by so much
+      real(wp), parameter :: too_small = 5.0_wp, finest = 1.0e-11_wp, too_large = 0.5_wp
+      type(prony_t) :: slow, fast
+      type(power_law_t) :: fractional
+      type(impact_t) :: random_impact
+      type(ive_t) :: solver
+      type(outcome_t) :: outcome, exact
+      type(random_t) :: random
+      type(error_t), allocatable :: error
+      real(wp) :: accuracy, velocity, radius
+      integer :: i, digits, cautious, separated
+
+      call new_sls(slow, 15.0e6_wp, 300.0_wp, 1200.0_wp, error)
+      call new_prony(fast, 10.421e6_wp, [20.181e6_wp, 38.204e6_wp, 87.344e6_wp], &
+         [972.0_wp, 6426.0_wp, 34221.0_wp], 0.0_wp, error)
+      call new_power_law(fractional, 2.28e6_wp, 0.885e6_wp, 0.5_wp, error)
+      call success(error, "three materials are built")
+      cautious = 0
+      separated = 0
+      do i = 1, trials
+         velocity = random%log_between(0.01_wp, 100.0_wp)
+         radius = random%log_between(1.0e-3_wp, 0.05_wp)
+         select case (mod(i, 3))
+         case (0)
+            call rigid_on_plate(slow, waves_relaxing, velocity, random_impact, radius=radius)
+         case (1)
+            call rigid_on_plate(fast, waves_relaxing, velocity, random_impact, radius=radius)
+         case default
+            call rigid_on_plate(fractional, waves_relaxing, velocity, random_impact, radius=radius)
+         end select
+         call make_ive(finest, solver)
+         call run(solver, random_impact, exact)
+         if (exact%status /= contact_separated) cycle
+         do digits = 4, 9
+            accuracy = 10.0_wp**(-digits)
+            call make_ive(accuracy, solver)
+            call run(solver, random_impact, outcome)
+            call check(outcome%status == contact_separated, "a random impact ends")
+            call check_close(outcome%cor, exact%cor, accuracy, &
+               "a random impact: the error is below the accuracy asked for")
+            call check_close(outcome%cor, exact%cor, too_small*outcome%cor_error + finest, &
+               "a random impact: the estimate is not too small")
+            separated = separated + 1
+            if (outcome%cor_error > too_large*accuracy) cautious = cautious + 1
+         end do
+      end do
+      call check(separated > 3*trials, "most random impacts end")
+      call check(10*cautious < separated, "few estimates are as large as the accuracy")
+   end subroutine test_estimates
+
+   !> A heavy sphere has two maxima of the force: the larger one counts, at every accuracy
+   subroutine test_two_maxima()
+      type(prony_t) :: material
+      type(impact_t) :: heavy
+      type(ive_t) :: solver
+      type(outcome_t) :: outcome, exact
+      type(error_t), allocatable :: error
+      integer :: digits
+
+      call new_sls(material, 15.0e6_wp, 300.0_wp, 1200.0_wp, error)
+      call rigid_on_plate(material, waves_relaxing, 22.5767_wp, heavy, radius=0.0620684_wp)
+      call success(error, "a heavy sphere is built")
+      call make_ive(1.0e-11_wp, solver)
+      call run(solver, heavy, exact)
+      do digits = 5, 9
+         call make_ive(10.0_wp**(-digits), solver)
+         call run(solver, heavy, outcome)
+         call check_relative(outcome%max_force, exact%max_force, 10.0_wp**(1 - digits), &
+            "the larger of two maxima of the force")
+      end do
+   end subroutine test_two_maxima
+
+   !> Two viscoelastic bodies whose Eq. (1) no sum of exponentials stands for: refused, not guessed
+   subroutine test_no_sum()
+      type(prony_t) :: fluid, solid
+      type(impact_t) :: two
+      type(ive_t) :: solver
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+
+      call new_prony(fluid, 0.0_wp, [1.0e7_wp], [1.0e6_wp], 0.0_wp, error)
+      call new_prony(solid, 1.0e5_wp, [1.0e7_wp], [1.0e3_wp], 0.0_wp, error)
+      call success(error, "a fluid that relaxes in a microsecond, and a solid")
+      call body_on_body(fluid, solid, waves_none, 1.0_wp, two)
+      call make_ive(1.0e-8_wp, solver)
+      call solver%solve(two, trajectory, error)
+      call check(allocated(error), "no sum of exponentials is an error")
+      if (.not. allocated(error)) return
+      call check(error%code == error_numerical, "of the numerical kind")
+      call check_contains(error%message, "method = 'direct'", "and names the other method")
+   end subroutine test_no_sum
 
    !> Product integration on steps that are halved
    subroutine test_product_order()
