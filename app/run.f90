@@ -128,6 +128,8 @@ contains
 
       text = ''
       if (outcome%status /= contact_separated) return
+      if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
+         call add('solver.time_step is without effect: method ive takes its own steps')
       call job%case%get('sphere', 'radius', radius)
       if (outcome%max_indentation > radius) call add("the indentation exceeds the sphere's " &
          //"radius: Hertz's contact does not apply")

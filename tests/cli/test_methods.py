@@ -149,3 +149,13 @@ def test_stiff_material_without_equilibrium_modulus(vcor):
         assert done.code in {SUCCESS, NUMERICAL}
         ends[method] = done.out
     assert ends["auto"] == ends["direct"] != ""
+
+
+def test_step_without_effect(vcor):
+    """A time step beside the method that chooses its own is told to be without effect."""
+    path = PAPER / "sls.nml"
+    step = ["--set", "solver.time_step=1e-6"]
+    note = "note: solver.time_step is without effect"
+    assert note in vcor("run", path, *step).out
+    assert note not in vcor("run", path, *step, "--set", "solver.method=direct").out
+    assert note not in vcor("run", path).out
