@@ -124,13 +124,15 @@ contains
       !> Modulus [Pa]
       real(wp) :: value
 
-      real(wp) :: other
+      real(wp) :: one, other
 
       value = self%first_factor*self%first%relaxation(t)
       if (allocated(self%second)) then
+         one = value
          other = self%second_factor*self%second%relaxation(t)
-         ! written so that one of the moduli may be infinite
-         value = 1.0_wp/(1.0_wp/value + 1.0_wp/other)
+         ! the larger modulus may be infinite, the smaller one have vanished
+         value = min(one, other)
+         if (value > 0.0_wp) value = value/(1.0_wp + value/max(one, other))
       end if
    end function relaxation
 
@@ -356,7 +358,8 @@ contains
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp), parameter :: slowest = 0.05_wp, fastest = 1.0e7_wp, spacing = 0.2_wp
-      real(wp), parameter :: lost = 2.0e-13_wp
+      ! what a unit of the moduli over E' costs, measured: some eps, ten times over
+      real(wp), parameter :: lost = 2.0e-14_wp
       ! columns that depend on each other to this part make large moduli of opposite signs
       real(wp), parameter :: dependent = 1.0e-13_wp
       ! first sample over the time of the fastest term; share of the window with full weight
@@ -379,6 +382,12 @@ contains
       end do
       allocate (matrix(samples, terms_of_grid), work(work_length))
       modulus = self%relaxation(time)
+      if (.not. minval(modulus) > 0.0_wp) then
+         ! a fluid that is gone within the window
+         terms%moduli = 0.0_wp
+         terms%error = huge(1.0_wp)
+         return
+      end if
       weight = min(1.0_wp, time/(full_weight*window))
 
       matrix(:, 1) = weight/modulus
