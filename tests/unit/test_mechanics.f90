@@ -38,6 +38,7 @@ program test_mechanics
    call test_series()
    call test_energies()
    call test_memory()
+   call test_light_plates()
    call finish()
 
 contains
@@ -420,5 +421,42 @@ contains
          end do
       end do
    end subroutine test_memory
+
+   !> Plates that are light against the sphere and relax fast against the contact: the error is what
+   !> it says, though most of the energy goes and the contact lasts many times as long as expected
+   subroutine test_light_plates()
+      integer, parameter :: cases = 100
+      ! the difference of two solutions vanishes by chance now and then
+      real(wp), parameter :: usual_ratio = 10.0_wp, largest_ratio = 100.0_wp
+      integer, parameter :: most_by_chance = 2
+      type(random_t) :: random
+      type(ive_t) :: fine
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, exact
+      type(error_t), allocatable :: error
+      real(wp) :: rate
+      integer :: i, by_chance
+
+      by_chance = 0
+      call make_ive(1.0e-10_wp, fine)
+      do i = 1, cases
+         rate = random%log_between(1.0e2_wp, 3.0e4_wp)
+         call new_sls(rubber, random%log_between(2.0e5_wp, 2.0e7_wp), &
+            rate*random%log_between(1.0e-3_wp, 0.3_wp), rate, error)
+         call success(error, "a random SLS is built")
+         call rigid_on_plate(rubber, waves_hereditary, random%log_between(0.1_wp, 10.0_wp), &
+            impact, mass=random%log_between(0.03_wp, 0.3_wp))
+         impact%law = merge(law_receding, law_boltzmann, mod(i, 2) == 0)
+         call run(ive, impact, outcome)
+         call run(fine, impact, exact)
+         call check_close(outcome%cor, exact%cor, ive_accuracy, "light plate: cor")
+         call check_close(outcome%cor, exact%cor, largest_ratio*outcome%cor_error, &
+            "light plate: the error is what it says")
+         if (.not. abs(outcome%cor - exact%cor) <= usual_ratio*outcome%cor_error) &
+            by_chance = by_chance + 1
+      end do
+      call check(by_chance <= most_by_chance, "light plates: the errors are what they say")
+   end subroutine test_light_plates
 
 end program test_mechanics

@@ -486,7 +486,7 @@ contains
    end function slope_at_end
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
-   !> companion reaches F = 0 a little earlier or later, which only alpha' feels
+   !> companion reaches F = 0 a little earlier or later, which only alpha' and the drift feel
    pure function error_of_cor(rule, impact, panel, coarse, panels, shallow) result(estimate)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
@@ -521,7 +521,8 @@ contains
          estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
             + merge(1.0_wp, finer, shallow .or. panels <= few)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
-            + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
+            + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs(slope_at_end(rule, panel, panel%drift))) &
             + abs(panel%drift(n) - coarse%drift(n - 1)))
       end associate
    end function error_of_cor
