@@ -3,15 +3,14 @@
 !> The substitution by Jacobi's elliptic functions that turns sqrt((l - p)(l - z)(b - l)(q - l)),
 !> p < z < b < q, into a single-valued function makes all four of them points of a double period.
 !> An integrand over (z, b) whose only singularities are these becomes periodic and analytic in a
-!> strip |Im u| < K', and the midpoint rule of n nodes converges as exp(-a K'), a = 2 pi n/K, however
-!> far apart the points are:
-!> P. F. Byrd and M. D. Friedman, Handbook of Elliptic Integrals, 2nd ed. (1971), 255, and
-!> N. Hale, N. J. Higham and L. N. Trefethen, SIAM J. Numer. Anal. 46 (2008) 2505,
-!> doi:10.1137/070700607, for the use of it.
+!> strip |Im u| < K', and the midpoint rule of n nodes converges as exp(-a K'), a = 2 pi n/K,
+!> however far apart the points are: P. F. Byrd and M. D. Friedman, Handbook of Elliptic Integrals,
+!> 2nd ed. (1971), 255, and N. Hale, N. J. Higham and L. N. Trefethen, SIAM J. Numer. Anal. 46
+!> (2008) 2505, doi:10.1137/070700607, for the use of it.
 !>
-!> With exp(-l t) in the integrand the edge of the strip, where l is infinite at one point, is out of
-!> reach. The saddle point of exp(i a u - l t) below it leaves exp(-a K' + c) with
-!> c = (a t sqrt((q - z)(b - p)))^(1/2), or, without q, c = (27/32 a^2 t (b - p))^(1/3). Halfway to
+!> With exp(-l t) in the integrand the edge of the strip is out of reach, since l is infinite at one
+!> point of it. The saddle point of exp(i a u - l t) below leaves exp(-a K' + c), with
+!> c = (a t sqrt((q - z)(b - p)))^(1/2) or, without q, c = (27/32 a^2 t (b - p))^(1/3). Halfway to
 !> the edge l runs on a circle round z and b that passes between p and z: exp(-a K'/2) is reached
 !> for any t.
 module vcor_numeric_elliptic

@@ -189,7 +189,11 @@ contains
       real(wp), parameter :: fast = 3.0_wp
       real(wp), parameter :: short_growth = 0.025_wp, long_growth = 0.084_wp
       ! residual indentation over the largest one that makes an end a smooth one
-      real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
+      real(wp), parameter :: shallow_end = 0.01_wp
+      ! indentation at the end of the last panel over that at its start that is next to the branch
+      ! point of u: from one number of stages to the next the error falls by half only, elsewhere
+      ! by this factor at least
+      real(wp), parameter :: next_to_branch = 0.05_wp, usually_better = 10.0_wp
       type(start_t) :: start, coarse_start
       type(step_t) :: step
       type(panel_t) :: panel, previous, coarse, recorded
@@ -199,7 +203,7 @@ contains
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, force_error, inner, velocity, fall
       integer :: trial, n
-      logical :: ends, last, inherited, shallow, elastic, recedes, turns
+      logical :: ends, last, inherited, shallow, branches, recedes, turns
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -278,6 +282,8 @@ contains
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
             if (shallow) force_error = 100.0_wp*force_error
+            branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
+            if (branches) excess = usually_better*excess
             fall = abs(slope_at_end(self%collocator%rule, panel, panel%force))
             excess = max(excess, share(force_error, fall*(panel%time(n)*time_tolerance)))
          else if (maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
@@ -296,9 +302,8 @@ contains
          refused = huge(1.0_wp)
          recorded = panel
          if (ends) then
-            elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
             trajectory%cor_error = error_of_cor(self%collocator%rule, impact, panel, coarse, &
-               trajectory%steps + 1, elastic)
+               trajectory%steps + 1, branches)
             if (shallow) then
                recorded%force(n) = 0.0_wp
             else
@@ -487,7 +492,7 @@ contains
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
    !> companion reaches F = 0 a little earlier or later, which only alpha' and the drift feel
-   pure function error_of_cor(rule, impact, panel, coarse, panels, shallow) result(estimate)
+   pure function error_of_cor(rule, impact, panel, coarse, panels, branches) result(estimate)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The impact
@@ -498,8 +503,9 @@ contains
       type(panel_t), intent(in) :: coarse
       !> Number of panels
       integer, intent(in) :: panels
-      !> Whether the indentation ends next to zero
-      logical, intent(in) :: shallow
+      !> Whether the indentation ends next to zero, so that in this panel the solution is hardly
+      !> better than its companion
+      logical, intent(in) :: branches
       !> Estimate [-]
       real(wp) :: estimate
 
@@ -514,12 +520,15 @@ contains
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         ! what this panel adds may cancel what the companion owes to the panels before
+         if (branches) impulse_error = max(impulse_error, abs((panel%impulse(n) &
+            - panel%impulse(0)) - (coarse%impulse(n - 1) - coarse%impulse(0))))
          fall = slope_at_end(rule, panel, panel%force)
          time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          ! the end is moved to its zero along straight lines
          estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
-            + merge(1.0_wp, finer, shallow .or. panels <= few)/impact%velocity &
+            + merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
