@@ -177,6 +177,10 @@ contains
       integer, parameter :: most_trials = 20000
       ! the panel before an end that was refused comes this close to it
       real(wp), parameter :: approach = 0.65_wp
+      ! power of its length with which the error of a panel falls that ends next to a branch point
+      real(wp), parameter :: order_at_branch = 2.5_wp
+      ! panels that lead to such an end before it is tried again, at most
+      real(wp), parameter :: most_ahead = 6.0_wp
       ! what rounding leaves in the force of stiff internal variables and dashpots, over the largest
       ! force: it is not to stop the march
       real(wp), parameter :: rounding = 1.0e-12_wp
@@ -201,8 +205,8 @@ contains
       type(rebound_start_t) :: rebound
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
-      real(wp) :: excess, refused, force_error, inner, velocity, fall
-      integer :: trial, n
+      real(wp) :: excess, refused, force_error, inner, velocity, fall, end_found
+      integer :: trial, n, ahead
       logical :: ends, last, inherited, shallow, branches, recedes, turns
 
       n = self%collocator%rule%stages
@@ -234,6 +238,9 @@ contains
       largest_force = 0.0_wp
       refused = huge(1.0_wp)
       shallow = .false.
+      branches = .false.
+      end_found = 0.0_wp
+      ahead = 0
       ! the force counts where it has its maximum, and at the end; elsewhere it is what is left of
       ! transients that the impulse does not feel
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
@@ -295,6 +302,12 @@ contains
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
          if (.not. (excess <= 1.0_wp .or. inherited)) then
             refused = excess
+            if (ends) then
+               end_found = start%time + step%duration()
+               ahead = 0
+               if (branches) ahead = ceiling(min(most_ahead, -log(excess) &
+                  /(order_at_branch*log(1.0_wp - approach)))) - 1
+            end if
             call step%shorten(merge(approach, 0.5_wp, ends)*step%duration())
             cycle
          end if
@@ -322,6 +335,7 @@ contains
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
+            ahead = 0
             end_time = 2.0_wp*recorded%time(n)
             if (self%end_time > 0.0_wp) end_time = self%end_time
          end if
@@ -346,8 +360,14 @@ contains
             return
          end if
          call advance(self%collocator%coarse, step, modes, coarse, coarse_start)
-         call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp))), &
-            most_steps)
+         if (ahead > 0) then
+            ! the end is not tried before the panels that lead to it
+            ahead = ahead - 1
+            step = step_to(start%time, approach*(end_found - start%time))
+         else
+            call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp)) &
+               **(-1.0_wp/real(2*n - 2, wp))), most_steps)
+         end if
       end do
       call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
          //'of the contact: the accuracy asked for is out of reach')
