@@ -3,11 +3,13 @@ program test_mechanics
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : waves_constant, waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
+      waves_relaxing
    use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_type, only : material_t
@@ -35,6 +37,8 @@ program test_mechanics
    call test_fractional()
    call test_series()
    call test_energies()
+   call test_memory()
+   call test_light_plates()
    call finish()
 
 contains
@@ -378,5 +382,81 @@ contains
       end do
       call check(separated == cases, "all random impacts end in separation")
    end subroutine test_energies
+
+   !> The memory of a plate as a sum of exponentials: the velocity under a constant force is as
+   !> accurate as asked for at all times, however long the sum is to hold
+   subroutine test_memory()
+      real(wp), parameter :: window(3) = [1.0e-3_wp, 0.1_wp, 10.0_wp]
+      ! between asked for and found
+      real(wp), parameter :: accuracy(3) = [1.0e-5_wp, 1.0e-7_wp, 1.0e-9_wp]
+      real(wp), parameter :: density = 1100.0_wp, half_thickness = 0.01_wp
+      type(prony_t) :: prony(3)
+      type(plate_t) :: plate
+      type(exponential_sum_t) :: terms
+      type(error_t), allocatable :: error
+      real(wp) :: time, expected
+      integer :: i, j, k, m
+
+      call new_sls(prony(1), 2.7e5_wp, 10.0_wp, 3300.0_wp, error)
+      call success(error, "an SLS is built")
+      call new_prony(prony(2), 1.0e4_wp, [4.0e5_wp, 1.0e5_wp, 3.0e5_wp], &
+         [3000.0_wp, 480.0_wp, 400.0_wp], 0.0_wp, error)
+      call success(error, "a Prony series is built")
+      call new_prony(prony(3), 0.0_wp, [1.0e6_wp, 1.0e6_wp], [1.0e5_wp, 1.0_wp], 0.0_wp, error)
+      call success(error, "a fluid is built")
+      do i = 1, size(prony)
+         prony(i)%density = density
+         call new_plate(plate, prony(i), half_thickness, waves_hereditary, error)
+         call success(error, "a hereditary plate is built")
+         do j = 1, size(window)
+            do k = 1, size(accuracy)
+               call plate%memory_exponentials(window(j), accuracy(k), terms)
+               do m = 0, 24
+                  time = window(j)*10.0_wp**(-0.25_wp*real(m, wp))
+                  expected = plate%alpha(0.0_wp) + plate%memory_integral(time)
+                  call check_relative(terms%integral(time), expected, accuracy(k), &
+                     "memory of a plate: velocity under a constant force")
+               end do
+            end do
+         end do
+      end do
+   end subroutine test_memory
+
+   !> Plates that are light against the sphere and relax fast against the contact: the error is what
+   !> it says, though most of the energy goes and the contact lasts many times as long as expected
+   subroutine test_light_plates()
+      integer, parameter :: cases = 100
+      ! the difference of two solutions vanishes by chance now and then
+      real(wp), parameter :: usual_ratio = 10.0_wp, largest_ratio = 100.0_wp
+      integer, parameter :: most_by_chance = 2
+      type(random_t) :: random
+      type(ive_t) :: fine
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, exact
+      type(error_t), allocatable :: error
+      real(wp) :: rate
+      integer :: i, by_chance
+
+      by_chance = 0
+      call make_ive(1.0e-10_wp, fine)
+      do i = 1, cases
+         rate = random%log_between(1.0e2_wp, 3.0e4_wp)
+         call new_sls(rubber, random%log_between(2.0e5_wp, 2.0e7_wp), &
+            rate*random%log_between(1.0e-3_wp, 0.3_wp), rate, error)
+         call success(error, "a random SLS is built")
+         call rigid_on_plate(rubber, waves_hereditary, random%log_between(0.1_wp, 10.0_wp), &
+            impact, mass=random%log_between(0.03_wp, 0.3_wp))
+         impact%law = merge(law_receding, law_boltzmann, mod(i, 2) == 0)
+         call run(ive, impact, outcome)
+         call run(fine, impact, exact)
+         call check_close(outcome%cor, exact%cor, ive_accuracy, "light plate: cor")
+         call check_close(outcome%cor, exact%cor, largest_ratio*outcome%cor_error, &
+            "light plate: the error is what it says")
+         if (.not. abs(outcome%cor - exact%cor) <= usual_ratio*outcome%cor_error) &
+            by_chance = by_chance + 1
+      end do
+      call check(by_chance <= most_by_chance, "light plates: the errors are what they say")
+   end subroutine test_light_plates
 
 end program test_mechanics

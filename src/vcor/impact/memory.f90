@@ -199,16 +199,22 @@ contains
       !> Error
       real(wp) :: error
 
-      real(wp), parameter :: part(2) = [1.0_wp, 0.1_wp]
-      real(wp) :: expected, found
-      integer :: i
+      real(wp) :: time(2), expected, found
+      integer :: i, n
 
+      time = [1.0_wp, 0.1_wp]*window
+      n = size(time)
+      if (self%material%discrete) then
+         ! the rule for gaps converges geometrically: one time tells, before all is relaxed
+         n = 1
+         associate (zero => self%gaps%pole(self%gaps%near(1)) + self%gaps%offset(1))
+            if (zero*window > 1.0_wp) time = 1.0_wp/zero
+         end associate
+      end if
       error = 0.0_wp
-      do i = 1, size(part)
-         ! the rule for gaps converges geometrically: one time tells
-         if (self%material%discrete .and. i > 1) exit
-         expected = self%viscosity + self%integral(part(i)*window)
-         found = terms%integral(part(i)*window)
+      do i = 1, n
+         expected = self%viscosity + self%integral(time(i))
+         found = terms%integral(time(i))
          error = max(error, abs(found/expected - 1.0_wp))
       end do
    end function error_of
@@ -252,7 +258,7 @@ contains
          if (i < zeros) after = (gaps%pole(gaps%near(i + 1)) - gaps%pole(i + 1)) &
             + gaps%offset(i + 1)
          call branch_rule(before, (gaps%pole(i + 1) - gaps%pole(gaps%near(i))) - gaps%offset(i), &
-            after, accuracy, from_zero, to_pole, share)
+            after, window, accuracy, from_zero, to_pole, share)
          if (found + size(share) > room) then
             terms%rates = [terms%rates, rates(:found)]
             terms%moduli = [terms%moduli, moduli(:found)]

@@ -2,11 +2,17 @@
 !>
 !> The substitution by Jacobi's elliptic functions that turns sqrt((l - p)(l - z)(b - l)(q - l)),
 !> p < z < b < q, into a single-valued function makes all four of them points of a double period.
-!> An integrand over (z, b) whose only singularities are these becomes periodic and analytic, and
-!> the midpoint rule of n nodes converges as exp(-2 pi n K'/K), however far apart the points are:
-!> P. F. Byrd and M. D. Friedman, Handbook of Elliptic Integrals, 2nd ed. (1971), 255, and
-!> N. Hale, N. J. Higham and L. N. Trefethen, SIAM J. Numer. Anal. 46 (2008) 2505,
-!> doi:10.1137/070700607, for the use of it.
+!> An integrand over (z, b) whose only singularities are these becomes periodic and analytic in a
+!> strip |Im u| < K', and the midpoint rule of n nodes converges as exp(-a K'), a = 2 pi n/K,
+!> however far apart the points are: P. F. Byrd and M. D. Friedman, Handbook of Elliptic Integrals,
+!> 2nd ed. (1971), 255, and N. Hale, N. J. Higham and L. N. Trefethen, SIAM J. Numer. Anal. 46
+!> (2008) 2505, doi:10.1137/070700607, for the use of it.
+!>
+!> With exp(-l t) in the integrand the edge of the strip is out of reach, since l is infinite at one
+!> point of it. The saddle point of exp(i a u - l t) below leaves exp(-a K' + c), with
+!> c = (a t sqrt((q - z)(b - p)))^(1/2) or, without q, c = (27/32 a^2 t (b - p))^(1/3). Halfway to
+!> the edge l runs on a circle round z and b that passes between p and z: exp(-a K'/2) is reached
+!> for any t.
 module vcor_numeric_elliptic
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : pi
@@ -19,30 +25,31 @@ module vcor_numeric_elliptic
    !> Steps after which the transformation has converged for any parameter
    integer, parameter :: most_steps = 30
 
-   !> Landen's transformation for one parameter
+   !> Landen's transformation for one modulus
    type :: landen_t
-      !> Parameter m
-      real(wp) :: m = 0.0_wp
-      !> 1 - m
-      real(wp) :: complement = 1.0_wp
       !> Number of steps
       integer :: steps = 0
-      !> c/a of each step
-      real(wp) :: ratio(most_steps) = 0.0_wp
-      !> Factor of the argument after the last one
-      real(wp) :: factor = 1.0_wp
+      !> Modulus after each step
+      real(wp) :: modulus(most_steps) = 0.0_wp
+      !> 1 less it
+      real(wp) :: complement(most_steps) = 1.0_wp
+      !> Quarter period K of the functions
+      real(wp) :: quarter = 0.5_wp*pi
    end type landen_t
 
 contains
 
-   !> Nodes in (z, b) by their distances from both ends, and weights
-   pure subroutine branch_rule(before, length, after, accuracy, from_lower, to_upper, weight)
+   !> Nodes in (z, b) by their distances from both ends, and weights, for integrands with exp(-l t)
+   pure subroutine branch_rule(before, length, after, time, accuracy, from_lower, to_upper, &
+                               weight)
       !> Distance z - p, > 0
       real(wp), intent(in) :: before
       !> Length b - z, > 0
       real(wp), intent(in) :: length
       !> Distance q - b, > 0; infinite if there is no q
       real(wp), intent(in) :: after
+      !> Largest t [the inverse of the distances], >= 0
+      real(wp), intent(in) :: time
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       !> Distances l - z of the nodes, > 0, shape (n)
@@ -53,10 +60,8 @@ contains
       real(wp), allocatable, intent(out) :: weight(:)
 
       integer, parameter :: most_nodes = 200
-      ! the strip of the rule is not quite as wide where the integrand has other features
-      real(wp), parameter :: margin = 1.1_wp
       type(landen_t) :: landen
-      real(wp) :: m, complement, quarter, sn, cn, dn, rest
+      real(wp) :: m, complement, other, wanted, c, more, sn, cn, dn, rest
       integer :: j, n
 
       ! modulus m = k^2 of the functions and its complement
@@ -67,17 +72,26 @@ contains
          m = length/(length + before)
          complement = before/(length + before)
       end if
-      quarter = 0.5_wp*pi/mean(1.0_wp, sqrt(complement))
-      n = min(most_nodes, 1 + ceiling(-margin*log(accuracy)*quarter &
-         *mean(1.0_wp, sqrt(m))/pi**2))
-      allocate (from_lower(n), to_upper(n), weight(n))
       call descend(m, complement, landen)
+      other = 0.5_wp*pi/mean(1.0_wp, sqrt(m))
+      ! a K' = more*wanted, with that of c in it
+      wanted = log(2.0_wp/accuracy)
+      if (ieee_is_finite(after)) then
+         c = 0.25_wp*time*sqrt((after + length)*(length + before))/(wanted*other)
+         more = (sqrt(c) + sqrt(1.0_wp + c))**2
+      else
+         ! x^3 = 1 + 3 c x^2, to the second order
+         c = (time*(length + before)/(32.0_wp*wanted*other**2))**(1.0_wp/3.0_wp)
+         more = (1.0_wp + c*(1.0_wp + c))**3
+      end if
+      n = min(most_nodes, ceiling(min(more, 2.0_wp)*wanted*landen%quarter/(2.0_wp*pi*other)))
+      allocate (from_lower(n), to_upper(n), weight(n))
       do j = 1, n
-         call jacobi(landen, quarter*(real(j, wp) - 0.5_wp)/real(n, wp), sn, cn, dn)
+         call jacobi(landen, (real(j, wp) - 0.5_wp)/real(n, wp), sn, cn, dn)
          rest = (before + length*cn**2)/(before + length)
          from_lower(j) = before*length/(before + length)*sn**2/rest
          to_upper(j) = length*cn**2/rest
-         weight(j) = quarter/real(n, wp)*2.0_wp*sn*cn*dn*before*length &
+         weight(j) = landen%quarter/real(n, wp)*2.0_wp*sn*cn*dn*before*length &
             /((before + length)*rest**2)
       end do
    end subroutine branch_rule
@@ -91,55 +105,56 @@ contains
       !> Their mean
       real(wp) :: mean
 
+      ! the number of nodes follows from it, nothing else
+      real(wp), parameter :: enough = 1.0e-8_wp
       real(wp) :: other, next
       integer :: i
 
-      ! it converges quadratically
       mean = a
       other = b
       do i = 1, 40
          next = 0.5_wp*(mean + other)
          other = sqrt(mean*other)
          mean = next
-         if (abs(mean - other) <= 1.0e-15_wp*mean) exit
+         if (abs(mean - other) <= enough*mean) exit
       end do
    end function mean
 
-   !> Descending Landen transformation for a parameter: M. Abramowitz and I. A. Stegun, Handbook of
-   !> Mathematical Functions (1964), 16.4
+   !> Descending Landen transformation: M. Abramowitz and I. A. Stegun, Handbook of Mathematical
+   !> Functions (1964), 16.12 and 17.6
    pure subroutine descend(m, complement, landen)
-      !> Parameter m
+      !> Parameter m, the square of the modulus
       real(wp), intent(in) :: m
       !> 1 - m, > 0
       real(wp), intent(in) :: complement
       !> The transformation
       type(landen_t), intent(out) :: landen
 
+      ! the modulus that follows on it is below rounding
+      real(wp), parameter :: small = 1.0e-8_wp
       real(wp) :: a, b, c, next
 
-      landen%m = m
-      landen%complement = complement
       a = 1.0_wp
       b = sqrt(complement)
       c = sqrt(m)
-      landen%steps = 0
-      do while (landen%steps < most_steps .and. c > 1.0e-15_wp*a)
+      do while (landen%steps < most_steps .and. c > small*a)
          next = 0.5_wp*(a + b)
          c = 0.5_wp*(a - b)
+         landen%steps = landen%steps + 1
+         landen%modulus(landen%steps) = c/next
+         landen%complement(landen%steps) = b/next
          b = sqrt(a*b)
          a = next
-         landen%steps = landen%steps + 1
-         landen%ratio(landen%steps) = c/a
       end do
-      landen%factor = 2.0_wp**landen%steps*a
+      landen%quarter = 0.5_wp*pi/a
    end subroutine descend
 
    !> Jacobi's elliptic functions
-   pure subroutine jacobi(landen, u, sn, cn, dn)
-      !> The transformation of their parameter
+   pure subroutine jacobi(landen, part, sn, cn, dn)
+      !> The transformation of their modulus
       type(landen_t), intent(in) :: landen
-      !> Argument, between 0 and the quarter period
-      real(wp), intent(in) :: u
+      !> Argument u over the quarter period, between 0 and 1
+      real(wp), intent(in) :: part
       !> sn(u)
       real(wp), intent(out) :: sn
       !> cn(u)
@@ -147,16 +162,21 @@ contains
       !> dn(u)
       real(wp), intent(out) :: dn
 
-      real(wp) :: phi
+      real(wp) :: square, share
       integer :: n
 
-      phi = landen%factor*u
+      sn = sin(0.5_wp*pi*part)
+      cn = cos(0.5_wp*pi*part)
+      dn = 1.0_wp
       do n = landen%steps, 1, -1
-         phi = 0.5_wp*(phi + asin(max(-1.0_wp, min(1.0_wp, landen%ratio(n)*sin(phi)))))
+         associate (k => landen%modulus(n))
+            square = cn**2
+            share = 1.0_wp/(1.0_wp + k*sn**2)
+            sn = (1.0_wp + k)*sn*share
+            cn = cn*dn*share
+            dn = (landen%complement(n) + k*square)*share
+         end associate
       end do
-      sn = sin(phi)
-      cn = cos(phi)
-      dn = sqrt(landen%complement + landen%m*cn**2)
    end subroutine jacobi
 
 end module vcor_numeric_elliptic

@@ -205,6 +205,10 @@ contains
       integer, parameter :: most_trials = 20000
       ! the panel before an end that was refused comes this close to it
       real(wp), parameter :: approach = 0.65_wp
+      ! power of its length with which the error of a panel falls that ends next to a branch point
+      real(wp), parameter :: order_at_branch = 2.5_wp
+      ! panels that lead to such an end before it is tried again, at most
+      real(wp), parameter :: most_ahead = 6.0_wp
       ! what rounding leaves in the force of stiff internal variables and dashpots, over the largest
       ! force: it is not to stop the march
       real(wp), parameter :: rounding = 1.0e-12_wp
@@ -222,7 +226,11 @@ contains
       ! largest difference, that much is left as an error
       real(wp), parameter :: share_of_growth = 0.03_wp
       ! residual indentation over the largest one that makes an end a smooth one
-      real(wp), parameter :: shallow_end = 0.01_wp, elastic_end = 1.0e-3_wp
+      real(wp), parameter :: shallow_end = 0.01_wp
+      ! indentation at the end of the last panel over that at its start that is next to the branch
+      ! point of u: from one number of stages to the next the error falls by half only, elsewhere
+      ! by this factor at least
+      real(wp), parameter :: next_to_branch = 0.05_wp, usually_better = 10.0_wp
       type(start_t) :: start, coarse_start
       type(step_t) :: step
       type(panel_t) :: panel, previous, coarse, recorded
@@ -231,8 +239,9 @@ contains
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, growth, largest_growth, force_error, inner, velocity, fall
-      integer :: trial, n
-      logical :: ends, last, inherited, shallow, elastic, recedes, turns
+      real(wp) :: end_found
+      integer :: trial, n, ahead
+      logical :: ends, last, inherited, shallow, branches, recedes, turns
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
@@ -265,6 +274,9 @@ contains
       largest_growth = 0.0_wp
       refused = huge(1.0_wp)
       shallow = .false.
+      branches = .false.
+      end_found = 0.0_wp
+      ahead = 0
       ! the force counts where it has its maximum, and at the end; elsewhere it is what is left of
       ! transients that the impulse does not feel
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
@@ -313,6 +325,8 @@ contains
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
             if (shallow) force_error = 100.0_wp*force_error
+            branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
+            if (branches) excess = usually_better*excess
             fall = abs(slope_at_end(self%collocator%rule, panel, panel%force))
             excess = max(excess, share(force_error, fall*(panel%time(n)*time_tolerance)))
          else if (maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
@@ -324,6 +338,12 @@ contains
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
          if (.not. (excess <= 1.0_wp .or. inherited)) then
             refused = excess
+            if (ends) then
+               end_found = start%time + step%duration()
+               ahead = 0
+               if (branches) ahead = ceiling(min(most_ahead, -log(excess) &
+                  /(order_at_branch*log(1.0_wp - approach)))) - 1
+            end if
             call step%shorten(merge(approach, 0.5_wp, ends)*step%duration())
             cycle
          end if
@@ -332,10 +352,9 @@ contains
          recorded = panel
          largest_growth = max(largest_growth, growth)
          if (ends) then
-            elastic = panel%indentation(n) < elastic_end*trajectory%max_indentation
             trajectory%cor_error = max(share_of_growth*largest_growth, &
                error_of_cor(self%collocator%rule, impact, panel, coarse, trajectory%steps + 1, &
-               elastic))
+               branches))
             if (shallow) then
                recorded%force(n) = 0.0_wp
             else
@@ -354,6 +373,7 @@ contains
          if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
+            ahead = 0
             end_time = 2.0_wp*recorded%time(n)
             if (self%end_time > 0.0_wp) end_time = self%end_time
          end if
@@ -378,8 +398,14 @@ contains
             return
          end if
          call advance(self%collocator%coarse, step, modes, coarse, coarse_start)
-         call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp))**(-1.0_wp/real(2*n - 2, wp))), &
-            most_steps)
+         if (ahead > 0) then
+            ! the end is not tried before the panels that lead to it
+            ahead = ahead - 1
+            step = step_to(start%time, approach*(end_found - start%time))
+         else
+            call step%proceed(min(3.0_wp, max(excess, tiny(1.0_wp)) &
+               **(-1.0_wp/real(2*n - 2, wp))), most_steps)
+         end if
       end do
       call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
          //'of the contact: the accuracy asked for is out of reach')
@@ -523,8 +549,8 @@ contains
    end function slope_at_end
 
    !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
-   !> companion reaches F = 0 a little earlier or later, which only alpha' feels
-   pure function error_of_cor(rule, impact, panel, coarse, panels, shallow) result(estimate)
+   !> companion reaches F = 0 a little earlier or later, which only alpha' and the drift feel
+   pure function error_of_cor(rule, impact, panel, coarse, panels, branches) result(estimate)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The impact
@@ -535,8 +561,9 @@ contains
       type(panel_t), intent(in) :: coarse
       !> Number of panels
       integer, intent(in) :: panels
-      !> Whether the indentation ends next to zero
-      logical, intent(in) :: shallow
+      !> Whether the indentation ends next to zero, so that in this panel the solution is hardly
+      !> better than its companion
+      logical, intent(in) :: branches
       !> Estimate [-]
       real(wp) :: estimate
 
@@ -551,14 +578,18 @@ contains
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         ! what this panel adds may cancel what the companion owes to the panels before
+         if (branches) impulse_error = max(impulse_error, abs((panel%impulse(n) &
+            - panel%impulse(0)) - (coarse%impulse(n - 1) - coarse%impulse(0))))
          fall = slope_at_end(rule, panel, panel%force)
          time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          ! the end is moved to its zero along straight lines
          estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
-            + merge(1.0_wp, finer, shallow .or. panels <= few)/impact%velocity &
+            + merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity &
             *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
-            + time_error*alpha_rate*panel%impulse(n)/panel%time(n) &
+            + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs(slope_at_end(rule, panel, panel%drift))) &
             + abs(panel%drift(n) - coarse%drift(n - 1)))
       end associate
    end function error_of_cor

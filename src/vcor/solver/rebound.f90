@@ -147,8 +147,11 @@ contains
             *(1.0_wp/impact%mass + alpha_rate) &
             + abs(panel%drift(n) - companion%drift(n - 1)) &
             + abs(panel%indentation(n) - companion%indentation(n - 1))/start%t1)/impact%velocity
+         ! the companion ends a little earlier or later, which changes the velocity of the plate
          if (ends) error_now = error_now + abs((panel%condition(n) - companion%condition(n - 1)) &
-            /start%condition*taken)*alpha_rate*panel%impulse(n)/(panel%time(n)*impact%velocity)
+            /start%condition*taken)*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
+            /impact%velocity
          excess = error_now/(panel_share*accuracy)
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
          if (ends) then
