@@ -71,7 +71,8 @@ contains
       end select
    end function parameters_of
 
-   !> What a parameter that may be 0 is small or large by: a part of it is not seen in the data
+   !> What a parameter that may be 0 is compared with: the least modulus, or the rate that is seen
+   !> at the last time
    elemental function unit_of(name, samples) result(value)
       !> Name of the parameter
       character(len=*), intent(in) :: name

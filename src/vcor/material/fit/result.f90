@@ -132,8 +132,8 @@ contains
       call covariance(j, inverse, condition)
       do i = 1, size(x)
          associate (parameter => fit%parameters(free(i)))
-            ! an unknown may be the logarithm of the reciprocal, a rate for a time
-            scale = merge(parameter%value, exp(x(i)), parameter%value > 0.0_wp)
+            ! the unknown of a time of a series is its rate
+            scale = merge(parameter%value, exp(x(i)), parameter%name == 'times')
             parameter%error = scale*sqrt(fit%variance)*sqrt(inverse(i, i))
          end associate
       end do
