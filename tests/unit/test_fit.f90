@@ -43,6 +43,8 @@ program test_fit
    call butyl_series(1.0e-8_wp, 121, 16)
    call butyl_dynamic()
    call noisy_series()
+   call noisy_terms(10.421e6_wp)
+   call noisy_terms(1.0e3_wp)
    call given_terms()
    call refusals()
    call finish()
@@ -529,6 +531,44 @@ contains
       call check_close(fit%rms, noise, 0.25_wp*noise, 'what it misses is the noise')
       call check_sound(fit)
    end subroutine noisy_series
+
+   !> With noise the true values of a series lie within three standard errors, nearly always
+   subroutine noisy_terms(equilibrium)
+      !> Equilibrium modulus [Pa]; it vanishes in the noise if it is small
+      real(wp), intent(in) :: equilibrium
+
+      type(fit_t) :: fit
+      type(material_data_t) :: data
+      type(samples_t) :: clean, samples
+      type(error_t), allocatable :: error
+      real(wp) :: distance(7), spread
+      integer :: run, misses
+
+      data = truth('prony')
+      data%equilibrium_modulus = equilibrium
+      clean = sampled(data, 1.0e-6_wp, merge(1.0e-1_wp, 6.0e-3_wp, equilibrium > 1.0e6_wp), 101, &
+         .false.)
+      misses = 0
+      spread = 0.0_wp
+      do run = 1, runs
+         call begin_noise(run)
+         samples = clean
+         call spoil(samples)
+         call fit_material(fit, 'prony', 3, none, samples, error)
+         if (allocated(error)) then
+            misses = misses + 1
+            cycle
+         end if
+         distance = (fit%parameters%value - [equilibrium, data%moduli(3), 1.0_wp/data%rates(3), &
+            data%moduli(2), 1.0_wp/data%rates(2), data%moduli(1), 1.0_wp/data%rates(1)]) &
+            /max(fit%parameters%error, tiny(1.0_wp))
+         if (.not. all(abs(distance) <= 3.0_wp)) misses = misses + 1
+         spread = spread + sum(distance**2)/real(7*runs, wp)
+      end do
+      call check(misses <= most_misses, 'series: the truth is within three standard errors')
+      ! those of a modulus that is at its bound are smaller than its error
+call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the spread')
+   end subroutine noisy_terms
 
    !> A number of terms is taken as it is
    subroutine given_terms()
