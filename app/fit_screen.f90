@@ -61,10 +61,19 @@ contains
       !> Lines that begin with an exclamation mark
       character(len=:), allocatable :: text
 
+      integer :: i
+
       text = '! vcor '//version//' fit of '//fit%data%model//terms_of(fit)//' to ' &
          //printable(source)//nl &
          //'! rms misfit '//trim(adjustl(percent(fit%rms)))//', largest ' &
          //trim(adjustl(percent(fit%largest)))//place_of(fit, samples)//nl
+      do i = 1, size(fit%parameters)
+         associate (parameter => fit%parameters(i))
+            if (parameter%state == state_bound) text = text//'! '//name_of(fit, i) &
+               //' is at its bound: '//short(parameter%value)//' +- '//short(parameter%error) &
+               //' '//trim(parameter%unit)//nl
+         end associate
+      end do
    end function fit_remarks
 
    !> Number of terms of a Prony series
@@ -108,6 +117,19 @@ contains
       text = short(100.0_wp*ratio)//' %'
    end function percent
 
+   !> Name of a parameter, with the number of the term of a series
+   function name_of(fit, i) result(name)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Number of the parameter
+      integer, intent(in) :: i
+      !> Its name
+      character(len=:), allocatable :: name
+
+      name = trim(fit%parameters(i)%name)
+      if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
+   end function name_of
+
    !> Line of a parameter
    function line(fit, i) result(text)
       !> The fit
@@ -121,23 +143,19 @@ contains
       character(len=8) :: unit
 
       associate (parameter => fit%parameters(i))
-         name = parameter%name
-         if (fit%data%model == 'prony' .and. i > 1) &
-            name = trim(parameter%name)//'('//integer_text(i/2)//')'
+         name = name_of(fit, i)
          unit = parameter%unit
          if (unit == '1') unit = ''
          text = '    '//name//significant(parameter%value)//' '//unit
-         select case (parameter%state)
-         case (state_fixed)
+         if (parameter%state == state_fixed) then
             text = text//'given'
-         case (state_bound)
-            text = text//'at its bound, the data say no more'
-         case default
+         else
             text = text//'+- '//short(parameter%error)
-            ! not even its order of magnitude
-            if (.not. parameter%error < abs(parameter%value)) text = text &
-               //', the data do not determine it'
-         end select
+            if (parameter%state == state_bound) text = text//', at its bound'
+            ! not even its order of magnitude; of what is 0 the error is a limit
+            if (parameter%value > 0.0_wp .and. .not. parameter%error < parameter%value) &
+               text = text//', the data do not determine it'
+         end if
       end associate
       text = text//nl
    end function line

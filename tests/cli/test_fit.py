@@ -351,6 +351,26 @@ def test_what_the_data_do_not_determine(vcor):
         assert (float(error) >= float(value)) == bool(remark)
 
 
+def test_what_is_at_its_bound(vcor):
+    """A modulus that vanishes is 0 with a standard error, on the screen and in the group."""
+    times = np.logspace(-6, -3, 61)
+    noise = np.exp(0.01 * np.random.default_rng(3).standard_normal(61))
+    vcor.write(columns(times, 1e6 * times**-0.3 * noise), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", "power_law")
+    error = re.search(r"^ +equilibrium_modulus +0 Pa +\+- (\S+), at its bound$", out, re.M)[1]
+    # 1 % of 8e6 Pa, the least modulus, is what one of the 61 points says
+    assert 2e4 < float(error) < 4e5
+    assert f"\n! equilibrium_modulus is at its bound: 0.0E+00 +- {error} Pa\n&material" in out
+    assert group(out)["equilibrium_modulus"] == 0
+    # what is given is no unknown: the others are known the better for it
+    given = vcor.succeeds("fit", "data.csv", "--model", "power_law", "--fix", "equilibrium_modulus=0")
+    errors = [
+        float(re.search(r"exponent .*\+- (\S+)$", text, re.M)[1]) for text in (out, given)
+    ]
+    assert errors[1] < 0.8 * errors[0]
+    assert "at its bound" not in given
+
+
 # Sampled models
 
 

@@ -151,34 +151,38 @@ contains
       end if
    end subroutine evaluate
 
-   !> Inverse of J' J, by the singular values of J with its columns scaled to length 1
+   !> Inverse of J' J, by the singular values of J with its columns scaled to length 1. What the
+   !> residuals hardly depend on, or do not, has a very large variance, the others keep theirs
    subroutine covariance(j, inverse, condition)
       !> Derivatives of the residuals, shape (m, n), m >= n
       real(wp), intent(in) :: j(:, :)
-      !> The inverse, shape (n, n); of no use where `condition` is infinite or beyond 1/epsilon
+      !> The inverse, shape (n, n)
       real(wp), intent(out) :: inverse(:, :)
-      !> Largest over smallest singular value; huge where there is none
+      !> Largest over smallest singular value; huge where that is 0
       real(wp), intent(out) :: condition
 
+      !> Singular value that differences of ten digits can tell from 0, and what stands for the
+      !> length of a column of zeros
+      real(wp), parameter :: least = 1.0e-9_wp, shortest = 1.0e-100_wp
       real(wp) :: scaled(size(j, 1), size(j, 2)), length(size(j, 2)), values(size(j, 2))
       real(wp) :: rows(size(j, 2), size(j, 2)), none(1, 1)
       real(wp) :: work(8*size(j, 1) + 8*size(j, 2))
       integer :: i, k, n, info
 
       n = size(j, 2)
-      inverse = 0.0_wp
       condition = 1.0_wp
       if (n == 0) return
-      length = norm2(j, dim=1)
+      length = max(norm2(j, dim=1), shortest)
+      inverse = huge(inverse)
       condition = huge(condition)
-      if (.not. all(length > 0.0_wp)) return
       do i = 1, n
          scaled(:, i) = j(:, i)/length(i)
       end do
       call dgesvd('N', 'S', size(j, 1), n, scaled, size(j, 1), values, none, 1, rows, n, work, &
          size(work), info)
-      if (info /= 0 .or. .not. values(n) > tiny(1.0_wp)) return
-      condition = values(1)/values(n)
+      if (info /= 0) return
+      if (values(n) > epsilon(1.0_wp)**2) condition = values(1)/values(n)
+      values = max(values, least)
       do k = 1, n
          rows(k, :) = rows(k, :)/values(k)
       end do

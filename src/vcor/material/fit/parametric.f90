@@ -6,7 +6,9 @@ module vcor_material_fit_parametric
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
-   use vcor_material_fit_problem, only : described, parameters_of, problem_t, set_free, vanishing
+   use vcor_material_fit_interval, only : widen_errors
+   use vcor_material_fit_problem, only : described, nothing, parameters_of, problem_t, release, &
+      set_free, unit_of, unknowns_of
    use vcor_material_fit_result, only : fit_t, judge, parameter_t, set_errors, state_bound, &
       state_fixed, state_free
    use vcor_material_fit_samples, only : samples_t
@@ -84,7 +86,11 @@ contains
       call new_material(material, fit%data, error)
       if (allocated(error)) return
       call judge(fit, material, samples)
-      call set_errors(fit, problem, solution, best, problem%free, error)
+      problem%parameters = fit%parameters
+      call release(problem)
+      call set_errors(fit, problem, unknowns_of(problem), best, problem%free, error)
+      if (allocated(error)) return
+      call widen_errors(fit, problem, sum(best**2))
    end subroutine fit_parametric
 
    !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1,
@@ -105,7 +111,7 @@ contains
 
       do i = 1, size(x)
          associate (parameter => problem%parameters(problem%free(i)))
-            if (x(i) < log(vanishing(parameter%name, problem%samples))) then
+            if (exp(x(i)) < nothing*unit_of(parameter%name, problem%samples)) then
                parameter%value = 0.0_wp
             else if (parameter%name == 'exponent' .and. x(i) > problem%upper(i) - touch &
                .and. problem%model == 'mittag_leffler') then

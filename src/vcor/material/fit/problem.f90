@@ -3,20 +3,25 @@ module vcor_material_fit_problem
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
-   use vcor_material_fit_result, only : moduli_of, parameter_t, state_free
+   use vcor_material_fit_result, only : moduli_of, parameter_t, state_bound, state_free
    use vcor_material_fit_samples, only : samples_t
    use vcor_numeric_least_squares, only : least_squares_t
    implicit none
    private
 
-   public :: problem_t, parameters_of, described, misfit, set_free, vanishing
+   public :: problem_t, parameters_of, described, misfit, set_free, release
+   public :: unknowns_of, unit_of, nothing
 
    !> Range of times beyond the data, as a factor, and of moduli
    real(wp), parameter :: widest_time = 1.0e4_wp, widest_modulus = 1.0e6_wp
+   !> Range of times where it is asked what a parameter at its bound could be instead
+   real(wp), parameter :: widest_error = 1.0e8_wp
    !> Range of an exponent
    real(wp), parameter :: least_exponent = 1.0e-3_wp, most_exponent = 0.9999_wp
    !> Part of its unit below which a modulus or rate counts as 0
    real(wp), parameter :: nothing = 1.0e-7_wp
+   !> Part of its unit that stands for 0 where the misfit has to depend on the logarithm
+   real(wp), parameter :: little = 1.0e-3_wp
    !> Step of the derivatives in the logarithm of a parameter: central differences are then good to
    !> ten digits
    real(wp), parameter :: step = 1.0e-5_wp
@@ -31,6 +36,8 @@ module vcor_material_fit_problem
       type(parameter_t), allocatable :: parameters(:)
       !> Numbers of those that are free, shape (n)
       integer, allocatable :: free(:)
+      !> Range of times beyond the data, as a factor
+      real(wp) :: widest = widest_time
    contains
       procedure :: residuals
       procedure :: jacobian
@@ -64,24 +71,25 @@ contains
       end select
    end function parameters_of
 
-   !> Value below which a parameter that may be 0 is 0
-   pure function vanishing(name, samples) result(value)
+   !> What a parameter that may be 0 is compared with: the least modulus, or the rate that is seen
+   !> at the last time
+   elemental function unit_of(name, samples) result(value)
       !> Name of the parameter
       character(len=*), intent(in) :: name
       !> The samples
       type(samples_t), intent(in) :: samples
-      !> Value in the unit of the parameter; tiny where it may not be 0
+      !> Value in the unit of the parameter; 0 where it may not be 0
       real(wp) :: value
 
       select case (name)
       case ('equilibrium_modulus')
-         value = nothing*minval(samples%modulus)
+         value = minval(samples%modulus)
       case ('alpha')
-         value = nothing/samples%last_time()
+         value = 1.0_wp/samples%last_time()
       case default
-         value = tiny(value)
+         value = 0.0_wp
       end select
-   end function vanishing
+   end function unit_of
 
    !> Note which parameters are free, and set their bounds
    subroutine set_free(problem)
@@ -95,8 +103,8 @@ contains
          problem%parameters%state == state_free)
       if (allocated(problem%lower)) deallocate (problem%lower, problem%upper)
       allocate (problem%lower(size(problem%free)), problem%upper(size(problem%free)))
-      shortest = problem%samples%first_time()/widest_time
-      longest = problem%samples%last_time()*widest_time
+      shortest = problem%samples%first_time()/problem%widest
+      longest = problem%samples%last_time()*problem%widest
       softest = minval(problem%samples%modulus)/widest_modulus
       hardest = maxval(problem%samples%modulus)*widest_modulus
       do i = 1, size(problem%free)
@@ -110,7 +118,7 @@ contains
                lower = log(shortest)
                upper = log(longest)
             case ('alpha')
-               lower = log(0.01_wp*vanishing('alpha', problem%samples))
+               lower = log(0.01_wp*nothing*unit_of('alpha', problem%samples))
                upper = -log(shortest)
             case ('beta')
                lower = -log(longest)
@@ -120,7 +128,7 @@ contains
                   upper = 0.5_wp*upper
                end if
             case ('equilibrium_modulus')
-               lower = log(0.01_wp*vanishing('equilibrium_modulus', problem%samples))
+               lower = log(0.01_wp*nothing*unit_of('equilibrium_modulus', problem%samples))
                upper = log(hardest)
             case default
                lower = log(softest)
@@ -134,6 +142,29 @@ contains
          end if
       end do
    end subroutine set_free
+
+   !> Make what has come to its bound free again, and the bounds wider
+   subroutine release(problem)
+      !> The problem
+      type(problem_t), intent(inout) :: problem
+
+      where (problem%parameters%state == state_bound) problem%parameters%state = state_free
+      problem%widest = widest_error
+      call set_free(problem)
+   end subroutine release
+
+   !> Unknowns of the values of the parameters, within the bounds
+   pure function unknowns_of(problem) result(x)
+      !> The problem
+      type(problem_t), intent(in) :: problem
+      !> Logarithms of the free parameters
+      real(wp) :: x(size(problem%free))
+
+      associate (free => problem%parameters(problem%free))
+         x = log(max(free%value, little*unit_of(free%name, problem%samples)))
+      end associate
+      x = max(problem%lower, min(problem%upper, x))
+   end function unknowns_of
 
    !> A model with parameters as the description of a material
    pure function described(model, parameters) result(data)

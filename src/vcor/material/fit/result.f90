@@ -16,7 +16,7 @@ module vcor_material_fit_result
    integer, parameter :: state_free = 0
    !> Given by the user
    integer, parameter :: state_fixed = 1
-   !> Run to the end of its range: the data say no more
+   !> Run to the end of its range: the data say no more than how far away it can be
    integer, parameter :: state_bound = 2
    !> Condition of the scaled derivatives beyond which parameters are not determined: they would
    !> have no digit in common with those of data that differ by 1e-7
@@ -30,7 +30,7 @@ module vcor_material_fit_result
       character(len=8) :: unit = ''
       !> Value, in this unit
       real(wp) :: value = 0.0_wp
-      !> Standard error, in this unit; 0 unless the state is free
+      !> Standard error, in this unit; 0 if the value is given
       real(wp) :: error = 0.0_wp
       !> One of the `state_*` constants
       integer :: state = state_free
@@ -50,6 +50,8 @@ module vcor_material_fit_result
       real(wp) :: largest_at = 0.0_wp
       !> Whether it is one of the loss modulus
       logical :: largest_in_loss = .false.
+      !> Variance of the data, as relative misfits, if the model is right [-]
+      real(wp) :: variance = 0.0_wp
       !> Condition of the derivatives by the parameters that are free, each scaled to length 1
       real(wp) :: condition = 1.0_wp
    end type fit_t
@@ -97,13 +99,15 @@ contains
       fit%largest_at = samples%at(place)
    end subroutine judge
 
-   !> Set standard errors from the derivatives at the solution: those of a linear problem about it
+   !> Set standard errors from the derivatives at the solution: those of a linear problem about it.
+   !> What is at its bound is an unknown of it like the others: their errors allow for what it could
+   !> be instead
    subroutine set_errors(fit, problem, x, r, free, error)
       !> The fit, its values and states set
       type(fit_t), intent(inout) :: fit
       !> The problem
       class(least_squares_t), intent(in) :: problem
-      !> Its solution, logarithms of the parameters `free`, shape (n)
+      !> Its solution, logarithms of the parameters `free`; what is 0 has a small value, shape (n)
       real(wp), intent(in) :: x(:)
       !> Residuals there, shape (m)
       real(wp), intent(in) :: r(:)
@@ -112,7 +116,7 @@ contains
       !> Error of code `error_numerical` if the data do not determine the parameters
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: j(size(r), size(x)), inverse(size(x), size(x)), variance
+      real(wp) :: j(size(r), size(x)), inverse(size(x), size(x)), condition, scale
       integer, allocatable :: inner(:)
       integer :: i
 
@@ -124,10 +128,13 @@ contains
             //fit%data%model//": take fewer, by --terms or --fix, or another model")
          return
       end if
-      variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
-      do i = 1, size(inner)
-         associate (parameter => fit%parameters(free(inner(i))))
-            parameter%error = parameter%value*sqrt(variance*inverse(i, i))
+      fit%variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
+      call covariance(j, inverse, condition)
+      do i = 1, size(x)
+         associate (parameter => fit%parameters(free(i)))
+            ! the unknown of a time of a series is its rate
+            scale = merge(parameter%value, exp(x(i)), parameter%name == 'times')
+            parameter%error = scale*sqrt(fit%variance)*sqrt(inverse(i, i))
          end associate
       end do
    end subroutine set_errors

@@ -418,12 +418,11 @@ contains
       call new_material(material, fit%data, error)
       if (allocated(error)) return
       call judge(fit, material, samples)
-      problem = new_series_problem(samples, n, series%equilibrium, &
-         fixed < 0.0_wp .and. series%equilibrium > 0.0_wp)
+      problem = new_series_problem(samples, n, series%equilibrium, fixed < 0.0_wp)
       x = [log(series%moduli(n:1:-1)), series%rates(n:1:-1)]
       free = [(2*i, i=1, n), (2*i + 1, i=1, n)]
       if (problem%is_free) then
-         x = [log(series%equilibrium), x]
+         x = [log(max(series%equilibrium, nothing*minval(samples%modulus))), x]
          free = [1, free]
       end if
       where (x < problem%lower + touch .or. x > problem%upper - touch) &
