@@ -2,7 +2,7 @@
 module vcor_solver_landing
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : width
+   use vcor_numeric_collocation, only : collocation_t, width
    use vcor_solver_collocator, only : collocator_t, guess, plate_velocity, relative_velocity, &
       solve_near_step
    use vcor_solver_modes, only : modes_t, start_t
@@ -12,6 +12,7 @@ module vcor_solver_landing
    private
 
    public :: first_without_force, land, land_on_largest
+   public :: end_at_zero, error_of_cor, slope_at_end
 
 contains
 
@@ -202,5 +203,114 @@ contains
          if (found) return
       end do
    end subroutine look_ahead
+
+   !> Let the last panel end where its force is zero, which is next to where it ends: its
+   !> polynomials go on up to there, and all values move with their nodes, so that integrals stay
+   !> sums over them
+   pure subroutine end_at_zero(rule, impact, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The last panel
+      type(panel_t), intent(inout) :: panel
+
+      real(wp), dimension(0:width) :: shift, plate
+      real(wp) :: growth
+
+      associate (n => rule%stages, theta => rule%point, map => panel%map)
+         growth = -panel%force(n)/slope_at_end(rule, panel, panel%force)/sum(map)
+         ! in theta; the time of the nodes grows by this share
+         shift = growth*theta*(map(1) + map(2)*theta) &
+            /max(map(1) + 2.0_wp*map(2)*theta, tiny(1.0_wp))
+         plate = impact%velocity*panel%time - panel%second_impulse/impact%mass - panel%indentation
+         map = (1.0_wp + growth)*map
+         panel%time = panel%time(0) + (1.0_wp + growth)*(panel%time - panel%time(0))
+         call move(panel%force)
+         call move(panel%impulse)
+         call move(panel%second_impulse)
+         if (.not. impact%plate%hereditary()) &
+            call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
+         if (impact%plate%drifts()) then
+            call move(panel%drift)
+            call move(plate)
+         else
+            plate(1:n) = panel%alpha(1:n)*panel%impulse(1:n)
+         end if
+         panel%indentation(1:n) = impact%velocity*panel%time(1:n) &
+            - panel%second_impulse(1:n)/impact%mass - plate(1:n)
+         panel%force(n) = 0.0_wp
+      end associate
+
+   contains
+
+      !> Move the values
+      pure subroutine move(value)
+         !> Values at the points
+         real(wp), intent(inout) :: value(0:width)
+
+         value = value + shift*rule%slopes(value)
+      end subroutine move
+   end subroutine end_at_zero
+
+   !> Rate of a value at the end of a panel
+   pure function slope_at_end(rule, panel, value) result(slope)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Its values at the points of the panel
+      real(wp), intent(in) :: value(0:width)
+      !> Rate [1/s]
+      real(wp) :: slope
+
+      slope = sum(rule%derivative(rule%stages, :)*value)/(panel%map(1) + 2.0_wp*panel%map(2))
+   end function slope_at_end
+
+   !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
+   !> companion reaches F = 0 a little earlier or later, which only alpha' and the drift feel
+   pure function error_of_cor(rule, impact, panel, coarse, panels, branches) result(estimate)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The last panel
+      type(panel_t), intent(in) :: panel
+      !> Its companion
+      type(panel_t), intent(in) :: coarse
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Whether the indentation ends next to zero, so that in this panel the solution is hardly
+      !> better than its companion
+      logical, intent(in) :: branches
+      !> Estimate [-]
+      real(wp) :: estimate
+
+      ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
+      real(wp), parameter :: rounding = 5.0e-13_wp
+      ! the difference is the error of the companion: that of the solution is less, where
+      ! the solution is smooth by orders, where it is not by a factor of this size; with few panels
+      ! it is anybody's guess
+      real(wp), parameter :: finer = 0.3_wp
+      integer, parameter :: few = 2
+      real(wp) :: impulse_error, time_error, alpha_rate, fall
+
+      associate (n => rule%stages)
+         impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         ! what this panel adds may cancel what the companion owes to the panels before
+         if (branches) impulse_error = max(impulse_error, abs((panel%impulse(n) &
+            - panel%impulse(0)) - (coarse%impulse(n - 1) - coarse%impulse(0))))
+         fall = slope_at_end(rule, panel, panel%force)
+         time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
+         alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         ! the end is moved to its zero along straight lines
+         estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
+            + merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity &
+            *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
+            + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs(slope_at_end(rule, panel, panel%drift))) &
+            + abs(panel%drift(n) - coarse%drift(n - 1)))
+      end associate
+   end function error_of_cor
 
 end module vcor_solver_landing
