@@ -414,14 +414,12 @@ contains
          /modulus(samples)
 
       ! a term that has decayed by the first sample
-      lacking = self%integral(checked*window) - terms%equilibrium*(checked*window) &
-         - sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*(checked*window))))
+      lacking = self%integral(checked*window) - terms%integral(checked*window)
       terms%moduli = [terms%moduli, 1.0e3_wp*lacking*terms%rates(terms_of_grid - 1)]
       terms%rates = [terms%rates, 1.0e3_wp*terms%rates(terms_of_grid - 1)]
       ! what the impulse feels of the early error
       do i = 1, size(early)
-         lacking = self%integral(early(i)*window) - terms%equilibrium*(early(i)*window) &
-            - sum(terms%moduli/terms%rates*(1.0_wp - exp(-terms%rates*(early(i)*window))))
+         lacking = self%integral(early(i)*window) - terms%integral(early(i)*window)
          terms%error = max(terms%error, abs(lacking)/self%integral(checked*window))
       end do
    end subroutine fit_pair

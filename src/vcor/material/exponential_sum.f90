@@ -55,8 +55,12 @@ contains
       !> Integral [Pa s]
       real(wp) :: value
 
+      real(wp) :: half(size(self%rates))
+
+      ! 1 - exp(-l t) = 2 h/(1 + h), h = tanh(l t/2), to all digits where l t is small
+      half = tanh(0.5_wp*self%rates*t)
       value = self%viscosity + self%equilibrium*t &
-         + sum(self%moduli/self%rates*(1.0_wp - exp(-self%rates*t)))
+         + sum(self%moduli/self%rates*(2.0_wp*half/(1.0_wp + half)))
    end function integral
 
 end module vcor_material_exponential_sum

@@ -165,9 +165,8 @@ contains
       call fit_exponentials(time, self%relaxation(time), self%terms)
       ! the misfit between the samples counts too, and at the points
       time = self%first_time*exp([[(0.25_wp*real(i, wp)*step, i=1, 4*n)], self%x])
-      self%early_excess = self%first_time*(self%terms%equilibrium - self%first_modulus) &
-         + sum(self%terms%moduli/self%terms%rates &
-         *(1.0_wp - exp(-self%terms%rates*self%first_time)))
+      self%early_excess = self%terms%integral(self%first_time) &
+         - self%first_modulus*self%first_time
       self%terms%error = maxval(abs(sum_at(self%terms, time)/self%relaxation(time) - 1.0_wp))
    end subroutine set_terms
 

@@ -61,16 +61,12 @@ contains
 
       real(wp), parameter :: tightest = 1.0e-14_wp, tolerance_share = 1.0e-5_wp
       real(wp), parameter :: near_tolerance_share = 1.0e-3_wp, coarse_tolerance_share = 3.0e-3_wp
-      ! an iteration less is no gain where the motion in a panel is not what the equations say
-      real(wp), parameter :: loosest = 1.0e-6_wp
       real(wp) :: unit(0:stages)
       integer :: i, j
 
-      associate (limit => min(accuracy, loosest))
-         self%tolerance = max(tightest, tolerance_share*limit)
-         self%near_tolerance = max(tightest, near_tolerance_share*limit)
-         self%coarse_tolerance = max(tightest, coarse_tolerance_share*limit)
-      end associate
+      self%tolerance = max(tightest, tolerance_share*accuracy)
+      self%near_tolerance = max(tightest, near_tolerance_share*accuracy)
+      self%coarse_tolerance = max(tightest, coarse_tolerance_share*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
       call new_collocation(self%coarse, fewer_stages, most_steps, error)

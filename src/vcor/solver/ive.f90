@@ -15,8 +15,8 @@
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz_contact_time, impact_t, law_receding
-   use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
-      trajectory_t
+   use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
+      contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_collocation, only : width
@@ -55,8 +55,9 @@ module vcor_solver_ive
    real(wp), parameter :: receding_reach = 1.1_wp
    !> Relative error of a sum of exponentials that makes it none
    real(wp), parameter :: no_sum = 1.0_wp
-   !> Loosest accuracy that a receding contact is solved to
-   real(wp), parameter :: loosest_receding = 1.0e-6_wp
+   !> Loosest accuracy that is worked to: less would save next to nothing, and one cannot tell
+   !> panels that are crude from those that are wrong
+   real(wp), parameter :: loosest = 1.0e-6_wp
    !> What the rebound feels of the difference of the two solutions between the ends of the panels,
    !> measured
    real(wp), parameter :: share_of_inner = 5.0e-3_wp
@@ -93,10 +94,10 @@ contains
       !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
       logical, intent(in), optional :: ghost
 
-      self%accuracy = accuracy
+      self%accuracy = min(accuracy, loosest)
       self%end_time = end_time
       if (present(ghost)) self%ghost = ghost
-      call new_collocator(self%collocator, accuracy, error)
+      call new_collocator(self%collocator, self%accuracy, error)
       if (present(second_coefficient)) &
          self%collocator%second_coefficient = second_coefficient
    end subroutine new_ive
@@ -145,8 +146,7 @@ contains
       end do
       if (trajectory%status == contact_separated) &
          trajectory%cor_error = trajectory%cor_error + sensitivity &
-         *(error_felt(impact, modes%contact, window, trajectory%time_of_max_force) &
-         + modes%plate%error)
+         *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error
@@ -154,29 +154,34 @@ contains
    end subroutine solve
 
    !> Error of the kernel as an impact feels it: where heavy losses end the loading early in the
-   !> window, that of the kernel's integral up to there, if that is more
-   pure function error_felt(impact, contact, window, loading) result(error)
+   !> window, that of the kernel's integral up to there, if that is more, in the share of the
+   !> momentum that the loading has taken
+   pure function error_felt(impact, contact, window, trajectory) result(error)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel as a sum of exponentials
       type(exponential_sum_t), intent(in) :: contact
       !> Time up to which the sum holds [s]
       real(wp), intent(in) :: window
-      !> Time of the largest force [s]
-      real(wp), intent(in) :: loading
+      !> Its course
+      type(trajectory_t), intent(in) :: trajectory
       !> Relative error
       real(wp) :: error
 
       ! the error oscillates in the logarithm of the time
       real(wp), parameter :: early = 0.05_wp, part(2) = [1.0_wp, 1.5_wp]
-      real(wp) :: t
-      integer :: i
+      real(wp) :: t, lost
+      integer :: i, node
 
       error = contact%error
-      if (.not. (error > 0.0_wp .and. loading < early*window)) return
+      if (.not. (error > 0.0_wp .and. trajectory%time_of_max_force < early*window)) return
+      do node = 1, trajectory%last - 1
+         if (trajectory%state(col_time, node) >= trajectory%time_of_max_force) exit
+      end do
+      lost = trajectory%state(col_impulse, node)/(impact%mass*impact%velocity)
       do i = 1, size(part)
-         t = part(i)*loading
-         error = max(error, abs(contact%integral(t) &
+         t = part(i)*trajectory%time_of_max_force
+         error = max(error, lost*abs(contact%integral(t) &
             /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp))
       end do
    end function error_felt
@@ -256,8 +261,6 @@ contains
       start%p = 0.0_wp
       coarse_start = start
       recedes = impact%law == law_receding
-      ! the rebound reads the approach between the nodes
-      if (recedes) accuracy = min(accuracy, loosest_receding)
       inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth
@@ -283,7 +286,7 @@ contains
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
       ! between the two solutions; the one that counts is better by an order
-      time_tolerance = max(3.0_wp*accuracy, 1.0e-9_wp)
+      time_tolerance = max(3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.2_wp), 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time

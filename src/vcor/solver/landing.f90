@@ -123,7 +123,7 @@ contains
       ! M are smooth in time, u = s^1.5 where s goes to zero is not. So Newton's method is put on
       ! kappa u(s) = M with s and M linear in time, the slope of M from the polynomials of the panel
       ! and then from the last two iterations
-      tolerance = 0.1_wp*min(accuracy, 1.0e-6_wp)
+      tolerance = 0.1_wp*accuracy
       associate (contact => modes%contact)
          kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*step%duration()))
       end associate
