@@ -35,6 +35,7 @@ program test_mechanics
    call test_reduced_dimension()
    call test_reversible()
    call test_fractional()
+   call test_nearly_fluid()
    call test_series()
    call test_energies()
    call test_memory()
@@ -235,6 +236,36 @@ contains
       call success(error, "a CERF is built")
       call compare(cerf, "CERF")
    end subroutine test_fractional
+
+   !> A receding contact of power laws that are nearly dashpots, whose fast modes feel the rounding
+   !> of the indentation at the end
+   subroutine test_nearly_fluid()
+      real(wp), parameter :: exponent(6) = [0.85_wp, 0.92_wp, 0.94_wp, 0.97_wp, 0.98_wp, 0.995_wp]
+      ! what ive is to be as accurate as, and product integration, its steps halved, at 1 us
+      real(wp), parameter :: finer = 1.0e-10_wp, of_direct = 2.0e-6_wp
+      type(power_law_t) :: material
+      type(impact_t) :: impact
+      type(ive_t) :: fine
+      type(outcome_t) :: outcome, exact
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call make_ive(finer, fine)
+      do i = 1, size(exponent)
+         call new_power_law(material, 0.0_wp, 2.0e4_wp, exponent(i), error)
+         call success(error, "a power law next to a dashpot is built")
+         call rigid_on_plate(material, waves_none, 5.0_wp, impact)
+         impact%law = law_receding
+         call run(ive, impact, outcome)
+         call run(fine, impact, exact)
+         call check(outcome%status == contact_separated, "a nearly fluid contact ends")
+         call check_close(outcome%cor, exact%cor, ive_accuracy, "a nearly fluid contact: 1e-8")
+         call check_close(exact%cor_error, 0.0_wp, 2.0_wp*finer, "a nearly fluid contact: 1e-10")
+         if (i > 2) cycle
+         call run(direct, impact, outcome)
+         call check_close(outcome%cor, exact%cor, of_direct, "a nearly fluid contact: direct")
+      end do
+   end subroutine test_nearly_fluid
 
    !> Compare both methods on the exact models
    subroutine compare(material, name)

@@ -301,7 +301,7 @@ contains
       integer, parameter :: pieces = 60, order = 20
       real(wp), parameter :: product(9) = [1.0e-3_wp, 0.3_wp, 2.0_wp, 12.0_wp, 35.9_wp, 36.1_wp, &
          1.0e2_wp, 1.0e4_wp, 1.0e8_wp]
-      real(wp), parameter :: scale = 2.0_wp, start = 0.7_wp
+      real(wp), parameter :: scale = 2.0_wp, start = 0.7_wp, slope = 0.3_wp
       type(settling_t) :: rule
       real(wp) :: point(0:8), node(8), x(0:8), gauss(order), weight(order), y, upper, expected
       integer :: n, i, j, k, p
@@ -312,9 +312,9 @@ contains
          point = 0.0_wp
          point(1:n) = node(:n)
          call new_settling(rule, point(:n))
-         do k = 1, n
-            ! x = y^k, so -dx/dy = -k y^(k - 1)
-            x(:n) = (1.0_wp - point(:n))**k
+         do k = 2, n
+            ! x = y^k, so -dx/dy = -k y^(k - 1), and a slope at the end, which is to be left out
+            x(:n) = (1.0_wp - point(:n))**k + slope*(1.0_wp - point(:n))
             do p = 1, size(product)
                expected = start*exp(-min(product(p), 600.0_wp))
                upper = 1.0_wp

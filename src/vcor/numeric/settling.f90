@@ -11,6 +11,10 @@
 !> upwards where a is large, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards where it is small,
 !> from series of positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
 !>
+!> As time stands still at the end, so does x: dx/dy = 0 at y = 0, and collocation has it so. What
+!> the values leave of that slope is rounding. Fast exponentials, whose m_0 falls as a^(-1/2) only,
+!> would feel it most of all; it is left out.
+!>
 !> The powers of y come from Legendre polynomials. In one step from the values they would have
 !> errors of their own, five digits of the 16; so they have those of a polynomial next to this one.
 module vcor_numeric_settling
@@ -105,7 +109,7 @@ contains
       real(wp), intent(in) :: scale
       !> w_k at the start, shape (modes)
       real(wp), intent(in) :: start(:)
-      !> x at the points, shape (0:n)
+      !> x at the points, dx/dy = 0 at the last one, shape (0:n)
       real(wp), intent(in) :: x(0:)
       !> Sum
       real(wp) :: total
@@ -127,7 +131,7 @@ contains
       do k = 1, size(moduli)
          call find_moments(rates(k)*scale, moment, decay)
          total = total + moduli(k)*(decay*start(k) &
-            + (((g(0)*moment(0) + g(1)*moment(1)) + (g(2)*moment(2) + g(3)*moment(3))) &
+            + ((g(1)*moment(1) + (g(2)*moment(2) + g(3)*moment(3))) &
             + ((g(4)*moment(4) + g(5)*moment(5)) + (g(6)*moment(6) + g(7)*moment(7)))))
       end do
    end function total
