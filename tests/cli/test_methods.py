@@ -159,3 +159,24 @@ def test_step_without_effect(vcor):
     assert note in vcor("run", path, *step).out
     assert note not in vcor("run", path, *step, "--set", "solver.method=direct").out
     assert note not in vcor("run", path).out
+
+
+def test_stiff_dashpot(vcor):
+    """Bodies with a dashpot that creep apart: shorter panels do not bring rounding into the end."""
+    vcor.write("""
+        &impact velocity = 0.0025 /
+        &sphere radius = 1.1e-3, material = 'putty' /
+        &plate half_thickness = 0.44e-3, material = 'putty' /
+        &material
+           name = 'putty', model = 'prony', density = 7000, poisson_ratio = 0.46
+           equilibrium_modulus = 7.3e8, viscosity = 1.25e6
+           moduli = 8.6e8, 5.3e7, times = 2.2e-5, 8.6e-4
+        /
+    """)
+    found = [
+        vcor.numbers("case.nml", "--set", f"solver.accuracy={accuracy}")
+        for accuracy in ("1e-8", "1e-11")
+    ]
+    assert cor(found[0]) == pytest.approx(cor(found[1]), abs=1e-9)
+    times = [float(numbers["contact_time"]) for numbers in found]
+    assert times[0] == pytest.approx(times[1], rel=1e-6)

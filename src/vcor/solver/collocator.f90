@@ -275,11 +275,8 @@ contains
       real(wp) :: u(width), impulse(width)
 
       associate (map => rule%map(step%index))
-         ! q is what u - q does not lack of u
-         u = hertz(panel%indentation(1:))
-         start%q = -start%q
-         call advance_lags(map, step%map_scale(), modes%contact, u, start%q)
-         start%q = u(rule%stages) - start%q
+         u = hertz(panel%indentation(1:)) - hertz(start%indentation)
+         call advance_lags(map, step%map_scale(), modes%contact, u, start%lag)
          impulse = panel%impulse(1:) - start%impulse
          call advance_lags(map, step%map_scale(), modes%plate, impulse, start%p)
          call move_to_end(panel, start)

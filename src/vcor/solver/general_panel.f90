@@ -55,6 +55,7 @@ contains
       real(wp), dimension(width, width) :: h, response, s_matrix, slope, plate, inverse
       real(wp) :: lag(width, width, size(modes%contact%rates))
       integer :: n, iteration, j, k
+      real(wp) :: start_u
       type(newton_t) :: newton
       logical :: frozen, remembers
 
@@ -75,6 +76,7 @@ contains
       call resolve_contact(modes%contact, start, map, lambda, stiffness, memory)
       s_matrix = function_of_h(map, stiffness)
       b = apply(map%right, memory)
+      start_u = hertz(start%indentation)
       lag = 0.0_wp
       if (abs(coefficient) > 0.0_wp) then
          do k = 1, size(lag, 3)
@@ -110,9 +112,10 @@ contains
       right(n + 1:) = 0.0_wp
       do iteration = 1, most_iterations
          u = hertz(s)
-         force = matmul(s_matrix, u) - b
+         force = matmul(s_matrix, u - start_u) + b
          slope = s_matrix
-         call add_second_term(modes%contact, coefficient, u, start%q, lag, force, slope)
+         call add_second_term(modes%contact, coefficient, u, start_u, start%lag, lag, force, &
+            slope)
          change = right - s - matmul(response, force)
          if (newton%stale) then
             inverse = matmul(response, slope)
@@ -128,9 +131,9 @@ contains
       if (.not. panel%converged) return
 
       u = hertz(s)
-      force = matmul(s_matrix, u) - b
+      force = matmul(s_matrix, u - start_u) + b
       slope = s_matrix
-      call add_second_term(modes%contact, coefficient, u, start%q, lag, force, slope)
+      call add_second_term(modes%contact, coefficient, u, start_u, start%lag, lag, force, slope)
       impulse = start%impulse + matmul(h, force)
       drift = start%drift + matmul(h, alpha_rate*force)
       if (remembers) drift = -past - apply(plate, force)
@@ -148,15 +151,17 @@ contains
    end subroutine solve_general_panel
 
    !> Add the second term of the Volterra series to the force and its derivative to the stiffness
-   pure subroutine add_second_term(kernel, coefficient, u, q, lag, force, slope)
+   pure subroutine add_second_term(kernel, coefficient, u, start_u, start_lag, lag, force, slope)
       !> The kernel
       type(exponential_sum_t), intent(in) :: kernel
       !> Coefficient c2 [m^-1.5], 0 without the term
       real(wp), intent(in) :: coefficient
       !> u at the stages [m^1.5]
       real(wp), intent(in) :: u(width)
-      !> Internal variables at the start of the panel [m^1.5], shape (modes)
-      real(wp), intent(in) :: q(:)
+      !> u at the start of the panel [m^1.5]
+      real(wp), intent(in) :: start_u
+      !> What the internal variables fall behind there, u - q_k [m^1.5], shape (modes)
+      real(wp), intent(in) :: start_lag(:)
       !> Matrices Z_k, shape (width, width, modes)
       real(wp), intent(in) :: lag(:, :, :)
       !> Force at the stages [N]
@@ -173,7 +178,7 @@ contains
          slope(j, j) = slope(j, j) + 2.0_wp*coefficient*kernel%equilibrium*u(j)
       end do
       do k = 1, size(kernel%rates)
-         p = matmul(lag(:, :, k), u - q(k))
+         p = matmul(lag(:, :, k), u - start_u + start_lag(k))
          force = force + coefficient*kernel%moduli(k)*p**2
          do j = 1, width
             slope(:, j) = slope(:, j) + 2.0_wp*coefficient*kernel%moduli(k)*p*lag(:, j, k)

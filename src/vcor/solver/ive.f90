@@ -256,8 +256,8 @@ contains
          accuracy = max(accuracy, sensitivity*modes%contact%error)
       complete = .true.
       end_time = patience
-      allocate (start%q(size(modes%contact%rates)), start%p(size(modes%plate%rates)))
-      start%q = 0.0_wp
+      allocate (start%lag(size(modes%contact%rates)), start%p(size(modes%plate%rates)))
+      start%lag = 0.0_wp
       start%p = 0.0_wp
       coarse_start = start
       recedes = impact%law == law_receding

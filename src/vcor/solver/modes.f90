@@ -1,8 +1,8 @@
 !> Internal variables of a kernel that is a sum of exponentials: what they add to the equations of
 !> a panel, and how they get to its end
 !>
-!> For q_k' = l_k (u - q_k) the stage values follow from those of u:
-!> u - q = (1 + l_k H)^-1 (u - q_n) with the integration matrix H of the panel, known through its
+!> For q_k' = l_k (u - q_k) the stage values of p_k = u - q_k follow from those of u:
+!> p = (1 + l_k H)^-1 (u - u_n + p_n) with the integration matrix H of the panel, known through its
 !> eigenvalues. A kernel may have a hundred modes: the loops over the eigenvalues are the innermost
 !> ones, which the compiler turns into vector instructions.
 module vcor_solver_modes
@@ -42,8 +42,8 @@ module vcor_solver_modes
       real(wp) :: deflection = 0.0_wp
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift = 0.0_wp
-      !> Internal variables q_k [m^1.5], shape (modes)
-      real(wp), allocatable :: q(:)
+      !> What the internal variables fall behind, u - q_k [m^1.5], shape (modes)
+      real(wp), allocatable :: lag(:)
       !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate)
       real(wp), allocatable :: p(:)
    end type start_t
@@ -52,12 +52,12 @@ contains
 
    !> What the modes of a sum make of a function in the panel, and of their own past, as functions
    !> of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c with
-   !> c 1 = sum_k G_k q_k (1 + l_k H)^-1 1
-   pure subroutine resolve(terms, q, map, lambda, response, past)
+   !> c 1 = sum_k G_k p_k (1 + l_k H)^-1 1
+   pure subroutine resolve(terms, p, map, lambda, response, past)
       !> The sum
       type(exponential_sum_t), intent(in) :: terms
-      !> Values q_k at the start of the panel, shape (modes)
-      real(wp), intent(in) :: q(:)
+      !> Values p_k at the start of the panel, shape (modes)
+      real(wp), intent(in) :: p(:)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Eigenvalues of H [s]
@@ -73,7 +73,7 @@ contains
       r = constant(terms%equilibrium)
       c = 0.0_wp
       square = map%square
-      do k = 1, size(q)
+      do k = 1, size(p)
          associate (rate => terms%rates(k), modulus => terms%moduli(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
@@ -83,8 +83,8 @@ contains
                d = d*share
                r(m) = r(m) + a
                r(pairs + m) = r(pairs + m) - d
-               c(m) = c(m) + a*q(k)
-               c(pairs + m) = c(pairs + m) - d*q(k)
+               c(m) = c(m) + a*p(k)
+               c(pairs + m) = c(pairs + m) - d*p(k)
             end do
          end associate
       end do
@@ -92,7 +92,8 @@ contains
       past = times(square, c, map%left_one)
    end subroutine resolve
 
-   !> S and b of F = S u - b as functions of the eigenvalues of H
+   !> S and b of F = S (u - u_n) + b as functions of the eigenvalues of H. Stiff modes and dashpots
+   !> are given what u gains in the panel, which keeps its digits
    pure subroutine resolve_contact(contact, start, map, lambda, stiffness, memory)
       !> Kernel of the contact
       type(exponential_sum_t), intent(in) :: contact
@@ -107,14 +108,10 @@ contains
       !> b, the vector of ones in it [N]
       real(wp), intent(out) :: memory(width)
 
-      real(wp) :: dashpot(width)
-
-      call resolve(contact, start%q, map, lambda, stiffness, memory)
-      if (contact%viscosity > 0.0_wp) then
-         dashpot = ratio(map%square, constant(contact%viscosity), lambda)
-         stiffness = stiffness + dashpot
-         memory = memory + times(map%square, dashpot, map%left_one)*hertz(start%indentation)
-      end if
+      call resolve(contact, start%lag, map, lambda, stiffness, memory)
+      memory = memory + contact%equilibrium*hertz(start%indentation)*map%left_one
+      if (contact%viscosity > 0.0_wp) &
+         stiffness = stiffness + ratio(map%square, constant(contact%viscosity), lambda)
    end subroutine resolve_contact
 
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last

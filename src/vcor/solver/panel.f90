@@ -1,12 +1,12 @@
 !> One panel of the internal-variable method: Radau IIA collocation of the twice-integrated
 !> equation of motion with the internal variables eliminated
 !>
-!> For F = G_0 u + sum_k G_k (u - q_k) + eta u' with q_k' = l_k (u - q_k), the stage values of q_k
-!> follow from those of u: u - q = (1 + l_k H)^-1 (u - q_n) with H = scale*B the integration matrix
-!> of the panel. Hence F = S u - b, with the matrix and the vector
+!> For F = G_0 u + sum_k G_k p_k + eta u' with p_k' = u' - l_k p_k, what internal variables fall
+!> behind u, the stage values of p_k follow from those of u: p = (1 + l_k H)^-1 (u - u_n + p_n) with
+!> H = scale*B the integration matrix of the panel. Hence F = S (u - u_n) + b, with
 !>
 !>     S = G_0 + sum_k G_k (1 + l_k H)^-1 + eta H^-1,
-!>     b = sum_k G_k q_k,n (1 + l_k H)^-1 1 + eta u_n H^-1 1,
+!>     b = G_0 u_n 1 + sum_k G_k p_k,n (1 + l_k H)^-1 1,
 !>
 !> functions of H, known through its eigenvalues: `stiffness` and `memory` below are S and b there.
 !> What is left is s = v0 t - J/m - alpha I with I = I_n + H F and J = J_n + H I, one nonlinear
@@ -58,6 +58,8 @@ module vcor_solver_panel
    type :: equations_t
       !> Eigenvalues of H [s]
       real(wp) :: lambda(width)
+      !> u at the start of the panel [m^1.5]
+      real(wp) :: start_u
       !> S [N/m^1.5]
       real(wp) :: stiffness(width)
       !> V^-1 b [N]
@@ -156,6 +158,7 @@ contains
       inverse_mass = 1.0_wp/impact%mass
       associate (e => equations)
          e%lambda = scale*map%eigenvalue
+         e%start_u = hertz(start%indentation)
          call resolve_contact(modes%contact, start, map, e%lambda, e%stiffness, e%memory)
          e%impulsive = times(map%square, e%lambda, e%stiffness)
          e%inertial = inverse_mass*times(map%square, e%lambda, e%impulsive)
@@ -163,16 +166,16 @@ contains
          e%free_second_impulse = start%second_impulse + start%impulse*elapsed
          impulse = times(map%square, e%lambda, e%memory)
          e%right = impact%velocity*panel%time(1:) - (e%free_second_impulse &
-            - apply(map%right, times(map%square, e%lambda, impulse)))*inverse_mass &
-            - panel%alpha(1:)*(start%impulse - apply(map%right, impulse))
+            + apply(map%right, times(map%square, e%lambda, impulse)))*inverse_mass &
+            - panel%alpha(1:)*(start%impulse + apply(map%right, impulse))
          e%remembers = size(start%p) > 0
          if (e%remembers) then
             ! U has V with V' = R H F + c beside alpha I
             call resolve(modes%plate, start%p, map, e%lambda, e%plate, e%past)
             yield = times(map%square, e%lambda, e%plate)
             e%inertial = e%inertial + times(map%square, yield, e%impulsive)
-            e%right = e%right - start%deflection + apply(map%right, &
-               times(map%square, yield, impulse) - times(map%square, e%lambda, e%past))
+            e%right = e%right - start%deflection - apply(map%right, &
+               times(map%square, yield, impulse) + times(map%square, e%lambda, e%past))
          end if
          e%right(n + 1:) = 0.0_wp
       end associate
@@ -211,7 +214,7 @@ contains
       s(rule%stages + 1:) = 0.0_wp
       do iteration = 1, most_iterations
          root = sqrt(abs(s))
-         u = s*root
+         u = s*root - equations%start_u
          change = equations%right - s - apply(response, u)
          if (newton%stale) then
             root = 1.5_wp*root
@@ -320,7 +323,7 @@ contains
 
       real(wp) :: x(width)
 
-      x = apply(map%left, s*sqrt(abs(s)))
+      x = apply(map%left, s*sqrt(abs(s)) - equations%start_u)
       displacement = equations%right - apply(map%right, times(map%square, equations%inertial, x)) &
          - alpha*apply(map%right, times(map%square, equations%impulsive, x))
    end function displaced
@@ -384,7 +387,7 @@ contains
       end do
    end subroutine assemble
 
-   !> F = S u - b and its integrals I = I_n + H F, J = J_n + H I_n + H^2 F
+   !> F = S (u - u_n) + b and its integrals I = I_n + H F, J = J_n + H I_n + H^2 F
    pure subroutine integrate(map, equations, u, panel)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
@@ -397,7 +400,8 @@ contains
 
       real(wp) :: x(width), y(width)
 
-      x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
+      x = times(map%square, equations%stiffness, apply(map%left, u - equations%start_u)) &
+            + equations%memory
       panel%force(1:) = apply(map%right, x)
       x = times(map%square, equations%lambda, x)
       panel%impulse(1:) = equations%free_impulse + apply(map%right, x)
@@ -425,7 +429,8 @@ contains
       real(wp) :: x(width)
 
       associate (n => panel%stages)
-         x = times(map%square, equations%stiffness, apply(map%left, u)) - equations%memory
+         x = times(map%square, equations%stiffness, apply(map%left, u - equations%start_u)) &
+            + equations%memory
          panel%force(n) = sum(map%last*x)
          x = times(map%square, equations%lambda, x)
          panel%impulse(n) = equations%free_impulse + sum(map%last*x)
