@@ -65,7 +65,7 @@ contains
       character(len=longest_word) :: units(most_columns), word
       character(len=:), allocatable :: place, head
       integer :: roles(most_columns), i
-      logical :: shear(most_columns)
+      logical :: shear(most_columns), told
 
       place = name//":"//integer_text(line)
       head = place
@@ -114,6 +114,9 @@ contains
 
       plan%shear = reading%shear .or. any(shear(plan%places))
       allocate (plan%units(size(plan%places)))
+      ! a header that tells one unit tells all: what it leaves out is not that of the SI
+      told = header%lines > 1 .or. any(header%columns(plan%places)%unit /= "" &
+         .and. plan%roles /= role_tangent)
       do i = 1, size(plan%places)
          word = units(plan%places(i))
          if (size(reading%units) > 0) then
@@ -123,6 +126,14 @@ contains
             call raise(error, error_usage, head//": the unit of '" &
                //shortened(trim(header%columns(plan%places(i))%name)) &
                //"' is not told: give --units, such as Hz,Pa,Pa or rad/s,Pa,Pa")
+            return
+         end if
+         if (word == "" .and. told .and. plan%roles(i) /= role_tangent) then
+            call raise(error, error_input, name//":" &
+               //integer_text(maxval(header%columns(:columns)%line))//": found no unit of '" &
+               //shortened(trim(header%columns(plan%places(i))%name))//"', a " &
+               //name_of(plan%roles(i), "")//", though others have one; expected one for each, " &
+               //"or --units")
             return
          end if
          if (word == "") word = default_unit(plan%roles(i))
