@@ -121,6 +121,27 @@ def test_loss_tangent(vcor, name):
     is_the_sls(fitted(vcor, text, "--poisson-ratio", "0.4"))
 
 
+@pytest.mark.parametrize(
+    "name, shear",
+    [("|E*|", 1), ("E*", 1), ("Complex modulus", 1), ("|G*|", 2.8), ("Complex shear modulus", 2.8)],
+)
+def test_complex_modulus(vcor, name, shear):
+    """It stands for the storage modulus where that is not there: |E*|^2 = E'^2 + E''^2."""
+    omega = np.logspace(1, 5, 41)
+    storage, loss = sls_dynamic(omega)
+    numbers = omega, np.hypot(storage, loss) / shear / 1e6, loss / storage
+    text = columns(*numbers, head=f"omega [rad/s],{name} [MPa],tan delta\n")
+    is_the_sls(fitted(vcor, text, "--poisson-ratio", "0.4"))
+    more = columns(*numbers, storage / shear / 1e6,
+                   head=f"omega,{name},tan_d,{'G' if shear > 1 else 'E'}_stor\nrad/s,MPa,-,MPa\n")
+    is_the_sls(fitted(vcor, more, "--poisson-ratio", "0.4"))
+    assert "storage modulus" in vcor.succeeds("fit", "data.csv", "--poisson-ratio", "0.4")
+    for other in ("E''", "phase"):
+        text = columns(*numbers, head=f"omega [rad/s],{name} [MPa],{other} [MPa]\n")
+        vcor.write(text, "data.csv")
+        vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:1", says="needs the loss tangent")
+
+
 @pytest.mark.parametrize("head", ["T,t,E\nC,s,MPa\n", "T,t [s],E [MPa]\n"])
 def test_temperature_is_no_time(vcor, head):
     """As other tools write it, in a column beside the others."""
@@ -178,6 +199,7 @@ BAD = {
     "unit row with a gap": ("t,E\n-,MPa\n1,5\n2,4\n", 2, ["'t'", "time"]),
     "unit of one modulus": ("omega,E' [MPa],E_loss\n1,2,1\n2,3,1\n", 1, ["'e_loss'", "--units"]),
     "unit of the time only": ("t [s],E\n1,5\n2,4\n", 1, ["'e'", "--units"]),
+    "complex by another name": ("f,E* magnitude,tan_d\nHz,Pa,-\n1,2,1\n2,3,1\n", 1, "'e*_magnitude'"),
     "missing number": ("1,5\n2,\n", 2, "''"),
     "missing column": ("1,5\n2\n", 2, "1 column"),
     "four columns": ("1,2,3,4\n2,3,4,5\n", 1, "4 columns"),

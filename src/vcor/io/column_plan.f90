@@ -5,8 +5,9 @@
 module vcor_io_column_plan
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t
-   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_frequency, &
-      role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, role_time
+   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_complex, &
+      role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, &
+      role_time
    use vcor_kinds, only : wp
    use vcor_study_text, only : integer_text, shortened
    use vcor_study_units, only : time_units
@@ -170,6 +171,12 @@ contains
             if (count(roles == plan%roles(i)) > 1) then
                call raise(error, error_input, head//": found "//columns_text(count(roles &
                   == plan%roles(i)))//" of "//name_of(plan%roles(i), "")//", expected one")
+            else if (roles(place) == role_none &
+               .and. index(header%columns(place)%name, "*") > 0) then
+               ! some other spelling of a complex modulus, or of a complex viscosity
+               call raise(error, error_input, head//": found '" &
+                  //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
+                  //"expected one such as "//example(plan%roles(i)))
             else if (roles(place) == role_none .and. units(place) == "" .and. .not. told) then
                ! its place alone says nothing, the logarithm of a modulus may stand there
                call raise(error, error_input, head//": found '" &
@@ -198,6 +205,8 @@ contains
       if (dynamic) then
          plan%roles = [role_frequency, role_storage, role_loss]
          if (all(roles /= role_loss) .and. any(roles == role_tangent)) plan%roles(3) = role_tangent
+         if (all(roles /= role_storage) .and. any(roles == role_complex) &
+            .and. any(roles == role_tangent)) plan%roles(2:) = [role_complex, role_tangent]
       else
          plan%roles = [role_time, role_relaxation]
       end if
@@ -228,6 +237,8 @@ contains
          name = "relaxation modulus"
       case (role_storage)
          name = "storage modulus"
+      case (role_complex)
+         name = "complex modulus"
       case (role_tangent)
          name = "loss tangent"
       case default
@@ -269,6 +280,8 @@ contains
       loss = any(roles == role_loss .or. roles == role_tangent)
       if (any(roles == role_storage) .and. .not. loss) text = "; there is no loss modulus"
       if (loss .and. all(roles /= role_storage)) text = "; there is no storage modulus"
+      if (any(roles == role_complex) .and. all(roles /= role_tangent)) text &
+         = "; a complex modulus needs the loss tangent beside it"
    end function lacking
 
    !> A number of columns in words

@@ -16,7 +16,7 @@ module vcor_io_header
    public :: header_t, column_name_t, read_names, read_units, note_comment, role_of, check_unit
    public :: most_columns, longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
-      role_tangent
+      role_tangent, role_complex
 
    !> Most columns of a file
    integer, parameter :: most_columns = 64
@@ -36,6 +36,8 @@ module vcor_io_header
    integer, parameter :: role_loss = 5
    !> Loss tangents, which give the loss moduli where there are none
    integer, parameter :: role_tangent = 6
+   !> Magnitudes of complex moduli, which give the storage moduli where there are none
+   integer, parameter :: role_complex = 7
 
    !> Names of columns; moduli that begin with g are shear moduli
    character(len=*), parameter :: time_names = " t time times "
@@ -50,6 +52,8 @@ module vcor_io_header
    character(len=*), parameter :: loss_names = " e'' g'' e"" g"" e_loss g_loss loss " &
       //"loss_modulus e_double_prime g_double_prime "
    character(len=*), parameter :: tangent_names = " loss_tangent loss_factor damping_factor "
+   character(len=*), parameter :: complex_names = " e* g* |e*| |g*| |e| |g| e_star g_star " &
+      //"complex_modulus complex_shear_modulus "
    !> Unit of a pure number
    character(len=*), parameter :: pure_number = "1"
 
@@ -293,8 +297,9 @@ contains
       if (contains_word(storage_names, column%name)) role = role_storage
       if (contains_word(loss_names, column%name)) role = role_loss
       if (contains_word(tangent_names, column%name)) role = role_tangent
-      shear = role >= role_relaxation .and. role < role_tangent .and. (column%name(1:1) == "g" &
-         .or. column%name == "shear_modulus")
+      if (contains_word(complex_names, column%name)) role = role_complex
+      shear = role >= role_relaxation .and. role /= role_tangent .and. (column%name(1:1) == "g" &
+         .or. column%name(1:2) == "|g" .or. index(column%name, "shear") > 0)
       if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
       if (unit == "" .and. contains_word(angular_names, column%name)) unit = "rad/s"
       if (role /= role_none) return

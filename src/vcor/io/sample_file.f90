@@ -1,5 +1,5 @@
 !> Data files that materials are identified from: relaxation moduli over time, or storage and loss
-!> moduli (or the storage modulus and the loss tangent) over frequency
+!> moduli (or the storage or complex modulus and the loss tangent) over frequency
 !>
 !> With a header of names, and units in it or in a second line, or without. Where nothing tells, two
 !> columns are time and relaxation modulus, three are angular frequency, storage and loss modulus,
@@ -10,7 +10,7 @@ module vcor_io_sample_file
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
       take_decimals, take_line
    use vcor_io_header, only : header_t, most_columns, note_comment, read_names, read_units, &
-      role_frequency, role_tangent
+      role_complex, role_frequency, role_tangent
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
@@ -59,6 +59,9 @@ contains
       samples%at = points(1, :n)*unit_size(trim(plan%units(1)))
       samples%modulus = points(2, :n)*unit_size(trim(plan%units(2)))
       if (samples%dynamic) samples%loss = points(3, :n)*unit_size(trim(plan%units(3)))
+      ! |E*| = E' sqrt(1 + tan(delta)^2), E'' = E' tan(delta)
+      if (plan%roles(2) == role_complex) samples%modulus &
+         = samples%modulus/hypot(1.0_wp, samples%loss)
       if (plan%roles(size(plan%roles)) == role_tangent) samples%loss = samples%loss*samples%modulus
       if (plan%shear) then
          samples%modulus = 2.0_wp*(1.0_wp + reading%poisson_ratio)*samples%modulus
