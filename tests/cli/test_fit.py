@@ -62,6 +62,23 @@ FORMATS = {
 }
 
 
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+def test_signs_of_units(vcor, encoding):
+    """µ and ², as spreadsheets write them."""
+    text = columns(TIMES * 1e6, sls(TIMES) / 1e6, head="t [µs],E [N/mm²]\n")
+    is_the_sls(fitted(vcor, text.encode(encoding)))
+
+
+@pytest.mark.parametrize("separator", [";", ",", "\t"])
+def test_separator_by_name(vcor, separator):
+    """The first line that Excel asks for. Numbers of lines count it."""
+    head = f"sep={separator}\r\nt [ms]{separator}E [MPa]\r\n"
+    text = columns(TIMES * 1e3, sls(TIMES) / 1e6, head=head, separator=separator)
+    is_the_sls(fitted(vcor, text))
+    vcor.write(head + f"1{separator}x\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:3", says="'x'")
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_relaxation_formats(vcor, name):
     head, time, modulus, separator = FORMATS[name]

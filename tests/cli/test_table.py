@@ -79,6 +79,7 @@ FORMS = {
     "decimal commas": DATA.replace(",", ";").replace(".", ","),
     "decimal commas and tabs": DATA.replace(",", "\t").replace(".", ","),
     "header with units": '"t [s]";"E [Pa]"\n' + DATA,
+    "separator by name": "sep=;\nt;E\n" + DATA.replace(",", ";"),
     "header of many words": "Relaxation of BUTYL at 300 K\n" + DATA,
     "remark first": "# BUTYL, 300 K\n#\n\ntime,modulus\n" + DATA,
     "remarks between": DATA.replace("\n", "\n# 1,2\n \t\n"),

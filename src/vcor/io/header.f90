@@ -263,18 +263,20 @@ contains
       !> The unit as `vcor_study_units` has it, where it is one of these
       character(len=longest_word) :: usual
 
-      character(len=*), parameter :: micro(2) = [char(194)//char(181), char(206)//char(188)]
-      character(len=*), parameter :: squared = char(194)//char(178)
-      integer :: i, mark
+      character(len=*), parameter :: micro = char(181), mu = char(206)//char(188)
+      character(len=*), parameter :: squared = char(178), latin = char(194)
+      integer :: mark
 
       usual = unit
-      do i = 1, size(micro)
-         if (usual(:2) == micro(i)) usual = "u"//usual(3:)
-      end do
+      ! the signs of Latin-1 are the same in UTF-8, behind this byte
+      mark = index(usual, latin)
+      if (mark > 0) usual = usual(:mark - 1)//usual(mark + 1:)
+      if (usual(:1) == micro) usual = "u"//usual(2:)
+      if (usual(:2) == mu) usual = "u"//usual(3:)
       mark = index(usual, "^2")
       if (mark > 1) usual = usual(:mark - 1)//usual(mark + 1:)
       mark = index(usual, squared)
-      if (mark > 1) usual = usual(:mark - 1)//"2"//usual(mark + 2:)
+      if (mark > 1) usual(mark:mark) = "2"
       if (usual == "sec") usual = "s"
    end function usual_unit
 
