@@ -246,19 +246,21 @@ def test_unreadable(vcor):
 
 def test_too_few_data(vcor):
     vcor.write(columns(TIMES[:3], sls(TIMES[:3])), "data.csv")
-    vcor.refuses("fit", "data.csv", "--model", "sls", code=INPUT, says=["3 moduli", "at least 4"])
-    vcor.refuses("fit", "data.csv", "--terms", "2", code=INPUT, says="at least 6")
+    vcor.refuses("fit", "data.csv", "--model", "sls", code=INPUT, at="data.csv:1-3",
+                 says=["3 moduli", "at least 4"])
+    vcor.refuses("fit", "data.csv", "--terms", "2", code=INPUT, at="data.csv:1-3", says="at least 6")
 
 
 def test_nothing_relaxes(vcor):
-    vcor.write("1,5\n2,5\n3,5\n4,5\n", "data.csv")
-    vcor.refuses("fit", "data.csv", code=INPUT, says="elastic")
+    vcor.write("# a remark\nt,E\n1,5\n2,5\n3,5\n4,5\n\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:3-6", says="elastic")
 
 
 @pytest.mark.parametrize("text", ["1,1\n2,2\n3,3\n4,4\n", "1,4,1\n2,3,1\n3,2,1\n"])
 def test_modulus_the_wrong_way(vcor, text):
     vcor.write(text, "data.csv")
-    vcor.refuses("fit", "data.csv", code=INPUT, says="does not fall with time")
+    at = f"data.csv:1-{text.count(chr(10))}"
+    vcor.refuses("fit", "data.csv", code=INPUT, at=at, says="does not fall with time")
 
 
 @pytest.mark.parametrize("seed", [9, 10, 11, 13, 123, 159])

@@ -243,9 +243,11 @@ FEW = ["", "\n", "# only a remark\n", "\ufeff", "time,modulus\n", "1e-3,1e6\n", 
 
 @pytest.mark.parametrize("text", FEW)
 def test_too_few_points(table, text):
+    """The line is the last one, where more were expected."""
     table.write(text, "data.csv")
-    n = "1 points" if "1e-3" in text else "0 points"
-    table.refuses("run", "case.nml", code=INPUT, at="data.csv", says=[n, "2 at least"])
+    n = "1 point," if "1e-3" in text else "0 points,"
+    at = f"data.csv:{max(1, text.count(chr(10)))}"
+    table.refuses("run", "case.nml", code=INPUT, at=at, says=[n, "2 at least"])
 
 
 def test_two_points_are_enough(table):

@@ -26,7 +26,7 @@ module vcor_io_sample_file
 contains
 
    !> Read samples from a file
-   subroutine read_samples(samples, filename, reading, note, error)
+   subroutine read_samples(samples, filename, reading, note, place, error)
       !> The samples, of tensile moduli in SI units
       type(samples_t), intent(out) :: samples
       !> Name of the file
@@ -35,6 +35,8 @@ contains
       type(reading_t), intent(in) :: reading
       !> How it was understood, in words
       character(len=:), allocatable, intent(out) :: note
+      !> File and lines of the numbers, `data.csv:3-42`, for messages about all of them
+      character(len=:), allocatable, intent(out) :: place
       !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
       !> are wrong, `error_usage` when something has to be said about it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -42,11 +44,11 @@ contains
       type(plan_t) :: plan
       character(len=:), allocatable :: text
       real(wp), allocatable :: points(:, :)
-      integer :: n
+      integer :: lines(2), n
 
       call read_text_file(filename, text, error, kind="a file of moduli over time or frequency")
       if (allocated(error)) return
-      call read_points(text, printable(filename), reading, plan, points, n, error)
+      call read_points(text, printable(filename), reading, plan, points, n, lines, error)
       if (allocated(error)) return
       if (plan%shear .and. reading%poisson_ratio > 0.5_wp) then
          call raise(error, error_usage, printable(filename)//": found shear moduli, which become " &
@@ -68,6 +70,7 @@ contains
          samples%loss = 2.0_wp*(1.0_wp + reading%poisson_ratio)*samples%loss
       end if
       note = described(plan, n)
+      place = printable(filename)//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
    end subroutine read_samples
 
    !> How a file was understood
@@ -91,7 +94,7 @@ contains
    end function described
 
    !> Read the points
-   subroutine read_points(text, name, reading, plan, points, n, error)
+   subroutine read_points(text, name, reading, plan, points, n, lines, error)
       !> Contents of the file
       character(len=*), intent(in) :: text
       !> Its name for messages
@@ -104,18 +107,21 @@ contains
       real(wp), allocatable, intent(out) :: points(:, :)
       !> Their number, >= 2
       integer, intent(out) :: n
+      !> Lines of the first and the last of them
+      integer, intent(out) :: lines(2)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(header_t) :: header
       type(decimals_t) :: decimals, before
       character(len=:), allocatable :: content, comment, message
-      integer :: start, line, last_line, columns, from(most_columns), to(most_columns), i
+      integer :: start, line, columns, from(most_columns), to(most_columns), i
       logical :: numeric
 
       allocate (points(3, lines_in(text)))
       start = start_of(text)
       line = 0
+      lines = 0
       n = 0
       do while (start <= len(text))
          call take_line(text, start, content, comment)
@@ -156,7 +162,7 @@ contains
             if (.not. allocated(message) .and. n > 0) then
                if (.not. points(1, n + 1) > points(1, n)) message = "found " &
                   //name_of(plan%roles(1), "")//" "//real_text(points(1, n + 1))//" after " &
-                  //real_text(points(1, n))//" in line "//integer_text(last_line) &
+                  //real_text(points(1, n))//" in line "//integer_text(lines(2)) &
                   //", expected them to increase"
             end if
          end if
@@ -165,7 +171,8 @@ contains
             return
          end if
          n = n + 1
-         last_line = line
+         if (n == 1) lines(1) = line
+         lines(2) = line
       end do
       plan%decimals = before
       if (n >= 2) return
