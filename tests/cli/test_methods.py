@@ -159,3 +159,27 @@ def test_step_without_effect(vcor):
     assert note in vcor("run", path, *step).out
     assert note not in vcor("run", path, *step, "--set", "solver.method=direct").out
     assert note not in vcor("run", path).out
+
+
+# A fluid that relaxes a thousand times faster than the contact, and a slow solid
+PAIR = """
+&impact velocity = 1 /
+&sphere radius = 0.01, material = 'fluid' /
+&plate material = 'solid', waves = 'none' /
+&material name = 'fluid', model = 'prony', density = 1000, poisson_ratio = 0.4,
+   equilibrium_modulus = 0, moduli = 1e7, times = 1e-6 /
+&material name = 'solid', model = 'prony', density = 1000, poisson_ratio = 0.4,
+   equilibrium_modulus = 1e5, moduli = 1e7, times = 1e-3 /
+"""
+
+
+def test_auto_does_not_change_over(vcor):
+    """A pair without a sum of exponentials is refused by auto as by ive, as docs/accuracy.md and
+    the help say; direct has no need of one, and sees that the bodies stick."""
+    vcor.write(PAIR)
+    for method in ("auto", "ive"):
+        setting = f"solver.method={method}"
+        vcor.refuses("run", "case.nml", "--set", setting, code=NUMERICAL, says="method = 'direct'")
+    done = vcor("run", "case.nml", "--set", "solver.method=direct", "--print", "status")
+    assert done.out == "sticks\n"
+    assert "auto: ive, but direct for scheme adams_bashforth" in vcor.succeeds("help", "input")
