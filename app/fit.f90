@@ -29,7 +29,7 @@ contains
       type(sampled_t) :: sampled
       type(samples_t) :: samples
       type(fit_t) :: fit
-      character(len=:), allocatable :: source, note, path, group, tail
+      character(len=:), allocatable :: source, place, note, path, group, tail
       real(wp) :: density, poisson_ratio
 
       request = asked
@@ -37,6 +37,7 @@ contains
       if (allocated(error)) return
       if (allocated(request%fit%source)) then
          source = request%fit%source
+         place = printable(source)
          call sample_model(request, sampled, samples, note, error)
       else
          source = request%files(1)%text
@@ -46,13 +47,13 @@ contains
                //'--from-model')
             return
          end if
-         call read_samples(samples, source, reading, note, error)
+         call read_samples(samples, source, reading, note, place, error)
       end if
       if (allocated(error)) return
       call fit_material(fit, request%fit%model, request%fit%terms, request%fit%fixed, samples, &
          error)
       if (allocated(error)) then
-         error%message = printable(source)//': '//error%message
+         error%message = place//': '//error%message
          return
       end if
 

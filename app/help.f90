@@ -203,7 +203,8 @@ contains
          //'The keys valid_from and valid_to of the group tell the band of the data. vcor run'//nl &
          //'warns where the cor of an impact changes by more than 1e-4 with the modulus held'//nl &
          //'constant outside of it.'//nl//nl &
-         //'A standard error is a third of the way to the further end of the interval of three'//nl &
+         //'A standard error is a third of the way to the further end of the interval of three' &
+         //nl &
          //'standard errors. A parameter at its bound has one too: 0 +- 1E+5 may be 1E+5, and'//nl &
          //'the errors of the others allow for it.'//nl//nl &
          //'exit code 5: the fit does not converge, or the data do not determine the'//nl &

@@ -98,19 +98,19 @@ contains
       waves = 'waves'
       law = 'law'
       text = '  what the choice of model is worth; * that of the case'//nl &
-         //'  '//waves//'  '//law//right('cor', 14)//right('cor_sphere', 14) &
-         //right('contact_time [s]', 20)//right('residual_indentation [m]', 26)//nl
+         //'  '//waves//'  '//law//right('cor', 16)//right('cor_sphere', 16) &
+         //right('contact_time [s]', 18)//right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
          associate (this => models(i))
             text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
             if (allocated(this%failure)) then
-               text = text//right('refused', 14)//nl
+               text = text//right('refused', 16)//nl
             else if (this%outcome%status /= contact_separated) then
-               text = text//right(status_name(this%outcome%status), 14)//nl
+               text = text//right(status_name(this%outcome%status), 16)//nl
             else
-               text = text//significant(this%outcome%cor, 8, 14) &
-                  //significant(this%outcome%cor_sphere, 8, 14) &
-                  //significant(this%outcome%contact_time, 8, 20) &
+               text = text//significant(this%outcome%cor, 8, 16) &
+                  //significant(this%outcome%cor_sphere, 8, 16) &
+                  //significant(this%outcome%contact_time, 8, 18) &
                   //significant(this%outcome%residual_indentation, 8, 26)//nl
             end if
          end associate
@@ -130,7 +130,7 @@ contains
       integer :: i
 
       label = 'solution'
-      text = '  '//label//' accuracy step [s]  steps             cor   states   off by' &
+      text = '  '//label//' accuracy step [s]  steps               cor   states   off by' &
          //'  dW/KE_0'//nl
       do i = 1, attempt_count
          associate (this => comparison%attempts(i))
@@ -149,7 +149,7 @@ contains
             honest = ''
             if (i /= attempt_case) honest = &
                merge('  honest ', '  TOO LOW', is_honest(this, error_of_best(comparison)))
-            text = text//significant(this%outcome%cor, 11, 16)//column(this%outcome%cor_error, 9) &
+            text = text//significant(this%outcome%cor, 11, 18)//column(this%outcome%cor_error, 9) &
                //column(this%seen, 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do

@@ -62,6 +62,23 @@ FORMATS = {
 }
 
 
+@pytest.mark.parametrize("encoding", ["latin-1", "utf-8"])
+def test_signs_of_units(vcor, encoding):
+    """µ and ², as spreadsheets write them."""
+    text = columns(TIMES * 1e6, sls(TIMES) / 1e6, head="t [µs],E [N/mm²]\n")
+    is_the_sls(fitted(vcor, text.encode(encoding)))
+
+
+@pytest.mark.parametrize("separator", [";", ",", "\t"])
+def test_separator_by_name(vcor, separator):
+    """The first line that Excel asks for. Numbers of lines count it."""
+    head = f"sep={separator}\r\nt [ms]{separator}E [MPa]\r\n"
+    text = columns(TIMES * 1e3, sls(TIMES) / 1e6, head=head, separator=separator)
+    is_the_sls(fitted(vcor, text))
+    vcor.write(head + f"1{separator}x\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:3", says="'x'")
+
+
 @pytest.mark.parametrize("name", FORMATS)
 def test_relaxation_formats(vcor, name):
     head, time, modulus, separator = FORMATS[name]
@@ -121,6 +138,27 @@ def test_loss_tangent(vcor, name):
     is_the_sls(fitted(vcor, text, "--poisson-ratio", "0.4"))
 
 
+@pytest.mark.parametrize(
+    "name, shear",
+    [("|E*|", 1), ("E*", 1), ("Complex modulus", 1), ("|G*|", 2.8), ("Complex shear modulus", 2.8)],
+)
+def test_complex_modulus(vcor, name, shear):
+    """It stands for the storage modulus where that is not there: |E*|^2 = E'^2 + E''^2."""
+    omega = np.logspace(1, 5, 41)
+    storage, loss = sls_dynamic(omega)
+    numbers = omega, np.hypot(storage, loss) / shear / 1e6, loss / storage
+    text = columns(*numbers, head=f"omega [rad/s],{name} [MPa],tan delta\n")
+    is_the_sls(fitted(vcor, text, "--poisson-ratio", "0.4"))
+    more = columns(*numbers, storage / shear / 1e6,
+                   head=f"omega,{name},tan_d,{'G' if shear > 1 else 'E'}_stor\nrad/s,MPa,-,MPa\n")
+    is_the_sls(fitted(vcor, more, "--poisson-ratio", "0.4"))
+    assert "storage modulus" in vcor.succeeds("fit", "data.csv", "--poisson-ratio", "0.4")
+    for other in ("E''", "phase"):
+        text = columns(*numbers, head=f"omega [rad/s],{name} [MPa],{other} [MPa]\n")
+        vcor.write(text, "data.csv")
+        vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:1", says="needs the loss tangent")
+
+
 @pytest.mark.parametrize("head", ["T,t,E\nC,s,MPa\n", "T,t [s],E [MPa]\n"])
 def test_temperature_is_no_time(vcor, head):
     """As other tools write it, in a column beside the others."""
@@ -174,6 +212,11 @@ BAD = {
     "unit in name": ("t [s],E [mPa]\n1,5\n2,4\n", 1, "'mPa'"),
     "unit of time": ("t,E\nfortnight,Pa\n1,5\n2,4\n", 2, ["'fortnight'", "ms"]),
     "unit of frequency": ("f,E_stor,E_loss\nrpm,Pa,Pa\n1,5,1\n2,6,1\n", 2, ["'rpm'", "Hz"]),
+    "unit row too short": ("f,E_stor,E_loss\nHz,MPa\n1,2,1\n2,3,1\n", 2, ["'e_loss'", "loss modulus"]),
+    "unit row with a gap": ("t,E\n-,MPa\n1,5\n2,4\n", 2, ["'t'", "time"]),
+    "unit of one modulus": ("omega,E' [MPa],E_loss\n1,2,1\n2,3,1\n", 1, ["'e_loss'", "--units"]),
+    "unit of the time only": ("t [s],E\n1,5\n2,4\n", 1, ["'e'", "--units"]),
+    "complex by another name": ("f,E* magnitude,tan_d\nHz,Pa,-\n1,2,1\n2,3,1\n", 1, "'e*_magnitude'"),
     "missing number": ("1,5\n2,\n", 2, "''"),
     "missing column": ("1,5\n2\n", 2, "1 column"),
     "four columns": ("1,2,3,4\n2,3,4,5\n", 1, "4 columns"),
@@ -203,19 +246,21 @@ def test_unreadable(vcor):
 
 def test_too_few_data(vcor):
     vcor.write(columns(TIMES[:3], sls(TIMES[:3])), "data.csv")
-    vcor.refuses("fit", "data.csv", "--model", "sls", code=INPUT, says=["3 moduli", "at least 4"])
-    vcor.refuses("fit", "data.csv", "--terms", "2", code=INPUT, says="at least 6")
+    vcor.refuses("fit", "data.csv", "--model", "sls", code=INPUT, at="data.csv:1-3",
+                 says=["3 moduli", "at least 4"])
+    vcor.refuses("fit", "data.csv", "--terms", "2", code=INPUT, at="data.csv:1-3", says="at least 6")
 
 
 def test_nothing_relaxes(vcor):
-    vcor.write("1,5\n2,5\n3,5\n4,5\n", "data.csv")
-    vcor.refuses("fit", "data.csv", code=INPUT, says="elastic")
+    vcor.write("# a remark\nt,E\n1,5\n2,5\n3,5\n4,5\n\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:3-6", says="elastic")
 
 
 @pytest.mark.parametrize("text", ["1,1\n2,2\n3,3\n4,4\n", "1,4,1\n2,3,1\n3,2,1\n"])
 def test_modulus_the_wrong_way(vcor, text):
     vcor.write(text, "data.csv")
-    vcor.refuses("fit", "data.csv", code=INPUT, says="does not fall with time")
+    at = f"data.csv:1-{text.count(chr(10))}"
+    vcor.refuses("fit", "data.csv", code=INPUT, at=at, says="does not fall with time")
 
 
 @pytest.mark.parametrize("seed", [9, 10, 11, 13, 123, 159])

@@ -180,3 +180,27 @@ def test_stiff_dashpot(vcor):
     assert cor(found[0]) == pytest.approx(cor(found[1]), abs=1e-9)
     times = [float(numbers["contact_time"]) for numbers in found]
     assert times[0] == pytest.approx(times[1], rel=1e-6)
+
+
+# A fluid that relaxes a thousand times faster than the contact, and a slow solid
+PAIR = """
+&impact velocity = 1 /
+&sphere radius = 0.01, material = 'fluid' /
+&plate material = 'solid', waves = 'none' /
+&material name = 'fluid', model = 'prony', density = 1000, poisson_ratio = 0.4,
+   equilibrium_modulus = 0, moduli = 1e7, times = 1e-6 /
+&material name = 'solid', model = 'prony', density = 1000, poisson_ratio = 0.4,
+   equilibrium_modulus = 1e5, moduli = 1e7, times = 1e-3 /
+"""
+
+
+def test_auto_does_not_change_over(vcor):
+    """A pair without a sum of exponentials is refused by auto as by ive, as docs/accuracy.md and
+    the help say; direct has no need of one, and sees that the bodies stick."""
+    vcor.write(PAIR)
+    for method in ("auto", "ive"):
+        setting = f"solver.method={method}"
+        vcor.refuses("run", "case.nml", "--set", setting, code=NUMERICAL, says="method = 'direct'")
+    done = vcor("run", "case.nml", "--set", "solver.method=direct", "--print", "status")
+    assert done.out == "sticks\n"
+    assert "auto: ive, but direct for scheme adams_bashforth" in vcor.succeeds("help", "input")

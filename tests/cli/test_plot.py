@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ElementTree
 import h5py
 import numpy as np
 import pytest
-from cases import SLS
+from cases import SLS, case_text
 from figure import blocks, crowded, places, plots, texts
 from program import FILE, INPUT, PAPER, ROOT, USAGE, Vcor, complaint, contents
 
@@ -215,6 +215,22 @@ def test_loop(vcor, results, plot):
 def test_loop_of_one(plot):
     found = texts(plot("sls.h5", "--kind", "loop"))
     assert "energy loss 0.7918 J" in found
+
+
+@pytest.mark.parametrize("accuracy", ["1e-8", "1e-5"])
+def test_loop_without_loss(vcor, accuracy):
+    """The rounding of an elastic contact is no loss, and no gain: the legend tells a bound."""
+    vcor.write(case_text("elastic"))
+    words = ["--set", "output.stem=ball", "--set", f"solver.accuracy={accuracy}"]
+    vcor.succeeds("run", "case.nml", *words, "--output", ".", "--quiet")
+    vcor.succeeds("plot", "ball.h5", "--kind", "loop", "--output", "figure.svg")
+    (text,) = [text for text in texts(vcor.folder / "figure.svg") if "energy" in text]
+    number, prefix = re.fullmatch(r"energy loss < (\d+) ([nµ])J", text).groups()
+    with h5py.File(vcor.folder / "ball.h5") as file:
+        bound, loss = 6 * file["summary/cor_error"][0], abs(file["summary/hysteresis_energy"][0])
+        bound *= file["summary/initial_energy"][0]
+    assert float(number) * {"n": 1e-9, "µ": 1e-6}[prefix] == pytest.approx(bound, rel=0.5)
+    assert loss < bound
 
 
 def test_moduli(vcor, plot):

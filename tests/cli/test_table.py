@@ -79,6 +79,7 @@ FORMS = {
     "decimal commas": DATA.replace(",", ";").replace(".", ","),
     "decimal commas and tabs": DATA.replace(",", "\t").replace(".", ","),
     "header with units": '"t [s]";"E [Pa]"\n' + DATA,
+    "separator by name": "sep=;\nt;E\n" + DATA.replace(",", ";"),
     "header of many words": "Relaxation of BUTYL at 300 K\n" + DATA,
     "remark first": "# BUTYL, 300 K\n#\n\ntime,modulus\n" + DATA,
     "remarks between": DATA.replace("\n", "\n# 1,2\n \t\n"),
@@ -242,9 +243,11 @@ FEW = ["", "\n", "# only a remark\n", "\ufeff", "time,modulus\n", "1e-3,1e6\n", 
 
 @pytest.mark.parametrize("text", FEW)
 def test_too_few_points(table, text):
+    """The line is the last one, where more were expected."""
     table.write(text, "data.csv")
-    n = "1 points" if "1e-3" in text else "0 points"
-    table.refuses("run", "case.nml", code=INPUT, at="data.csv", says=[n, "2 at least"])
+    n = "1 point," if "1e-3" in text else "0 points,"
+    at = f"data.csv:{max(1, text.count(chr(10)))}"
+    table.refuses("run", "case.nml", code=INPUT, at=at, says=[n, "2 at least"])
 
 
 def test_two_points_are_enough(table):

@@ -196,6 +196,17 @@ def test_viscosity(vcor):
     assert digits(out)["cor"] >= 7
 
 
+def test_small_numbers(vcor):
+    """A restitution with an exponent stands apart from the number of steps."""
+    vcor.write(SLS)
+    found = solutions(vcor.succeeds("verify", "case.nml", "--set", "plate.half_thickness=0.003"))
+    assert len(found) == 5
+    for line in found:
+        steps, cor = line[2:4]
+        assert int(steps) < 10000
+        assert float(cor) == pytest.approx(1.953e-4, rel=1e-2)
+
+
 def test_scheme_of_the_case(vcor):
     """The paper's scheme is shown beside the others, as far off as it is."""
     out = vcor.succeeds("verify", PAPER / "sls_printed.nml")

@@ -21,11 +21,16 @@ module vcor_figure_course
       real(wp) :: cor, residual_ratio
       !> Largest indentation [m] and force [N], velocity of the impact [m/s]
       real(wp) :: max_indentation, max_force, impact_velocity
-      !> Energy lost in the contact [J]
-      real(wp) :: hysteresis_energy
+      !> Energy lost in the contact, and what it may be off by [J]
+      real(wp) :: hysteresis_energy, energy_error
       !> Number of times up to the end of contact, which is the last of them
       integer :: contact_count
    end type course_t
+
+   !> Error of an energy, in the initial energy, over that of the coefficient of restitution: the
+   !> energy left, e^2 KE_0, changes by 2 e KE_0 de, and an error of three times the stated one is
+   !> what `vcor verify` lets pass
+   real(wp), parameter :: energy_share = 2.0_wp*3.0_wp
 
 contains
 
@@ -68,6 +73,8 @@ contains
       course%cor = get_number(result, 'cor')
       course%residual_ratio = get_number(result, 'residual_ratio')
       course%hysteresis_energy = get_number(result, 'hysteresis_energy')
+      course%energy_error = energy_share*get_number(result, 'initial_energy') &
+         *get_number(result, 'cor_error')
       course%impact_velocity = maxval(course%velocity)
       course%max_indentation = largest('max_indentation', course%indentation)
       course%max_force = largest('max_force', course%force)

@@ -220,9 +220,7 @@ contains
          panel%y%upper = 1.05_wp*force_factor*maxval(courses%max_force)
          do i = 1, size(courses)
             associate (n => courses(i)%contact_count)
-               text = ''
-               if (ieee_is_finite(courses(i)%hysteresis_energy)) &
-                  text = 'energy loss '//energy(courses(i)%hysteresis_energy)
+               text = loss_text(courses(i))
                if (size(courses) > 1 .or. legends(i)%given) then
                   if (text /= '') text = ', '//text
                   text = fitted(legends(i)%text, column_room - len(text))//text
@@ -235,10 +233,28 @@ contains
 
    contains
 
+      !> The energy that is lost, or a bound where it is lost in its error, as that of an elastic
+      !> contact is
+      function loss_text(course) result(text)
+         !> The course
+         type(course_t), intent(in) :: course
+         !> The text; empty where the energy is not known
+         character(len=:), allocatable :: text
+
+         text = ''
+         if (.not. ieee_is_finite(course%hysteresis_energy)) return
+         text = 'energy loss '//energy(course%hysteresis_energy, digits)
+         if (.not. ieee_is_finite(course%energy_error)) return
+         if (abs(course%hysteresis_energy) < course%energy_error) &
+            text = 'energy loss < '//energy(course%energy_error, 1)
+      end function loss_text
+
       !> An energy with a unit that suits it
-      function energy(joule) result(text)
+      function energy(joule, digits) result(text)
          !> Energy [J]
          real(wp), intent(in) :: joule
+         !> Significant digits
+         integer, intent(in) :: digits
          !> Its text
          character(len=:), allocatable :: text
 

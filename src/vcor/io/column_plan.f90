@@ -5,8 +5,9 @@
 module vcor_io_column_plan
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t
-   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_frequency, &
-      role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, role_time
+   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_complex, &
+      role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, &
+      role_time
    use vcor_kinds, only : wp
    use vcor_study_text, only : integer_text, shortened
    use vcor_study_units, only : time_units
@@ -65,7 +66,7 @@ contains
       character(len=longest_word) :: units(most_columns), word
       character(len=:), allocatable :: place, head
       integer :: roles(most_columns), i
-      logical :: shear(most_columns)
+      logical :: shear(most_columns), told
 
       place = name//":"//integer_text(line)
       head = place
@@ -114,6 +115,9 @@ contains
 
       plan%shear = reading%shear .or. any(shear(plan%places))
       allocate (plan%units(size(plan%places)))
+      ! a header that tells one unit tells all: what it leaves out is not that of the SI
+      told = header%lines > 1 .or. any(header%columns(plan%places)%unit /= "" &
+         .and. plan%roles /= role_tangent)
       do i = 1, size(plan%places)
          word = units(plan%places(i))
          if (size(reading%units) > 0) then
@@ -123,6 +127,14 @@ contains
             call raise(error, error_usage, head//": the unit of '" &
                //shortened(trim(header%columns(plan%places(i))%name)) &
                //"' is not told: give --units, such as Hz,Pa,Pa or rad/s,Pa,Pa")
+            return
+         end if
+         if (word == "" .and. told .and. plan%roles(i) /= role_tangent) then
+            call raise(error, error_input, name//":" &
+               //integer_text(maxval(header%columns(:columns)%line))//": found no unit of '" &
+               //shortened(trim(header%columns(plan%places(i))%name))//"', a " &
+               //name_of(plan%roles(i), "")//", though others have one; expected one for each, " &
+               //"or --units")
             return
          end if
          if (word == "") word = default_unit(plan%roles(i))
@@ -159,6 +171,12 @@ contains
             if (count(roles == plan%roles(i)) > 1) then
                call raise(error, error_input, head//": found "//columns_text(count(roles &
                   == plan%roles(i)))//" of "//name_of(plan%roles(i), "")//", expected one")
+            else if (roles(place) == role_none &
+               .and. index(header%columns(place)%name, "*") > 0) then
+               ! some other spelling of a complex modulus, or of a complex viscosity
+               call raise(error, error_input, head//": found '" &
+                  //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
+                  //"expected one such as "//example(plan%roles(i)))
             else if (roles(place) == role_none .and. units(place) == "" .and. .not. told) then
                ! its place alone says nothing, the logarithm of a modulus may stand there
                call raise(error, error_input, head//": found '" &
@@ -187,6 +205,8 @@ contains
       if (dynamic) then
          plan%roles = [role_frequency, role_storage, role_loss]
          if (all(roles /= role_loss) .and. any(roles == role_tangent)) plan%roles(3) = role_tangent
+         if (all(roles /= role_storage) .and. any(roles == role_complex) &
+            .and. any(roles == role_tangent)) plan%roles(2:) = [role_complex, role_tangent]
       else
          plan%roles = [role_time, role_relaxation]
       end if
@@ -217,6 +237,8 @@ contains
          name = "relaxation modulus"
       case (role_storage)
          name = "storage modulus"
+      case (role_complex)
+         name = "complex modulus"
       case (role_tangent)
          name = "loss tangent"
       case default
@@ -258,6 +280,8 @@ contains
       loss = any(roles == role_loss .or. roles == role_tangent)
       if (any(roles == role_storage) .and. .not. loss) text = "; there is no loss modulus"
       if (loss .and. all(roles /= role_storage)) text = "; there is no storage modulus"
+      if (any(roles == role_complex) .and. all(roles /= role_tangent)) text &
+         = "; a complex modulus needs the loss tangent beside it"
    end function lacking
 
    !> A number of columns in words

@@ -2,8 +2,9 @@
 !>
 !> Between columns stands a comma, a semicolon, a tab or blanks. Lines end as they do on any system,
 !> what follows a # does not count, and a byte-order mark is passed over. Numbers may have decimal
-!> commas where something else stands between the columns.
+!> commas where something else stands between the columns. A line `sep=;` counts as blank.
 module vcor_io_columns
+   use vcor_study_text, only : lower
    implicit none
    private
 
@@ -57,7 +58,7 @@ contains
       end do
    end function lines_in
 
-   !> Take a line from a text
+   !> Take a line from a text; one that names the separator becomes blank
    pure subroutine take_line(text, start, content, comment)
       !> The text
       character(len=*), intent(in) :: text
@@ -74,10 +75,23 @@ contains
       mark = index(text(start:last), "#")
       content = text(start:merge(start + mark - 2, last, mark > 0))
       if (present(comment)) comment = text(start + len(content) + 1:last)
+      if (names_separator(content)) content = ""
       start = last + 2
       if (start > len(text)) return
       if (text(start-1:start) == carriage_return//line_feed) start = start + 1
    end subroutine take_line
+
+   !> Whether a line names what stands between the columns, as `sep=;`, which Excel asks for: the
+   !> lines that follow show it
+   pure function names_separator(content) result(yes)
+      !> The line
+      character(len=*), intent(in) :: content
+      !> True if so
+      logical :: yes
+
+      yes = len(content) == 5
+      if (yes) yes = lower(content(:4)) == "sep=" .and. scan(content(5:), ",; "//achar(9)) == 1
+   end function names_separator
 
    !> Make points of the decimal commas of a line
    pure subroutine take_decimals(content, decimals)

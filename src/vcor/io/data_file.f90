@@ -136,8 +136,9 @@ contains
          last_line = line
       end do
       if (n < 2) then
-         call raise(error, error_input, name//": found "//integer_text(n)//" points, expected 2 " &
-            & //"at least, a time and a modulus to a line")
+         call raise(error, error_input, name//":"//integer_text(max(1, line))//": found " &
+            & //integer_text(n)//" "//trim(merge("point ", "points", n == 1)) &
+            & //", expected 2 at least, a time and a modulus to a line")
          return
       end if
       times = points(1, :n)*scale(1)

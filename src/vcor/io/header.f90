@@ -16,7 +16,7 @@ module vcor_io_header
    public :: header_t, column_name_t, read_names, read_units, note_comment, role_of, check_unit
    public :: most_columns, longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
-      role_tangent
+      role_tangent, role_complex
 
    !> Most columns of a file
    integer, parameter :: most_columns = 64
@@ -36,6 +36,8 @@ module vcor_io_header
    integer, parameter :: role_loss = 5
    !> Loss tangents, which give the loss moduli where there are none
    integer, parameter :: role_tangent = 6
+   !> Magnitudes of complex moduli, which give the storage moduli where there are none
+   integer, parameter :: role_complex = 7
 
    !> Names of columns; moduli that begin with g are shear moduli
    character(len=*), parameter :: time_names = " t time times "
@@ -50,6 +52,8 @@ module vcor_io_header
    character(len=*), parameter :: loss_names = " e'' g'' e"" g"" e_loss g_loss loss " &
       //"loss_modulus e_double_prime g_double_prime "
    character(len=*), parameter :: tangent_names = " loss_tangent loss_factor damping_factor "
+   character(len=*), parameter :: complex_names = " e* g* |e*| |g*| |e| |g| e_star g_star " &
+      //"complex_modulus complex_shear_modulus "
    !> Unit of a pure number
    character(len=*), parameter :: pure_number = "1"
 
@@ -259,18 +263,20 @@ contains
       !> The unit as `vcor_study_units` has it, where it is one of these
       character(len=longest_word) :: usual
 
-      character(len=*), parameter :: micro(2) = [char(194)//char(181), char(206)//char(188)]
-      character(len=*), parameter :: squared = char(194)//char(178)
-      integer :: i, mark
+      character(len=*), parameter :: micro = char(181), mu = char(206)//char(188)
+      character(len=*), parameter :: squared = char(178), latin = char(194)
+      integer :: mark
 
       usual = unit
-      do i = 1, size(micro)
-         if (usual(:2) == micro(i)) usual = "u"//usual(3:)
-      end do
+      ! the signs of Latin-1 are the same in UTF-8, behind this byte
+      mark = index(usual, latin)
+      if (mark > 0) usual = usual(:mark - 1)//usual(mark + 1:)
+      if (usual(:1) == micro) usual = "u"//usual(2:)
+      if (usual(:2) == mu) usual = "u"//usual(3:)
       mark = index(usual, "^2")
       if (mark > 1) usual = usual(:mark - 1)//usual(mark + 1:)
       mark = index(usual, squared)
-      if (mark > 1) usual = usual(:mark - 1)//"2"//usual(mark + 2:)
+      if (mark > 1) usual(mark:mark) = "2"
       if (usual == "sec") usual = "s"
    end function usual_unit
 
@@ -293,8 +299,9 @@ contains
       if (contains_word(storage_names, column%name)) role = role_storage
       if (contains_word(loss_names, column%name)) role = role_loss
       if (contains_word(tangent_names, column%name)) role = role_tangent
-      shear = role >= role_relaxation .and. role < role_tangent .and. (column%name(1:1) == "g" &
-         .or. column%name == "shear_modulus")
+      if (contains_word(complex_names, column%name)) role = role_complex
+      shear = role >= role_relaxation .and. role /= role_tangent .and. (column%name(1:1) == "g" &
+         .or. column%name(1:2) == "|g" .or. index(column%name, "shear") > 0)
       if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
       if (unit == "" .and. contains_word(angular_names, column%name)) unit = "rad/s"
       if (role /= role_none) return

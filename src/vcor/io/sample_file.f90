@@ -1,5 +1,5 @@
 !> Data files that materials are identified from: relaxation moduli over time, or storage and loss
-!> moduli (or the storage modulus and the loss tangent) over frequency
+!> moduli (or the storage or complex modulus and the loss tangent) over frequency
 !>
 !> With a header of names, and units in it or in a second line, or without. Where nothing tells, two
 !> columns are time and relaxation modulus, three are angular frequency, storage and loss modulus,
@@ -10,7 +10,7 @@ module vcor_io_sample_file
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
       take_decimals, take_line
    use vcor_io_header, only : header_t, most_columns, note_comment, read_names, read_units, &
-      role_frequency, role_tangent
+      role_complex, role_frequency, role_tangent
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
@@ -26,7 +26,7 @@ module vcor_io_sample_file
 contains
 
    !> Read samples from a file
-   subroutine read_samples(samples, filename, reading, note, error)
+   subroutine read_samples(samples, filename, reading, note, place, error)
       !> The samples, of tensile moduli in SI units
       type(samples_t), intent(out) :: samples
       !> Name of the file
@@ -35,6 +35,8 @@ contains
       type(reading_t), intent(in) :: reading
       !> How it was understood, in words
       character(len=:), allocatable, intent(out) :: note
+      !> File and lines of the numbers, `data.csv:3-42`, for messages about all of them
+      character(len=:), allocatable, intent(out) :: place
       !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
       !> are wrong, `error_usage` when something has to be said about it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -42,11 +44,11 @@ contains
       type(plan_t) :: plan
       character(len=:), allocatable :: text
       real(wp), allocatable :: points(:, :)
-      integer :: n
+      integer :: lines(2), n
 
       call read_text_file(filename, text, error, kind="a file of moduli over time or frequency")
       if (allocated(error)) return
-      call read_points(text, printable(filename), reading, plan, points, n, error)
+      call read_points(text, printable(filename), reading, plan, points, n, lines, error)
       if (allocated(error)) return
       if (plan%shear .and. reading%poisson_ratio > 0.5_wp) then
          call raise(error, error_usage, printable(filename)//": found shear moduli, which become " &
@@ -59,12 +61,16 @@ contains
       samples%at = points(1, :n)*unit_size(trim(plan%units(1)))
       samples%modulus = points(2, :n)*unit_size(trim(plan%units(2)))
       if (samples%dynamic) samples%loss = points(3, :n)*unit_size(trim(plan%units(3)))
+      ! |E*| = E' sqrt(1 + tan(delta)^2), E'' = E' tan(delta)
+      if (plan%roles(2) == role_complex) samples%modulus &
+         = samples%modulus/hypot(1.0_wp, samples%loss)
       if (plan%roles(size(plan%roles)) == role_tangent) samples%loss = samples%loss*samples%modulus
       if (plan%shear) then
          samples%modulus = 2.0_wp*(1.0_wp + reading%poisson_ratio)*samples%modulus
          samples%loss = 2.0_wp*(1.0_wp + reading%poisson_ratio)*samples%loss
       end if
       note = described(plan, n)
+      place = printable(filename)//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
    end subroutine read_samples
 
    !> How a file was understood
@@ -88,7 +94,7 @@ contains
    end function described
 
    !> Read the points
-   subroutine read_points(text, name, reading, plan, points, n, error)
+   subroutine read_points(text, name, reading, plan, points, n, lines, error)
       !> Contents of the file
       character(len=*), intent(in) :: text
       !> Its name for messages
@@ -101,18 +107,21 @@ contains
       real(wp), allocatable, intent(out) :: points(:, :)
       !> Their number, >= 2
       integer, intent(out) :: n
+      !> Lines of the first and the last of them
+      integer, intent(out) :: lines(2)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(header_t) :: header
       type(decimals_t) :: decimals, before
       character(len=:), allocatable :: content, comment, message
-      integer :: start, line, last_line, columns, from(most_columns), to(most_columns), i
+      integer :: start, line, columns, from(most_columns), to(most_columns), i
       logical :: numeric
 
       allocate (points(3, lines_in(text)))
       start = start_of(text)
       line = 0
+      lines = 0
       n = 0
       do while (start <= len(text))
          call take_line(text, start, content, comment)
@@ -153,7 +162,7 @@ contains
             if (.not. allocated(message) .and. n > 0) then
                if (.not. points(1, n + 1) > points(1, n)) message = "found " &
                   //name_of(plan%roles(1), "")//" "//real_text(points(1, n + 1))//" after " &
-                  //real_text(points(1, n))//" in line "//integer_text(last_line) &
+                  //real_text(points(1, n))//" in line "//integer_text(lines(2)) &
                   //", expected them to increase"
             end if
          end if
@@ -162,7 +171,8 @@ contains
             return
          end if
          n = n + 1
-         last_line = line
+         if (n == 1) lines(1) = line
+         lines(2) = line
       end do
       plan%decimals = before
       if (n >= 2) return

@@ -172,7 +172,8 @@ module vcor_study_keys
       & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
       &    positive, models="sls prony power_law cerf mittag_leffler"), &
       !
-      & key_t("solver", "method", text_key, "Method; auto: ive where it applies, else direct", &
+      & key_t("solver", "method", text_key, &
+      &    "Method; auto: ive, but direct for scheme adams_bashforth", &
       &    choices="auto ive direct", default="auto"), &
       & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
       &    choices="product adams_bashforth", default="product"), &
