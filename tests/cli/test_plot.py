@@ -225,7 +225,7 @@ def test_loop_without_loss(vcor, accuracy):
     vcor.succeeds("run", "case.nml", *words, "--output", ".", "--quiet")
     vcor.succeeds("plot", "ball.h5", "--kind", "loop", "--output", "figure.svg")
     (text,) = [text for text in texts(vcor.folder / "figure.svg") if "energy" in text]
-    number, prefix = re.fullmatch(r"energy loss < (\d+) ([nµ])J", text).groups()
+    number, prefix = re.fullmatch(r"energy loss < ([\d.]+) ([nµ])J", text).groups()
     with h5py.File(vcor.folder / "ball.h5") as file:
         bound, loss = 6 * file["summary/cor_error"][0], abs(file["summary/hysteresis_energy"][0])
         bound *= file["summary/initial_energy"][0]
