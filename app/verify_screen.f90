@@ -125,12 +125,12 @@ contains
       !> Lines
       character(len=:), allocatable :: text
 
-      character(len=22) :: label
+      character(len=21) :: label
       character(len=9) :: honest
       integer :: i
 
       label = 'solution'
-      text = '  '//label//' accuracy step [s]  steps               cor   states   off by' &
+      text = '  '//label//' accuracy step [s]  steps              cor   states   off by' &
          //'  dW/KE_0'//nl
       do i = 1, attempt_count
          associate (this => comparison%attempts(i))
@@ -149,7 +149,7 @@ contains
             honest = ''
             if (i /= attempt_case) honest = &
                merge('  honest ', '  TOO LOW', is_honest(this, error_of_best(comparison)))
-            text = text//significant(this%outcome%cor, 11, 18)//column(this%outcome%cor_error, 9) &
+            text = text//significant(this%outcome%cor, 11, 17)//column(this%outcome%cor_error, 9) &
                //column(this%seen, 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do

@@ -199,12 +199,14 @@ def test_viscosity(vcor):
 def test_small_numbers(vcor):
     """A restitution with an exponent stands apart from the number of steps."""
     vcor.write(SLS)
-    found = solutions(vcor.succeeds("verify", "case.nml", "--set", "plate.half_thickness=0.003"))
+    out = vcor.succeeds("verify", "case.nml", "--set", "plate.half_thickness=0.003")
+    found = out.split("\n\n")[1].splitlines()[1:]
     assert len(found) == 5
     for line in found:
-        steps, cor = line[2:4]
+        steps, cor = line.split()[2:4]
         assert int(steps) < 10000
         assert float(cor) == pytest.approx(1.953e-4, rel=1e-2)
+        assert len(line) <= 100
 
 
 def test_scheme_of_the_case(vcor):

@@ -18,7 +18,7 @@ module vcor_study_comparison_attempt
       !> Whether it was tried
       logical :: made = .false.
       !> How: ive, direct, or the scheme of the case
-      character(len=22) :: label = ''
+      character(len=21) :: label = ''
       !> Accuracy that was asked for, 0 where the step is given
       real(wp) :: accuracy = 0.0_wp
       !> Step [s], 0 where it follows from the accuracy
