@@ -1,6 +1,6 @@
 !> Both solvers: convergence, what a trajectory holds, contacts that do not end, refusals
 program test_solver
-   use vcor_error, only : error_input, error_numerical, error_t
+   use vcor_error, only : error_input, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
@@ -40,7 +40,7 @@ program test_solver
    call test_ive_accuracy()
    call test_estimates()
    call test_two_maxima()
-   call test_no_sum()
+   call test_beside_a_fluid()
    call test_product_order()
    call test_product_accuracy()
    call test_trajectory()
@@ -169,25 +169,36 @@ contains
       end do
    end subroutine test_two_maxima
 
-   !> Two viscoelastic bodies whose Eq. (1) no sum of exponentials stands for: refused, not guessed
-   subroutine test_no_sum()
+   !> Eq. (1) beside a fluid, whose modulus is nothing long before the sum of exponentials ends: both
+   !> methods see it stick, or come back all the same
+   subroutine test_beside_a_fluid()
+      real(wp), parameter :: rate(2) = [1.0e6_wp, 1.0e3_wp]
+      integer, parameter :: status(2) = [contact_sticking, contact_separated]
+      real(wp), parameter :: direct_accuracy = 1.0e-6_wp
       type(prony_t) :: fluid, solid
       type(impact_t) :: two
-      type(ive_t) :: solver
-      type(trajectory_t) :: trajectory
+      type(ive_t) :: ive
+      type(product_t) :: product
+      type(outcome_t) :: outcome, other
       type(error_t), allocatable :: error
+      integer :: i
 
-      call new_prony(fluid, 0.0_wp, [1.0e7_wp], [1.0e6_wp], 0.0_wp, error)
+      call make_ive(1.0e-8_wp, ive)
+      call make_product(0.0_wp, direct_accuracy, product)
       call new_prony(solid, 1.0e5_wp, [1.0e7_wp], [1.0e3_wp], 0.0_wp, error)
-      call success(error, "a fluid that relaxes in a microsecond, and a solid")
-      call body_on_body(fluid, solid, waves_none, 1.0_wp, two)
-      call make_ive(1.0e-8_wp, solver)
-      call solver%solve(two, trajectory, error)
-      call check(allocated(error), "no sum of exponentials is an error")
-      if (.not. allocated(error)) return
-      call check(error%code == error_numerical, "of the numerical kind")
-      call check_contains(error%message, "method = 'direct'", "and names the other method")
-   end subroutine test_no_sum
+      do i = 1, size(rate)
+         call new_prony(fluid, 0.0_wp, [1.0e7_wp], [rate(i)], 0.0_wp, error)
+         call success(error, "a fluid is built")
+         call body_on_body(fluid, solid, waves_none, 1.0_wp, two)
+         call run(ive, two, outcome)
+         call run(product, two, other)
+         call check(outcome%status == status(i), "beside a fluid: ive")
+         call check(other%status == status(i), "beside a fluid: direct")
+         if (status(i) /= contact_separated) cycle
+         call check_close(outcome%cor, other%cor, direct_accuracy, "beside a fluid: both agree")
+         call check(outcome%cor_error <= direct_accuracy, "beside a fluid: the estimate")
+      end do
+   end subroutine test_beside_a_fluid
 
    !> Product integration on steps that are halved
    subroutine test_product_order()

@@ -358,8 +358,10 @@ contains
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp), parameter :: slowest = 0.05_wp, fastest = 1.0e7_wp, spacing = 0.2_wp
-      ! what a unit of the moduli over E' costs, measured: some eps, ten times over
+      ! what a unit of the moduli over E' costs: 4e-15 were measured
       real(wp), parameter :: lost = 2.0e-14_wp
+      ! modulus over its mean that counts as none: that of a fluid relaxes to nothing
+      real(wp), parameter :: gone = 1.0e-4_wp
       ! columns that depend on each other to this part make large moduli of opposite signs
       real(wp), parameter :: dependent = 1.0e-13_wp
       ! first sample over the time of the fastest term; share of the window with full weight
@@ -370,7 +372,7 @@ contains
       integer, parameter :: terms_of_grid = 2 + int(log(fastest/slowest)/spacing)
       integer, parameter :: samples = 4*terms_of_grid, work_length = 70*terms_of_grid
       real(wp), allocatable :: matrix(:, :), work(:)
-      real(wp) :: right(samples), time(samples), weight(samples), modulus(samples)
+      real(wp), dimension(samples) :: right, time, weight, modulus, measure
       real(wp) :: length(terms_of_grid), lacking
       integer :: pivot(terms_of_grid), i, j, rank, info
 
@@ -382,15 +384,10 @@ contains
       end do
       allocate (matrix(samples, terms_of_grid), work(work_length))
       modulus = self%relaxation(time)
-      if (.not. minval(modulus) > 0.0_wp) then
-         ! a fluid that is gone within the window
-         terms%moduli = 0.0_wp
-         terms%error = huge(1.0_wp)
-         return
-      end if
-      weight = min(1.0_wp, time/(full_weight*window))
+      measure = modulus + gone*self%integral(window)/window
+      weight = min(1.0_wp, time/(full_weight*window))/measure
 
-      matrix(:, 1) = weight/modulus
+      matrix(:, 1) = weight
       do j = 2, terms_of_grid
          matrix(:, j) = exp(-terms%rates(j - 1)*time)*matrix(:, 1)
       end do
@@ -398,7 +395,7 @@ contains
          length(j) = norm2(matrix(:, j))
          matrix(:, j) = matrix(:, j)/length(j)
       end do
-      right = weight
+      right = weight*modulus
       pivot = 0
       call dgelsy(samples, terms_of_grid, 1, matrix, samples, right, samples, pivot, &
          dependent, rank, work, work_length, info)
@@ -407,11 +404,11 @@ contains
 
       do i = 1, samples
          if (time(i) >= checked*window) terms%error = max(terms%error, abs((terms%equilibrium &
-            + sum(terms%moduli*exp(-terms%rates*time(i))))/modulus(i) - 1.0_wp))
+            + sum(terms%moduli*exp(-terms%rates*time(i))) - modulus(i))/measure(i)))
       end do
       ! moduli of opposite signs cost digits, and so do the eigenvectors of the panels
       terms%error = terms%error + lost*sum(abs(terms%moduli*exp(-terms%rates*checked*window))) &
-         /modulus(samples)
+         /measure(samples)
 
       ! a term that has decayed by the first sample
       lacking = self%integral(checked*window) - terms%integral(checked*window)

@@ -401,7 +401,7 @@ contains
       real(wp) :: x(width), y(width)
 
       x = times(map%square, equations%stiffness, apply(map%left, u - equations%start_u)) &
-            + equations%memory
+         + equations%memory
       panel%force(1:) = apply(map%right, x)
       x = times(map%square, equations%lambda, x)
       panel%impulse(1:) = equations%free_impulse + apply(map%right, x)
