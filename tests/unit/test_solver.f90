@@ -169,8 +169,8 @@ contains
       end do
    end subroutine test_two_maxima
 
-   !> Eq. (1) beside a fluid, whose modulus is nothing long before the sum of exponentials ends: both
-   !> methods see it stick, or come back all the same
+   !> Eq. (1) beside a fluid, whose modulus is nothing long before its sum ends: both methods see
+   !> it stick, or come back all the same
    subroutine test_beside_a_fluid()
       real(wp), parameter :: rate(2) = [1.0e6_wp, 1.0e3_wp]
       integer, parameter :: status(2) = [contact_sticking, contact_separated]
