@@ -71,6 +71,24 @@ module vcor_study_mpi
          !> 0 on success
          integer(c_int) :: status
       end function c_setenv
+
+      !> Set an option of a socket
+      function c_setsockopt(descriptor, level, option, value, length) result(status) &
+         bind(c, name="setsockopt")
+         import :: c_int
+         !> Descriptor of an open file
+         integer(c_int), intent(in), value :: descriptor
+         !> Protocol that knows the option
+         integer(c_int), intent(in), value :: level
+         !> The option
+         integer(c_int), intent(in), value :: option
+         !> Its value
+         integer(c_int), intent(in) :: value
+         !> Bytes of the value (a `socklen_t`)
+         integer(c_int), intent(in), value :: length
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_setsockopt
    end interface
 #endif
 
@@ -100,12 +118,14 @@ contains
 
       call stay_on_node()
       call mpi_init_thread(mpi_thread_funneled, provided)
+      call send_at_once()
       call mpi_comm_rank(mpi_comm_world, rank)
       call mpi_comm_size(mpi_comm_world, ranks)
    end subroutine join_ranks
 
-   !> Where all ranks are on one node, have OpenMPI look for no network: that takes 0.2 s of 0.35
-   !> that it needs to begin. What the user has set stays
+   !> Where all ranks are on one node, have OpenMPI look for no network, and ask `mpirun` by messages
+   !> for what it says of the ranks, not in files that are shared: that would take 0.2 s and 0.01 s
+   !> of the 0.3 s that it needs to begin. What the user has set stays
    subroutine stay_on_node()
       character(len=12) :: all_ranks, ranks_here
       integer(c_int) :: ignored
@@ -117,7 +137,24 @@ contains
       call get_environment_variable('OMPI_COMM_WORLD_LOCAL_SIZE', ranks_here, status=status)
       if (status /= 0 .or. ranks_here /= all_ranks) return
       ignored = c_setenv('OMPI_MCA_pml'//c_null_char, 'ob1'//c_null_char, 0_c_int)
+      ignored = c_setenv('PMIX_MCA_gds'//c_null_char, 'hash'//c_null_char, 0_c_int)
    end subroutine stay_on_node
+
+   !> Have the sockets of this process send what is written at once (`TCP_NODELAY`): a rank tells
+   !> `mpirun` in several messages that it ends, and each would wait until the system has
+   !> acknowledged the one before, which takes it 0.04 s
+   subroutine send_at_once()
+      ! numbers of the protocol and of its option, the same on Linux, BSD and macOS
+      integer(c_int), parameter :: tcp = 6, no_delay = 1, yes = 1
+      ! the sockets that MPI opens when it begins are among the first
+      integer(c_int), parameter :: descriptors = 256
+      integer(c_int) :: i, ignored
+
+      ! what is no such socket is left as it is
+      do i = 0, descriptors - 1
+         ignored = c_setsockopt(i, tcp, no_delay, yes, int(storage_size(yes)/8, c_int))
+      end do
+   end subroutine send_at_once
 
    !> End: waits for all ranks
    subroutine leave_ranks()
