@@ -163,7 +163,7 @@ contains
             end do
          end do
          if (todo%left > 0 .and. stopped == 0 .and. .not. allocated(error)) then
-            call take_chunk(task, todo, pace, own_time, ranks, first, last)
+            call take_chunk(task, todo, pace, min(own_time, least_wait(others)), ranks, first, last)
             call work(task, first, last, pace, error)
          else if (all(others%in_hand == 0)) then
             exit
@@ -175,6 +175,26 @@ contains
       ! what came too late to end anything
       if (todo%left == 0) stopped = 0
    end subroutine deal
+
+   !> Time after which the first of the other ranks may be without work: that of a chunk, if it has
+   !> a second one in hand
+   pure function least_wait(others) result(time)
+      !> The other ranks
+      type(member_t), intent(in) :: others(:)
+      !> Time [s]; 0 where a rank's pace is not known
+      real(wp) :: time
+
+      integer :: i
+
+      time = huge(time)
+      do i = 1, size(others)
+         associate (chunk => others(i)%chunks(:, depth), rate => others(i)%pace%rate)
+            if (others(i)%in_hand < depth) cycle
+            if (rate > 0.0_wp) time = min(time, real(chunk(2) - chunk(1) + 1, wp)/rate)
+            if (.not. rate > 0.0_wp) time = 0.0_wp
+         end associate
+      end do
+   end function least_wait
 
    !> Take a chunk off
    subroutine take_chunk(task, todo, pace, time, ranks, first, last)
