@@ -100,7 +100,9 @@ contains
       call check(whole%steps(6) == 12345, "steps")
       call check(abs(whole%values(1)%at(6) - 0.1_wp) <= 0.0_wp, "the same number")
       call check(ieee_is_nan(whole%values(1)%at(7)), "no number where there is none")
+      call whole%blank_pending()
       call check(ieee_is_nan(whole%values(1)%at(8)), "nor where it is pending")
+      call check(abs(whole%values(1)%at(6) - 0.1_wp) <= 0.0_wp, "but where it is not")
    end subroutine test_packed_outcomes
 
    !> Reasons as numbers and back

@@ -88,6 +88,7 @@ contains
       type(table_t) :: table
       integer :: i, offset
 
+      call summary%blank_pending()
       call begin_table(table, identity, grid)
       offset = table%column_count
       call add_column(table, 'check', [(check_of(summary, i), i = 1, size(summary%status))], '1', &

@@ -3,7 +3,6 @@
 !> A point is done if its check sum is right. It is written last; after a crash of the machine the
 !> disk may have any part of what was written, in any order, and the sum tells.
 module vcor_io_checkpoint_points
-   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_int64_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_hdf5_dataset, only : read_numbers
@@ -64,7 +63,6 @@ contains
          if (checks(i) == check_of(summary, i)) cycle
          summary%status(i) = point_pending
          summary%steps(i) = 0
-         call forget(summary, i)
       end do
    end subroutine read_points
 
@@ -96,20 +94,6 @@ contains
       call close_hdf5(reader)
       if (allocated(error)) error%code = error_file
    end subroutine read_columns
-
-   !> Take the numbers of a point away
-   pure subroutine forget(summary, place)
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-      !> Place of the point
-      integer, intent(in) :: place
-
-      integer :: i
-
-      do i = 1, size(quantities)
-         summary%values(i)%at(place) = ieee_value(1.0_wp, ieee_quiet_nan)
-      end do
-   end subroutine forget
 
    !> Path of the dataset of a column
    pure function dataset(column) result(path)

@@ -159,10 +159,11 @@ contains
 
       integer :: i
 
-      label = 'failed'
       do i = 1, size(statuses)
-         if (statuses(i)%code == status) label = statuses(i)%name
+         if (statuses(i)%code == status) exit
       end do
+      label = 'failed'
+      if (i <= size(statuses)) label = statuses(i)%name
    end function status_label
 
 end module vcor_study_quantity

@@ -16,7 +16,8 @@ module vcor_study_summary
 
    !> Values of one quantity
    type :: values_t
-      !> Values in the unit of the quantity, NaN where a point has none, shape (points)
+      !> Values in the unit of the quantity, NaN where a point has none, anything where it is
+      !> pending, shape (points)
       real(wp), allocatable :: at(:)
    end type values_t
 
@@ -37,11 +38,14 @@ module vcor_study_summary
       procedure :: pack => pack_outcomes
       !> Take outcomes from numbers
       procedure :: unpack => unpack_outcomes
+      !> NaN for the values of pending points
+      procedure :: blank_pending
    end type summary_t
 
 contains
 
-   !> Make room; all points are pending
+   !> Make room; all points are pending. Their values are not touched: to fill those of a million
+   !> takes longer than to solve ten thousand, and the other ranks wait for it
    subroutine new_summary(self, points, error, before)
       !> The summary
       type(summary_t), intent(out) :: self
@@ -65,10 +69,20 @@ contains
       if (allocated(error)) return
       self%steps = 0
       self%status = point_pending
-      do i = 1, size(quantities)
-         self%values(i)%at = ieee_value(1.0_wp, ieee_quiet_nan)
-      end do
    end subroutine new_summary
+
+   !> NaN for the values of pending points, before they are written
+   pure subroutine blank_pending(self)
+      !> The summary
+      class(summary_t), intent(inout) :: self
+
+      integer :: i
+
+      do i = 1, size(quantities)
+         where (self%status == point_pending) &
+            self%values(i)%at = ieee_value(1.0_wp, ieee_quiet_nan)
+      end do
+   end subroutine blank_pending
 
    !> Keep the outcome of a point. Points that differ may be put at the same time
    pure subroutine put(self, point, outcome)
