@@ -28,10 +28,10 @@ program vcor_main
       end function c_mallopt
    end interface
 
-   !> Arrays of so many bytes go back to the system when they are freed (M_MMAP_THRESHOLD), less does
-   !> not (M_TRIM_THRESHOLD). Left to itself glibc keeps arrays of any size that it has seen before, a
-   !> fifth of the memory of a large sweep; told of the first only it gives everything back, and half
-   !> of the time between chunks goes into getting it anew
+   !> Arrays of so many bytes go back to the system when they are freed (M_MMAP_THRESHOLD), smaller
+   !> ones do not (M_TRIM_THRESHOLD). Left to itself glibc keeps arrays of any size that it has seen
+   !> before, a fifth of the memory of a large sweep; told of the first only, it gives everything
+   !> back, and half of the time between chunks goes into getting it anew
    integer(c_int), parameter :: mmap_threshold = -3, trim_threshold = -1, large = 2**22
    integer(c_int) :: ignored
    type(argument_t), allocatable :: words(:)

@@ -123,9 +123,9 @@ contains
       call mpi_comm_size(mpi_comm_world, ranks)
    end subroutine join_ranks
 
-   !> Where all ranks are on one node, have OpenMPI look for no network, and ask `mpirun` by messages
-   !> for what it says of the ranks, not in files that are shared: that would take 0.2 s and 0.01 s
-   !> of the 0.3 s that it needs to begin. What the user has set stays
+   !> Where all ranks are on one node, have OpenMPI look for no network, and learn what `mpirun`
+   !> says of the ranks by messages instead of memory that all share: the one takes 0.2 s, the other
+   !> 0.01 s. What the user has set stays
    subroutine stay_on_node()
       character(len=12) :: all_ranks, ranks_here
       integer(c_int) :: ignored
