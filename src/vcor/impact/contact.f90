@@ -6,8 +6,8 @@ module vcor_impact_contact
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
    use vcor_material_series, only : new_series
+   use vcor_material_signed_fit, only : fit_signed, signed_fit_times
    use vcor_material_type, only : material_t
-   use vcor_numeric_lapack, only : dgelsy
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
    implicit none
@@ -278,7 +278,7 @@ contains
    end function viscosity
 
    !> The contact modulus as a sum of exponentials
-   pure subroutine exponentials(self, window, accuracy, terms)
+   subroutine exponentials(self, window, accuracy, terms)
       !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
@@ -295,18 +295,28 @@ contains
 
       if (allocated(self%second)) then
          call expand_pair(self, window, accuracy, terms, is_found)
-         if (.not. is_found) call fit_pair(self, window, terms)
+         if (.not. is_found) call fit(terms)
       else
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
          ! a spectrum with peaks that no rule resolves
          if (self%series .and. .not. self%first%discrete .and. &
              terms%error > max(poor, far*accuracy)) then
-            call fit_pair(self, window, one)
+            call fit(one)
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
          end if
       end if
+
+   contains
+
+      !> Fit a sum to the values of the modulus
+      subroutine fit(terms)
+         !> The sum
+         type(exponential_sum_t), intent(out) :: terms
+
+         call fit_signed(window, self%relaxation(window*signed_fit_times()), terms)
+      end subroutine fit
    end subroutine exponentials
 
    !> Sum of exponentials for a pair of an elastic body and one that is itself such a sum, in powers
@@ -342,83 +352,5 @@ contains
       end if
       call sum_beside_elastic(elastic, other, window, max(finer*accuracy, finest), terms, is_found)
    end subroutine expand_pair
-
-   !> Sum of exponentials for a pair. By Eq. (1) its modulus is no completely monotone function even
-   !> where both of its bodies have one: an elastic body beside an SLS gives powers of exp(-b t)
-   !> with alternating signs. So the moduli may be negative, and are fitted to samples of E'(t) by
-   !> least squares, with rates on a grid fine enough for any mixture of exponentials. The weight
-   !> falls with the time where that is short: there it is the integral that counts, which the
-   !> fastest term is made to give exactly
-   pure subroutine fit_pair(self, window, terms)
-      !> Contact modulus of a pair
-      class(contact_modulus_t), intent(in) :: self
-      !> Time up to which the sum is to hold [s], > 0
-      real(wp), intent(in) :: window
-      !> The sum; its error is the largest relative one over the later 99 % of the window
-      type(exponential_sum_t), intent(out) :: terms
-
-      real(wp), parameter :: slowest = 0.05_wp, fastest = 1.0e7_wp, spacing = 0.2_wp
-      ! what a unit of the moduli over E' costs: 4e-15 were measured
-      real(wp), parameter :: lost = 2.0e-14_wp
-      ! modulus over its mean that counts as none: that of a fluid relaxes to nothing
-      real(wp), parameter :: gone = 1.0e-4_wp
-      ! columns that depend on each other to this part make large moduli of opposite signs
-      real(wp), parameter :: dependent = 1.0e-13_wp
-      ! first sample over the time of the fastest term; share of the window with full weight
-      real(wp), parameter :: earliest = 0.3_wp, full_weight = 0.03_wp, checked = 0.01_wp
-      ! shares of the window at which the integral is checked
-      real(wp), parameter :: early(4) = [3.0e-3_wp, 1.0e-3_wp, 3.0e-4_wp, 1.0e-4_wp]
-      ! LAPACK's blocks of 64 columns need no more than this
-      integer, parameter :: terms_of_grid = 2 + int(log(fastest/slowest)/spacing)
-      integer, parameter :: samples = 4*terms_of_grid, work_length = 70*terms_of_grid
-      real(wp), allocatable :: matrix(:, :), work(:)
-      real(wp), dimension(samples) :: right, time, weight, modulus, measure
-      real(wp) :: length(terms_of_grid), lacking
-      integer :: pivot(terms_of_grid), i, j, rank, info
-
-      allocate (terms%rates(terms_of_grid - 1), terms%moduli(terms_of_grid - 1))
-      terms%rates = slowest/window*exp(spacing*[(real(j, wp), j=0, terms_of_grid - 2)])
-      time(1) = earliest/terms%rates(terms_of_grid - 1)
-      do i = 2, samples
-         time(i) = time(1)*(window/time(1))**(real(i - 1, wp)/real(samples - 1, wp))
-      end do
-      allocate (matrix(samples, terms_of_grid), work(work_length))
-      modulus = self%relaxation(time)
-      measure = modulus + gone*self%integral(window)/window
-      weight = min(1.0_wp, time/(full_weight*window))/measure
-
-      matrix(:, 1) = weight
-      do j = 2, terms_of_grid
-         matrix(:, j) = exp(-terms%rates(j - 1)*time)*matrix(:, 1)
-      end do
-      do j = 1, terms_of_grid
-         length(j) = norm2(matrix(:, j))
-         matrix(:, j) = matrix(:, j)/length(j)
-      end do
-      right = weight*modulus
-      pivot = 0
-      call dgelsy(samples, terms_of_grid, 1, matrix, samples, right, samples, pivot, &
-         dependent, rank, work, work_length, info)
-      terms%equilibrium = right(1)/length(1)
-      terms%moduli = right(2:terms_of_grid)/length(2:)
-
-      do i = 1, samples
-         if (time(i) >= checked*window) terms%error = max(terms%error, abs((terms%equilibrium &
-            + sum(terms%moduli*exp(-terms%rates*time(i))) - modulus(i))/measure(i)))
-      end do
-      ! moduli of opposite signs cost digits, and so do the eigenvectors of the panels
-      terms%error = terms%error + lost*sum(abs(terms%moduli*exp(-terms%rates*checked*window))) &
-         /measure(samples)
-
-      ! a term that has decayed by the first sample
-      lacking = self%integral(checked*window) - terms%integral(checked*window)
-      terms%moduli = [terms%moduli, 1.0e3_wp*lacking*terms%rates(terms_of_grid - 1)]
-      terms%rates = [terms%rates, 1.0e3_wp*terms%rates(terms_of_grid - 1)]
-      ! what the impulse feels of the early error
-      do i = 1, size(early)
-         lacking = self%integral(early(i)*window) - terms%integral(early(i)*window)
-         terms%error = max(terms%error, abs(lacking)/self%integral(checked*window))
-      end do
-   end subroutine fit_pair
 
 end module vcor_impact_contact

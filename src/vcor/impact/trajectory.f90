@@ -145,7 +145,7 @@ contains
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))
          is_stuck = 0.5_wp*mass*(now(col_velocity)**2 + now(col_sphere_velocity)**2) &
-            + now(col_force)*now(col_indentation) &
+            + max(0.0_wp, now(col_force)*now(col_indentation)) &
             <= negligible*0.5_wp*mass*first(col_velocity)**2
       end associate
    end function is_stuck

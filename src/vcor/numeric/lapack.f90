@@ -4,7 +4,7 @@ module vcor_numeric_lapack
    implicit none
    private
 
-   public :: dgeev, dgelsy, dgeqrf, dgesv, dgesvd, dormqr, dtrtrs
+   public :: dgeev, dgeqp3, dgeqrf, dgesv, dgesvd, dorgqr, dormqr, dtrtrs
 
    interface
       !> Eigenvalues and eigenvectors of a general real matrix
@@ -40,37 +40,28 @@ module vcor_numeric_lapack
          integer, intent(out) :: info
       end subroutine dgeev
 
-      !> Least squares by a complete orthogonal factorisation, of least norm where columns depend on
-      !> each other
-      pure subroutine dgelsy(m, n, nrhs, a, lda, b, ldb, jpvt, rcond, rank, work, lwork, info)
+      !> Factors of a matrix, A P = Q R, with columns exchanged so that the diagonal of R falls
+      pure subroutine dgeqp3(m, n, a, lda, jpvt, tau, work, lwork, info)
          import :: wp
-         !> Number of equations
+         !> Rows
          integer, intent(in) :: m
-         !> Number of unknowns
+         !> Columns
          integer, intent(in) :: n
-         !> Number of right-hand sides
-         integer, intent(in) :: nrhs
          !> Leading dimension of `a`
          integer, intent(in) :: lda
-         !> The matrix, destroyed on return, shape (lda, n)
+         !> The matrix, on return R in its upper triangle and Q below it, shape (lda, n)
          real(wp), intent(inout) :: a(lda, *)
-         !> Leading dimension of `b`, >= max(m, n)
-         integer, intent(in) :: ldb
-         !> Right-hand sides, on return the solutions, shape (ldb, nrhs)
-         real(wp), intent(inout) :: b(ldb, *)
-         !> On entry 0 for columns that may be interchanged, shape (n)
+         !> Not 0: the column comes first; on return which column is at each place, shape (n)
          integer, intent(inout) :: jpvt(*)
-         !> Inverse condition beyond which columns count as dependent
-         real(wp), intent(in) :: rcond
-         !> Rank found
-         integer, intent(out) :: rank
-         !> Work space, shape (lwork)
+         !> Factors of the reflections that Q is made of, shape (min(m, n))
+         real(wp), intent(out) :: tau(*)
+         !> Workspace, shape (lwork)
          real(wp), intent(out) :: work(*)
-         !> Length of the work space
+         !> Size of `work`, at least 3 n + 1
          integer, intent(in) :: lwork
          !> 0 on success
          integer, intent(out) :: info
-      end subroutine dgelsy
+      end subroutine dgeqp3
 
       !> QR factorisation of a general real matrix
       pure subroutine dgeqrf(m, n, a, lda, tau, work, lwork, info)
@@ -146,6 +137,29 @@ module vcor_numeric_lapack
          !> 0 on success
          integer, intent(out) :: info
       end subroutine dgesvd
+
+      !> Columns of Q of the factors of a matrix
+      pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)
+         import :: wp
+         !> Rows
+         integer, intent(in) :: m
+         !> Columns that are wanted, at most m
+         integer, intent(in) :: n
+         !> Number of reflections, at most n
+         integer, intent(in) :: k
+         !> Leading dimension of `a`
+         integer, intent(in) :: lda
+         !> What `dgeqp3` or `dgeqrf` left; on return the columns, shape (lda, n)
+         real(wp), intent(inout) :: a(lda, *)
+         !> Factors of the reflections, shape (k)
+         real(wp), intent(in) :: tau(*)
+         !> Workspace, shape (lwork)
+         real(wp), intent(out) :: work(*)
+         !> Size of `work`, at least n
+         integer, intent(in) :: lwork
+         !> 0 on success
+         integer, intent(out) :: info
+      end subroutine dorgqr
 
       !> Multiply a matrix by the orthogonal one of a QR factorisation
       pure subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)

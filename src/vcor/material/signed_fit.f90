@@ -1,0 +1,253 @@
+!> Sum of exponentials with moduli of either sign, fitted to a modulus over a window of time
+!>
+!> By Eq. (1) of Green's paper the modulus of a pair is no completely monotone function even where
+!> both of its bodies have one: an elastic body beside an SLS gives powers of exp(-b t) with
+!> alternating signs. Its sum is found by least squares with rates on a grid fine enough for any
+!> mixture of exponentials; a coarser one misses single relaxation times between its rates.
+!>
+!> In units of the window and of the mean modulus everything but the modulus is the same for all
+!> fits: samples, weights, rates, and so the factors Q R of the matrix. They are made once in a
+!> process; a fit is the product with Q^T, and R solved for. Columns are exchanged so that each is
+!> the one that depends least on those before it: with more of them the misfit falls and the moduli
+!> grow, and a fit takes as many as pay.
+module vcor_material_signed_fit
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
+   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : endpoint_rule
+   implicit none
+   private
+
+   public :: signed_fit_times, fit_signed
+
+   !> Times over the window up to which the integral of a modulus is found. The modulus may be
+   !> singular at the beginning, and is smooth on the logarithmic scale afterwards
+   real(wp), parameter :: ends(*) = [1.0e-4_wp, 3.0e-4_wp, 1.0e-3_wp, 3.0e-3_wp, 0.01_wp, 0.03_wp, &
+      0.1_wp, 0.3_wp, 1.0_wp]
+   !> Place of the time from which on the fit is to hold value by value: before, its integral is
+   integer, parameter :: checked = 5
+
+   !> Columns that depend on those before them to this part are left out, one choice after the other
+   real(wp), parameter :: dependent(*) = [1.0e-13_wp, 1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
+
+   !> What all fits have in common, in units of the window
+   type :: rule_t
+      !> Times of the samples, then the nodes of the integrals, shape (samples + nodes)
+      real(wp), allocatable :: time(:)
+      !> Number of samples
+      integer :: samples = 0
+      !> Weights of the samples, shape (samples)
+      real(wp), allocatable :: weight(:)
+      !> Number of rates for each of `dependent`
+      integer :: ranks(size(dependent)) = 0
+      !> Rates, the first is 0, shape (n)
+      real(wp), allocatable :: rate(:)
+      !> exp(-rate time) for the samples, shape (samples, n)
+      real(wp), allocatable :: decay(:, :)
+      !> Q^T of the weighted columns, pivoted and made of unit length, shape (n, samples)
+      real(wp), allocatable :: q(:, :)
+      !> R, shape (n, n)
+      real(wp), allocatable :: r(:, :)
+      !> Length of the columns, shape (n)
+      real(wp), allocatable :: length(:)
+      !> Number of nodes up to each of `ends`
+      integer :: last(size(ends)) = 0
+      !> Weights of the nodes, shape (nodes)
+      real(wp), allocatable :: share(:)
+   end type rule_t
+
+   !> The rule, made by the first who needs it
+   type(rule_t) :: rule
+   !> Whether it is made
+   logical :: is_made = .false.
+
+contains
+
+   !> Times at which a modulus has to be known to be fitted
+   function signed_fit_times() result(times)
+      !> Times over the window, 0 .. 1, shape (n)
+      real(wp), allocatable :: times(:)
+
+      logical :: is_there
+
+!$omp critical (vcor_signed_fit)
+      if (.not. is_made) then
+         call set_nodes(rule)
+         call set_factors(rule, is_there)
+         is_made = is_there
+      end if
+!$omp end critical (vcor_signed_fit)
+      times = rule%time
+   end function signed_fit_times
+
+   !> Samples, and nodes of the integrals
+   pure subroutine set_nodes(self)
+      !> The rule
+      type(rule_t), intent(inout) :: self
+
+      ! slowest and fastest rate; ratio of two, logarithmic
+      real(wp), parameter :: slowest = 0.2_wp, fastest = 1.0e7_wp, spacing = 0.15_wp
+      integer, parameter :: rates = 2 + int(log(fastest/slowest)/spacing)
+      ! samples per rate; the first one over the time of the fastest rate
+      integer, parameter :: per_rate = 3
+      real(wp), parameter :: earliest = 0.3_wp
+      ! from here on errors count in full, before by a power of the time: with a higher one the sum may
+      ! become negative there, with a lower one t^-a takes digits from the rest
+      real(wp), parameter :: full_weight = 0.03_wp, power = 1.5_wp
+      ! nodes between two ends: of exp(-t) over a factor of 3.3 fourteen digits
+      integer, parameter :: between = 12
+      real(wp), allocatable :: time(:), node(:), share(:)
+      real(wp) :: x(between), w(between), step
+      integer :: i, n
+
+      self%rate = [0.0_wp, slowest*exp(spacing*[(real(i, wp), i=0, rates - 2)])]
+      n = per_rate*rates
+      self%samples = n
+      allocate (time(n))
+      do i = 1, n
+         time(i) = (earliest/self%rate(rates))**(real(n - i, wp)/real(n - 1, wp))
+      end do
+      self%weight = min(1.0_wp, time/full_weight)**power
+
+      call endpoint_rule(node, share)
+      node = ends(1)*node
+      share = ends(1)*share
+      self%last(1) = size(node)
+      call gauss_nodes(x, w)
+      do i = 2, size(ends)
+         step = log(ends(i)/ends(i - 1))
+         associate (t => ends(i - 1)*exp(step*x))
+            node = [node, t]
+            share = [share, step*w*t]
+         end associate
+         self%last(i) = size(node)
+      end do
+      self%time = [time, node]
+      self%share = share
+   end subroutine set_nodes
+
+   !> Factors of the matrix
+   pure subroutine set_factors(self, is_there)
+      !> The rule, its nodes set
+      type(rule_t), intent(inout) :: self
+      !> Whether there are any
+      logical, intent(out) :: is_there
+
+      real(wp), allocatable :: matrix(:, :), work(:)
+      real(wp) :: tau(size(self%rate)), length(size(self%rate))
+      integer :: pivot(size(self%rate)), i, j, n, info
+
+      n = size(self%rate)
+      ! LAPACK's blocks of 64 columns need no more than this
+      allocate (matrix(self%samples, n), work(70*n))
+      do j = 1, n
+         matrix(:, j) = self%weight*exp(-self%rate(j)*self%time(:self%samples))
+         length(j) = norm2(matrix(:, j))
+         matrix(:, j) = matrix(:, j)/length(j)
+      end do
+      ! the constant is the first column in any case
+      pivot = 0
+      pivot(1) = 1
+      call dgeqp3(self%samples, n, matrix, self%samples, pivot, tau, work, size(work), info)
+      if (info == 0) then
+         do i = 1, size(dependent)
+            self%ranks(i) = count([(abs(matrix(j, j)) > dependent(i)*abs(matrix(1, 1)), j=1, n)])
+         end do
+         n = self%ranks(1)
+         self%r = matrix(:n, :n)
+         call dorgqr(self%samples, n, n, matrix, self%samples, tau, work, size(work), info)
+      end if
+      is_there = info == 0
+      if (.not. is_there) return
+      self%q = transpose(matrix(:, :n))
+      self%rate = self%rate(pivot(:n))
+      self%length = length(pivot(:n))
+      allocate (self%decay(self%samples, n))
+      do j = 1, n
+         self%decay(:, j) = exp(-self%rate(j)*self%time(:self%samples))
+      end do
+   end subroutine set_factors
+
+   !> Fit a modulus
+   pure subroutine fit_signed(window, modulus, terms)
+      !> Time up to which the sum is to hold [s], > 0
+      real(wp), intent(in) :: window
+      !> Modulus at the times `signed_fit_times` of the window [Pa], > 0, shape (n)
+      real(wp), intent(in) :: modulus(:)
+      !> The sum, its moduli of either sign; its error is the largest one over the later 99 % of the
+      !> window, over the mean modulus, or that of the integral at earlier times
+      type(exponential_sum_t), intent(out) :: terms
+
+      ! how much faster the term is that has decayed by the first sample
+      real(wp), parameter :: faster = 1.0e3_wp
+      real(wp) :: moduli(size(rule%rate)), integrals(size(ends)), excess(checked), mean
+      integer :: i, n
+
+      if (.not. is_made) then
+         terms%error = huge(terms%error)
+         allocate (terms%moduli(0), terms%rates(0))
+         return
+      end if
+      associate (integrand => rule%share*modulus(rule%samples + 1:), last => rule%last)
+         integrals(1) = sum(integrand(:last(1)))
+         do i = 2, size(ends)
+            integrals(i) = integrals(i - 1) + sum(integrand(last(i - 1) + 1:last(i)))
+         end do
+      end associate
+      mean = integrals(size(ends))
+      call find_moduli(modulus(:rule%samples)/mean, moduli, n, terms%error)
+      terms%equilibrium = mean*moduli(1)
+      terms%rates = [rule%rate(2:n), faster*maxval(rule%rate)]/window
+      terms%moduli = mean*[moduli(2:n), 0.0_wp]
+      ! the fastest term makes the integral up to the time from which on values count
+      do i = 1, checked
+         excess(i) = terms%integral(ends(i)*window) - integrals(i)*window
+      end do
+      terms%moduli(n) = -excess(checked)*terms%rates(n)
+      ! what the impulse feels of the early error
+      excess = abs(excess - excess(checked))/(integrals(checked)*window)
+      terms%error = max(terms%error, maxval(excess))
+   end subroutine fit_signed
+
+   !> Moduli of the rates, of as many as pay
+   pure subroutine find_moduli(sample, moduli, n, error)
+      !> Modulus at the samples over its mean, shape (samples)
+      real(wp), intent(in) :: sample(:)
+      !> Moduli over the mean, shape (rates)
+      real(wp), intent(out) :: moduli(:)
+      !> Number of those that are not zero
+      integer, intent(out) :: n
+      !> Error over the mean
+      real(wp), intent(out) :: error
+
+      ! what a unit of the moduli costs: moduli of opposite signs cost digits, and so do the
+      ! eigenvectors of the panels; 4e-15 were measured, more where the contact recedes
+      real(wp), parameter :: lost = 2.0e-14_wp, lost_at_most = 1.0e-12_wp
+      real(wp), dimension(size(rule%rate)) :: right, x
+      real(wp), dimension(size(sample)) :: weighted, deviation
+      real(wp) :: misfit, size_of_all, cost, least
+      integer :: i, info
+
+      weighted = rule%weight*sample
+      right = matmul(rule%q, weighted)
+      least = huge(least)
+      n = rule%ranks(1)
+      do i = 1, size(dependent)
+         x = right
+         call dtrtrs('U', 'N', 'N', rule%ranks(i), 1, rule%r, size(x), x, size(x), info)
+         x(rule%ranks(i) + 1:) = 0.0_wp
+         x = x/rule%length
+         deviation = matmul(rule%decay, x) - sample
+         misfit = maxval(abs(deviation), mask=rule%time(:rule%samples) >= ends(checked))
+         size_of_all = sum(abs(x*exp(-rule%rate*ends(checked))))
+         cost = misfit + lost_at_most*size_of_all
+         if (cost >= least) cycle
+         least = cost
+         n = rule%ranks(i)
+         moduli = x
+         error = misfit + lost*size_of_all
+      end do
+   end subroutine find_moduli
+
+end module vcor_material_signed_fit
