@@ -92,8 +92,8 @@ contains
       ! samples per rate; the first one over the time of the fastest rate
       integer, parameter :: per_rate = 3
       real(wp), parameter :: earliest = 0.3_wp
-      ! from here on errors count in full, before by a power of the time: with a higher one the sum may
-      ! become negative there, with a lower one t^-a takes digits from the rest
+      ! from here on errors count in full, before by a power of the time: with a higher one the sum
+      ! may become negative there, with a lower one t^-a takes digits from the rest
       real(wp), parameter :: full_weight = 0.03_wp, power = 1.5_wp
       ! nodes between two ends: of exp(-t) over a factor of 3.3 fourteen digits
       integer, parameter :: between = 12
