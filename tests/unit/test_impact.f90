@@ -60,6 +60,7 @@ program test_impact
 
    call test_four_cases()
    call test_pair()
+   call test_integral_of_pair()
    call test_refused_pairs()
    call test_plate()
    call test_radius()
@@ -195,6 +196,32 @@ contains
          "dynamic modulus of a pair of equal power laws")
       call check(s > g, "the hard one is harder")
    end subroutine test_pair
+
+   !> Integral of an SLS beside an elastic body, long after it has relaxed and before: with
+   !> c = s + r, E' = s (1 - s/(c + d exp(-b t))), whose integral is a logarithm
+   subroutine test_integral_of_pair()
+      ! the modulus falls thirtyfold at b t = ln(d/c), with poles close to the real axis
+      real(wp), parameter :: s = 1.0e6_wp, r = 1.0e5_wp, d = 4.0e7_wp, b = 1.0e3_wp
+      real(wp), parameter :: tolerance = 1.0e-9_wp
+      type(prony_t) :: relaxing, elastic
+      type(contact_modulus_t) :: modulus
+      type(error_t), allocatable :: error
+      real(wp) :: t, expected
+      integer :: i
+
+      call new_prony(relaxing, r, [d], [b], 0.0_wp, error)
+      call success(error, "an SLS as a Prony series")
+      call new_elastic(elastic, s, error)
+      relaxing%poisson_ratio = 0.0_wp
+      elastic%poisson_ratio = 0.0_wp
+      call new_contact_modulus(modulus, relaxing, elastic, .false., error)
+      call success(error, "it makes a pair")
+      do i = -3, 3
+         t = 10.0_wp**i/b
+         expected = s*(t - s/(s + r)*(t + log((s + r + d*exp(-b*t))/(s + r + d))/b))
+         call check_relative(modulus%integral(t), expected, tolerance, "integral of a pair")
+      end do
+   end subroutine test_integral_of_pair
 
    !> Check a pair against Eq. (1)
    subroutine pair_of(first, second, what)

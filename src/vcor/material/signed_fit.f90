@@ -14,8 +14,7 @@ module vcor_material_signed_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
-   use vcor_numeric_legendre, only : gauss_nodes
-   use vcor_numeric_quadrature, only : endpoint_rule
+   use vcor_numeric_quadrature, only : graded_rule
    implicit none
    private
 
@@ -95,10 +94,7 @@ contains
       ! from here on errors count in full, before by a power of the time: with a higher one the sum
       ! may become negative there, with a lower one t^-a takes digits from the rest
       real(wp), parameter :: full_weight = 0.03_wp, power = 1.5_wp
-      ! nodes between two ends: of exp(-t) over a factor of 3.3 fourteen digits
-      integer, parameter :: between = 12
-      real(wp), allocatable :: time(:), node(:), share(:)
-      real(wp) :: x(between), w(between), step
+      real(wp), allocatable :: time(:), node(:)
       integer :: i, n
 
       self%rate = [0.0_wp, slowest*exp(spacing*[(real(i, wp), i=0, rates - 2)])]
@@ -110,21 +106,8 @@ contains
       end do
       self%weight = min(1.0_wp, time/full_weight)**power
 
-      call endpoint_rule(node, share)
-      node = ends(1)*node
-      share = ends(1)*share
-      self%last(1) = size(node)
-      call gauss_nodes(x, w)
-      do i = 2, size(ends)
-         step = log(ends(i)/ends(i - 1))
-         associate (t => ends(i - 1)*exp(step*x))
-            node = [node, t]
-            share = [share, step*w*t]
-         end associate
-         self%last(i) = size(node)
-      end do
+      call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
-      self%share = share
    end subroutine set_nodes
 
    !> Factors of the matrix

@@ -2,10 +2,11 @@
 module vcor_numeric_quadrature
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
+   use vcor_numeric_legendre, only : gauss_nodes
    implicit none
    private
 
-   public :: endpoint_rule, fourier_rule, newton_cotes
+   public :: endpoint_rule, fourier_rule, graded_rule, newton_cotes
 
    !> Closed Newton-Cotes rule of nine points on (0, 1)
    real(wp), parameter :: newton_cotes(0:8) = [989.0_wp, 5888.0_wp, -928.0_wp, 10496.0_wp, &
@@ -36,6 +37,42 @@ contains
          weight(i) = h*pi*cosh(y)*node(i)*(e*node(i))
       end do
    end subroutine endpoint_rule
+
+   !> Rule on (0, 1) for integrands that may be singular at 0 as above, and change at any time on the
+   !> logarithmic scale: the endpoint rule up to the first of some ends, Gauss-Legendre in the
+   !> logarithm between them
+   pure subroutine graded_rule(ends, node, weight, last)
+      !> Ends, > 0, increasing by factors of some 3, shape (m)
+      real(wp), intent(in) :: ends(:)
+      !> Nodes in increasing order, shape (n)
+      real(wp), allocatable, intent(out) :: node(:)
+      !> Weights, shape (n)
+      real(wp), allocatable, intent(out) :: weight(:)
+      !> Number of nodes up to each of the ends, shape (m)
+      integer, intent(out) :: last(:)
+
+      ! of exp(-t) over a factor of 3.3 fourteen digits, of 1/(1 + c exp(-t)) nine at least
+      integer, parameter :: order = 12
+      real(wp), allocatable :: first_node(:), first_weight(:)
+      real(wp) :: x(order), w(order), t(order), length
+      integer :: i, n
+
+      call endpoint_rule(first_node, first_weight)
+      n = size(first_node)
+      allocate (node(n + order*(size(ends) - 1)), weight(n + order*(size(ends) - 1)))
+      node(:n) = ends(1)*first_node
+      weight(:n) = ends(1)*first_weight
+      last(1) = n
+      call gauss_nodes(x, w)
+      do i = 2, size(ends)
+         length = log(ends(i)/ends(i - 1))
+         t = ends(i - 1)*exp(length*x)
+         node(n + 1:n + order) = t
+         weight(n + 1:n + order) = length*w*t
+         n = n + order
+         last(i) = n
+      end do
+   end subroutine graded_rule
 
    !> Rules for int_0^inf f(x) sin(x) dx and int_0^inf f(x) cos(x) dx with f smooth on the
    !> logarithmic scale and slowly decaying: T. Ooura and M. Mori, J. Comput. Appl. Math. 112
