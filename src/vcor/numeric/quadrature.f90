@@ -38,8 +38,8 @@ contains
       end do
    end subroutine endpoint_rule
 
-   !> Rule on (0, 1) for integrands that may be singular at 0 as above, and change at any time on the
-   !> logarithmic scale: the endpoint rule up to the first of some ends, Gauss-Legendre in the
+   !> Rule on (0, 1) for integrands that may be singular at 0 as above, and change at any time on
+   !> the logarithmic scale: the endpoint rule up to the first of some ends, Gauss-Legendre in the
    !> logarithm between them
    pure subroutine graded_rule(ends, node, weight, last)
       !> Ends, > 0, increasing by factors of some 3, shape (m)
