@@ -168,8 +168,8 @@ contains
       associate (x => axes(place)%column%reals, y => column%column%reals)
          if (size(axes) == 1) then
             allocate (lines(1))
-            lines(1)%x = x(rising(x))
-            lines(1)%y = y(rising(x))
+            allocate (lines(1)%x, source=x(rising(x)))
+            allocate (lines(1)%y, source=y(rising(x)))
             lines(1)%text = text
          else
             ! the last dimension is the fastest

@@ -22,7 +22,7 @@ contains
       type(table_t), intent(in) :: table
       !> More that describes the HDF5 file, shape (n)
       type(remark_t), intent(in) :: remarks(:)
-      !> Number of threads, > 0
+      !> Number of threads, > 0; without OpenMP there is one
       integer, intent(in) :: threads
       !> What went wrong first; unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -32,10 +32,13 @@ contains
       character(len=*), intent(in), optional :: hdf5_part
       type(csv_file_t) :: file
       type(error_t), allocatable :: trouble
+      integer :: team
 
+      ! no more than there are files and rows
+      team = max(1, min(threads, 1 + row_count(table)))
       if (len(csv) > 0) call begin_csv(file, csv, table, error, csv_part)
       if (allocated(error)) return
-!$omp parallel default(none) num_threads(threads) &
+!$omp parallel default(none) num_threads(team) &
 !$omp shared(file, csv, hdf5, hdf5_part, table, remarks, error, trouble)
 !$omp single
       if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks, &
