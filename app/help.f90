@@ -1,8 +1,8 @@
 !> Help pages
 module vcor_app_help
-   use vcor, only : error_t, error_usage, nearest_name, printable, quantities, raise, &
-      suggestion, version
+   use vcor, only : error_t, error_usage, nearest_name, printable, raise, suggestion, version
    use vcor_app_input_help, only : input_page, input_words
+   use vcor_app_output_help, only : output_page, output_words
    implicit none
    private
 
@@ -18,7 +18,8 @@ contains
 
    !> A help page
    subroutine help_text(topic, text, error)
-      !> Topic, empty for the overview; also a group, a key or a choice of the input
+      !> Topic, empty for the overview; also a group, a key or a choice of the input, a column or a
+      !> status of the output
       character(len=*), intent(in) :: topic
       !> The page
       character(len=:), allocatable, intent(out) :: text
@@ -51,11 +52,14 @@ contains
          text = output_page()
       case default
          text = input_page(topic)
+         words = output_page(topic)
+         if (text /= '' .and. words /= '') text = text//nl
+         text = text//words
          if (text /= '') return
          ! too many words to be listed, not to look for one nearby
-         words = topics//input_words()
+         words = topics//input_words()//output_words()
          if (nearest_name(topic, words) == '') then
-            text = suggestion(topic, topics)//', or a group, a key or a choice of the input'
+            text = suggestion(topic, topics)//', or a word of the input or the output'
          else
             text = suggestion(topic, words)
          end if
@@ -78,7 +82,7 @@ contains
          //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
          //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
          //'                                          fit, plot, verify, input, output,'//nl &
-         //'                                          or a group, key or choice of the input'//nl &
+         //'                                          or a word of the input or the output'//nl &
          //'       vcor --version'//nl//nl &
          //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
          //'5 numerical failure'//nl
@@ -266,26 +270,5 @@ contains
          //'the energies do not close or a solution fails. A contact that does not end is'//nl &
          //'no failure where both methods say so.'//nl
    end function verify_page
-
-   !> Page of the output, from the table of quantities
-   function output_page() result(text)
-      !> The page
-      character(len=:), allocatable :: text
-
-      character(len=28) :: name
-      integer :: i
-
-      text = 'Columns of STEM_summary.csv and names for --print:'//nl
-      do i = 1, size(quantities)
-         name = quantities(i)%name
-         text = text//'   '//name//trim(quantities(i)%meaning)//' ['//trim(quantities(i)%unit) &
-            //']'//nl
-      end do
-      name = 'steps'
-      text = text//'   '//name//'number of time steps'//nl
-      name = 'status'
-      text = text//'   '//name//'separated; else nan for the numbers: no_separation, sticks;'//nl &
-         //repeat(' ', 31)//'in a sweep also invalid (there is no such impact), failed'//nl
-   end function output_page
 
 end module vcor_app_help

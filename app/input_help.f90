@@ -4,7 +4,7 @@ module vcor_app_input_help
    implicit none
    private
 
-   public :: input_page, input_words
+   public :: input_page, input_words, indented
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -106,7 +106,7 @@ contains
       end if
    end function entry_of
 
-   !> A note below its key, in lines that fit a screen
+   !> A note below its key or word, in lines that fit a screen
    pure function indented(note) result(text)
       !> The note
       character(len=*), intent(in) :: note

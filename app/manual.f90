@@ -79,8 +79,8 @@ contains
          //'numerical error. The impact is described in a case file, a Fortran namelist in SI ' &
          //'units.')
       call page%paragraph('`vcor help TOPIC` shows a page of this manual on the screen; a ' &
-         //'group, a key or a choice of the input, as in `vcor help velocity` or ' &
-         //'`vcor help prony`, the part of that page that is about it. With ' &
+         //'word of the input or the output, as in `vcor help velocity`, `vcor help prony` or ' &
+         //'`vcor help sticks`, the part of that page that is about it. With ' &
          //'`--markdown` or `--man` it prints the manual itself, of the program (without ' &
          //'TOPIC), of `input` or of `output`. `vcor --version` prints the version.')
       call page%paragraph('An option may have its value after a blank or after an equals sign. ' &

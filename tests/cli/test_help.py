@@ -115,3 +115,19 @@ def test_words_near_those_of_the_input(vcor, word, says):
         vcor.refuses("help", word, code=USAGE, says=[f"'{word}'", says])
     else:
         assert vcor.succeeds("help", word) == vcor.succeeds("help")
+
+
+@pytest.mark.parametrize("word", [*NAMES, "sticks", "no_separation", "invalid"])
+def test_words_of_the_output(vcor, word):
+    """A column, or what the status says, is shown as on the page of the output."""
+    whole = vcor.succeeds("help", "output").splitlines()
+    page = vcor.succeeds("help", word).splitlines()
+    assert all(line in whole for line in page if line)
+    names = [line.split()[0] for line in page if line.startswith("   ") and line[3] != " "]
+    assert word in names
+    if word != "status":
+        assert names == [word]
+
+
+def test_misspelt_word_of_the_output(vcor):
+    vcor.refuses("help", "contact_tiem", code=USAGE, says="'contact_time'")
