@@ -108,7 +108,7 @@ def test_words_of_the_input(vcor, word, groups, keys):
 
 @pytest.mark.parametrize(
     "word, says",
-    [("velosity", "'velocity'"), ("pronny", "'prony'"), ("nothing at all", "a key"), ("", None)],
+    [("velosity", "'velocity'"), ("pronny", "'prony'"), ("nothing at all", "a word of the input or the output"), ("", None)],
 )
 def test_words_near_those_of_the_input(vcor, word, says):
     if says:
