@@ -144,6 +144,7 @@ contains
    !> Two different materials of which one relaxes, at least
    subroutine test_pair()
       type(prony_t) :: soft
+      type(power_law_t) :: other
       type(error_t), allocatable :: error
       type(contact_modulus_t) :: modulus
       complex(wp) :: dynamic
@@ -156,6 +157,10 @@ contains
       call pair_of(power_law, steel, "power law and steel")
       call pair_of(cerf, sls, "CERF and SLS")
       call pair_of(power_law, cerf, "power law and CERF")
+      call new_power_law(other, 2.0e6_wp, 3.0e5_wp, 0.3_wp, error)
+      call success(error, "another power law")
+      other%poisson_ratio = 0.4_wp
+      call pair_of(power_law, other, "two power laws")
       call beside_elastic(sls, steel, 4, "SLS and steel")
       call beside_elastic(sls, glass, 4, "SLS and glass")
       call new_prony(soft, 1.0e7_wp, [1.0e9_wp, 4.0e8_wp, 3.0e7_wp], &
@@ -265,6 +270,9 @@ contains
             rounding, what//": the glassy modulus is that of the finite one")
          call check_relative(modulus%relaxation(0.0_wp), modulus%glassy(), rounding, &
             what//": and so is E'(0)")
+      else if (.not. ieee_is_finite(first%glassy())) then
+         call check(.not. ieee_is_finite(modulus%glassy()), what//": no glassy modulus")
+         call check(.not. ieee_is_finite(modulus%relaxation(0.0_wp)), what//": nor E'(0)")
       end if
       a = first%rubbery()*first%plane_strain_factor()
       b = second%rubbery()*second%plane_strain_factor()

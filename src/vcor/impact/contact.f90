@@ -124,17 +124,24 @@ contains
       !> Modulus [Pa]
       real(wp) :: value
 
-      real(wp) :: one, other
-
       value = self%first_factor*self%first%relaxation(t)
-      if (allocated(self%second)) then
-         one = value
-         other = self%second_factor*self%second%relaxation(t)
-         ! the larger modulus may be infinite, the smaller one have vanished
-         value = min(one, other)
-         if (value > 0.0_wp) value = value/(1.0_wp + value/max(one, other))
-      end if
+      if (allocated(self%second)) &
+         value = combined(value, self%second_factor*self%second%relaxation(t))
    end function relaxation
+
+   !> Modulus of two bodies by Eq. (1), in which one or both may be infinite, or nothing
+   elemental function combined(one, other) result(modulus)
+      !> Modulus of a body [Pa], >= 0
+      real(wp), intent(in) :: one
+      !> The other one's [Pa], >= 0
+      real(wp), intent(in) :: other
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = min(one, other)
+      if (modulus > 0.0_wp .and. modulus <= huge(modulus)) &
+         modulus = modulus/(1.0_wp + modulus/max(one, other))
+   end function combined
 
    !> Rate of the contact modulus at t > 0: E'^2 (E_a'/E_a^2 + E_b'/E_b^2)
    elemental function rate(self, t) result(value)
@@ -247,7 +254,7 @@ contains
 
       modulus = self%first_factor*self%first%glassy()
       if (allocated(self%second)) &
-         modulus = 1.0_wp/(1.0_wp/modulus + 1.0_wp/(self%second_factor*self%second%glassy()))
+         modulus = combined(modulus, self%second_factor*self%second%glassy())
    end function glassy
 
    !> Rubbery contact modulus E'(infinity)
@@ -257,17 +264,9 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      real(wp) :: other
-
       modulus = self%first_factor*self%first%rubbery()
-      if (allocated(self%second)) then
-         other = self%second_factor*self%second%rubbery()
-         if (min(modulus, other) > 0.0_wp) then
-            modulus = 1.0_wp/(1.0_wp/modulus + 1.0_wp/other)
-         else
-            modulus = 0.0_wp
-         end if
-      end if
+      if (allocated(self%second)) &
+         modulus = combined(modulus, self%second_factor*self%second%rubbery())
    end function rubbery
 
    !> Viscosity of the dashpot in parallel with the contact modulus
