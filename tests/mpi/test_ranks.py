@@ -158,7 +158,7 @@ def test_killed_rank(long, victim):
     assert end(process).code != SUCCESS
     for rank in ranks:
         assert not Path(f"/proc/{rank}/exe").exists()
-    done, points = done_in(long.folder / "out" / PART)
+    done, points = done_in(long.folder / "out" / PART, killed=True)
     assert 0 < done < points
     assert {path.name for path in (long.folder / "out").iterdir()} <= {
         PART,
