@@ -156,7 +156,7 @@ contains
    pure subroutine fit_signed(window, modulus, terms)
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Modulus at the times `signed_fit_times` of the window [Pa], > 0, shape (n)
+      !> Modulus at the times `signed_fit_times` of the window [Pa], >= 0, shape (n)
       real(wp), intent(in) :: modulus(:)
       !> The sum, its moduli of either sign; its error is the largest one over the later 99 % of the
       !> window, over the mean modulus, or that of the integral at earlier times
