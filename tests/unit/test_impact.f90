@@ -16,6 +16,7 @@ program test_impact
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_type, only : material_t
+   use vcor_numeric_legendre, only : gauss_nodes
    use vcor_solver_ive, only : ive_t
    use vcor_solver_product, only : product_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
@@ -67,6 +68,7 @@ program test_impact
    call test_time_scale()
    call test_sample()
    call test_outcome()
+   call test_stuck()
    call finish()
 
 contains
@@ -207,6 +209,7 @@ contains
    subroutine test_integral_of_pair()
       ! the modulus falls thirtyfold at b t = ln(d/c), with poles close to the real axis
       real(wp), parameter :: s = 1.0e6_wp, r = 1.0e5_wp, d = 4.0e7_wp, b = 1.0e3_wp
+      ! twelve Gauss nodes over a factor of 3.2, with the poles at 40 degrees from the real axis
       real(wp), parameter :: tolerance = 1.0e-9_wp
       type(prony_t) :: relaxing, elastic
       type(contact_modulus_t) :: modulus
@@ -240,11 +243,13 @@ contains
       integer, parameter :: steps = 20
       real(wp), parameter :: t = 4.0e-4_wp, h = t/500.0_wp
       ! what a pair is to be as good as where cor is wanted to eight digits, with one to spare
+      ! y^3.4 for t^-0.3, by 24 nodes: 24^-(2*4.4)/10
+      real(wp), parameter :: mean_tolerance = 1.0e-8_wp
       real(wp), parameter :: window = 4.0e-3_wp, fit_tolerance = 1.0e-9_wp
       type(contact_modulus_t) :: modulus, other
       type(error_t), allocatable :: error
       type(exponential_sum_t) :: terms
-      real(wp) :: a, b, whole(1), time
+      real(wp) :: a, b, whole(1), time, node(24), weight(24), check_mean
       integer :: i
 
       call new_contact_modulus(modulus, first, second, .false., error)
@@ -262,6 +267,11 @@ contains
       whole = modulus%step_integrals(t, 1)
       call check_relative(sum(modulus%step_integrals(t/steps, steps)), whole(1), step_tolerance, &
          what//": the steps are the whole")
+      ! by Gauss's rule over the root of the time, in which the integral is smooth
+      call gauss_nodes(node, weight)
+      check_mean = sum(2.0_wp*node*weight*modulus%integral(t*node**2))
+      call check_relative(modulus%mean_integral(t), check_mean, mean_tolerance, &
+         what//": mean of the integral")
       if (ieee_is_finite(first%glassy()) .and. ieee_is_finite(second%glassy())) then
          call check_relative(modulus%relaxation(0.0_wp), modulus%glassy(), rounding, &
             what//": E'(0) is the glassy modulus")
@@ -517,6 +527,26 @@ contains
       call check_close(maxval(abs(sample - series%state(:, 0:series%last))), 0.0_wp, 0.0_wp, &
          "without any change")
    end subroutine test_sample
+
+   !> What moves is not stuck, whatever its force; what stands still is, if nothing pushes it
+   subroutine test_stuck()
+      real(wp), parameter :: mass = 2.0_wp
+      type(trajectory_t) :: trajectory
+
+      call trajectory%reserve(1)
+      trajectory%state = 0.0_wp
+      trajectory%last = 1
+      trajectory%state(col_velocity, 0) = 1.0_wp
+      trajectory%state(col_indentation, 1) = 0.1_wp
+      call check(trajectory%is_stuck(mass), "at rest without force")
+      trajectory%state(col_force, 1) = -1.0e-12_wp
+      call check(trajectory%is_stuck(mass), "rounding of a force pushes nothing")
+      trajectory%state(col_force, 1) = 1.0_wp
+      call check(.not. trajectory%is_stuck(mass), "a force pushes")
+      trajectory%state(col_force, 1) = -10.0_wp
+      trajectory%state(col_velocity, 1) = -0.3_wp
+      call check(.not. trajectory%is_stuck(mass), "motion is no less for a force that pulls")
+   end subroutine test_stuck
 
    !> A trajectory made by hand: F = F0 sin(pi t/t0), so that all integrals are known
    subroutine test_outcome()

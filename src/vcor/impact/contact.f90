@@ -9,7 +9,7 @@ module vcor_impact_contact
    use vcor_material_signed_fit, only : fit_signed, signed_fit_times
    use vcor_material_type, only : material_t
    use vcor_numeric_legendre, only : gauss_nodes
-   use vcor_numeric_quadrature, only : fourier_rule, graded_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, graded_rule
    implicit none
    private
 
@@ -37,6 +37,10 @@ module vcor_impact_contact
       real(wp) :: first_factor = 1.0_wp
       !> Factor of the second modulus [-]
       real(wp) :: second_factor = 1.0_wp
+      !> Nodes on (0, 1) of the integral of a pair, shape (n)
+      real(wp), allocatable :: node(:)
+      !> Their weights, shape (n)
+      real(wp), allocatable :: weight(:)
    contains
       !> E'(t)
       procedure :: relaxation
@@ -44,6 +48,8 @@ module vcor_impact_contact
       procedure :: rate
       !> Integral of E'
       procedure :: integral
+      !> Mean of that integral
+      procedure :: mean_integral
       !> Integrals of E' over equal steps
       procedure :: step_integrals
       !> Storage and loss modulus
@@ -75,6 +81,12 @@ contains
       !> One of the `pair_*` constants; absent: pair_eq1
       integer, intent(in), optional :: pair
 
+      ! shares of the time of an integral, between which a pair is smooth on the logarithmic scale:
+      ! what relaxes before the first one has a millionth of it
+      real(wp), parameter :: factor = 10.0_wp**0.5_wp
+      integer, parameter :: parts = 12
+      integer :: i
+      real(wp), parameter :: ends(0:parts) = [(factor**(i - parts), i=0, parts)]
       type(prony_t) :: elastic
       real(wp) :: a, b
       logical :: series
@@ -112,6 +124,7 @@ contains
          allocate (self%second, source=plate)
          self%first_factor = sphere%plane_strain_factor()
          self%second_factor = plate%plane_strain_factor()
+         call graded_rule(ends, self%node, self%weight)
       end if
    end subroutine new_contact_modulus
 
@@ -173,19 +186,33 @@ contains
       !> Integral [Pa s]
       real(wp) :: value
 
-      ! what relaxes earlier than in a millionth of the time has no more than that of the integral
-      integer, parameter :: decades = 6
-      real(wp), parameter :: factor = 10.0_wp**0.5_wp
-      real(wp), allocatable :: node(:), weight(:)
-      integer :: last(2*decades + 1), i
-
       if (allocated(self%second)) then
-         call graded_rule([(factor**(i - 2*decades), i=0, 2*decades)], node, weight, last)
-         value = t*sum(weight*self%relaxation(t*node))
+         value = t*sum(self%weight*self%relaxation(t*self%node))
       else
          value = self%first_factor*self%first%integral(t)
       end if
    end function integral
+
+   !> Mean over 0 .. t of the integral of E' from 0, the dashpot left out. By parts it is the integral
+   !> of (1 - x/t) E'(x): one sum for a pair, whose integral is a sum itself
+   pure function mean_integral(self, t) result(value)
+      !> Contact modulus
+      class(contact_modulus_t), intent(in) :: self
+      !> Time [s], > 0
+      real(wp), intent(in) :: t
+      !> Mean [Pa s]
+      real(wp) :: value
+
+      real(wp), allocatable :: node(:), weight(:)
+
+      if (allocated(self%second)) then
+         value = t*sum(self%weight*(1.0_wp - self%node)*self%relaxation(t*self%node))
+      else
+         ! the modulus may be singular, its integral is not
+         call endpoint_rule(node, weight)
+         value = sum(weight*self%integral(t*node))
+      end if
+   end function mean_integral
 
    !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, the dashpot left out
    pure function step_integrals(self, dt, n) result(value)

@@ -52,6 +52,8 @@ module vcor_impact_problem
       procedure :: kernel
       !> Integral of the kernel
       procedure :: kernel_integral
+      !> Mean of that integral
+      procedure :: kernel_mean_integral
       !> Integrals of the kernel over equal steps
       procedure :: kernel_step_integrals
       !> The kernel as a sum of exponentials
@@ -158,6 +160,18 @@ contains
 
       value = self%hertz_factor*self%modulus%integral(t)
    end function kernel_integral
+
+   !> Mean over 0 .. t of the integral of the kernel
+   pure function kernel_mean_integral(self, t) result(value)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time [s], > 0
+      real(wp), intent(in) :: t
+      !> Mean [N s/m^1.5]
+      real(wp) :: value
+
+      value = self%hertz_factor*self%modulus%mean_integral(t)
+   end function kernel_mean_integral
 
    !> Integrals of the kernel over the steps from i dt to (i + 1) dt, i = 0 .. n - 1
    pure function kernel_step_integrals(self, dt, n) result(value)

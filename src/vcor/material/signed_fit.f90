@@ -207,15 +207,18 @@ contains
       ! what a unit of the moduli costs: moduli of opposite signs cost digits, and so do the
       ! eigenvectors of the panels; 4e-15 were measured, more where the contact recedes
       real(wp), parameter :: lost = 2.0e-14_wp, lost_at_most = 1.0e-12_wp
-      real(wp), dimension(size(rule%rate)) :: right, x
+      real(wp), dimension(size(rule%rate)) :: right, x, late
       real(wp), dimension(size(sample)) :: weighted, deviation
       real(wp) :: misfit, size_of_all, cost, least
       integer :: i, info
 
       weighted = rule%weight*sample
       right = matmul(rule%q, weighted)
+      late = exp(-rule%rate*ends(checked))
       least = huge(least)
       n = rule%ranks(1)
+      moduli = 0.0_wp
+      error = huge(error)
       do i = 1, size(dependent)
          x = right
          call dtrtrs('U', 'N', 'N', rule%ranks(i), 1, rule%r, size(x), x, size(x), info)
@@ -223,7 +226,7 @@ contains
          x = x/rule%length
          deviation = matmul(rule%decay, x) - sample
          misfit = maxval(abs(deviation), mask=rule%time(:rule%samples) >= ends(checked))
-         size_of_all = sum(abs(x*exp(-rule%rate*ends(checked))))
+         size_of_all = sum(abs(x*late))
          cost = misfit + lost_at_most*size_of_all
          if (cost >= least) cycle
          least = cost

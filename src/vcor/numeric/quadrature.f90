@@ -49,7 +49,7 @@ contains
       !> Weights, shape (n)
       real(wp), allocatable, intent(out) :: weight(:)
       !> Number of nodes up to each of the ends, shape (m)
-      integer, intent(out) :: last(:)
+      integer, intent(out), optional :: last(:)
 
       ! of exp(-t) over a factor of 3.3 fourteen digits, of 1/(1 + c exp(-t)) nine at least
       integer, parameter :: order = 12
@@ -62,7 +62,7 @@ contains
       allocate (node(n + order*(size(ends) - 1)), weight(n + order*(size(ends) - 1)))
       node(:n) = ends(1)*first_node
       weight(:n) = ends(1)*first_weight
-      last(1) = n
+      if (present(last)) last(1) = n
       call gauss_nodes(x, w)
       do i = 2, size(ends)
          length = log(ends(i)/ends(i - 1))
@@ -70,7 +70,7 @@ contains
          node(n + 1:n + order) = t
          weight(n + 1:n + order) = length*w*t
          n = n + order
-         last(i) = n
+         if (present(last)) last(i) = n
       end do
    end subroutine graded_rule
 

@@ -44,13 +44,9 @@ contains
       !> Moments [N/m^1.5], shape (0:n-1)
       real(wp), intent(out) :: moment(0:)
 
-      real(wp), allocatable :: node(:), share(:)
-
-      ! first step: the kernel may be singular at its end
-      call endpoint_rule(node, share)
       call rule_of_means(impact%kernel_step_integrals(dt, n + 1)/dt, &
          impact%kernel_step_integrals(dt/real(parts, wp), near*parts)/dt, &
-         sum(share*impact%kernel_integral(dt*node))/dt, n, weight, moment)
+         impact%kernel_mean_integral(dt)/dt, n, weight, moment)
    end subroutine history_rule
 
    !> Weights W_i of the memory of a hereditary plate

@@ -190,8 +190,11 @@ contains
       do i = 1, size(others)
          associate (chunk => others(i)%chunks(:, depth), rate => others(i)%pace%rate)
             if (others(i)%in_hand < depth) cycle
-            if (rate > 0.0_wp) time = min(time, real(chunk(2) - chunk(1) + 1, wp)/rate)
-            if (.not. rate > 0.0_wp) time = 0.0_wp
+            if (rate > 0.0_wp) then
+               time = min(time, real(chunk(2) - chunk(1) + 1, wp)/rate)
+            else
+               time = 0.0_wp
+            end if
          end associate
       end do
    end function least_wait
