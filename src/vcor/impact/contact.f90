@@ -193,8 +193,8 @@ contains
       end if
    end function integral
 
-   !> Mean over 0 .. t of the integral of E' from 0, the dashpot left out. By parts it is the integral
-   !> of (1 - x/t) E'(x): one sum for a pair, whose integral is a sum itself
+   !> Mean over 0 .. t of the integral of E' from 0, the dashpot left out. By parts it is that of
+   !> (t - x) E'(x): one sum for a pair, whose integral is a sum itself
    pure function mean_integral(self, t) result(value)
       !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
