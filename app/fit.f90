@@ -3,10 +3,11 @@ module vcor_app_fit
    use vcor_app_cli, only : request_t
    use vcor_app_fit_options, only : check_fit
    use vcor_app_fit_screen, only : fit_report, fit_remarks
+   use vcor_app_place, only : find_place
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
-   use vcor, only : data_file, directory_exists, error_input, error_t, error_usage, fit_material, &
-      fit_t, join_path, material_text, printable, raise, read_samples, reading_t, same_file, &
-      samples_t, write_file, write_stdout, wp
+   use vcor, only : data_file, error_input, error_t, error_usage, fit_material, fit_t, &
+      material_text, printable, raise, read_samples, reading_t, same_file, samples_t, write_file, &
+      write_stdout, wp
    implicit none
    private
 
@@ -96,25 +97,39 @@ contains
       type(sampled_t), intent(in) :: sampled
       !> The path
       character(len=:), allocatable, intent(out) :: path
-      !> Error of code `error_input` if the file is one that was read, unallocated on success
+      !> Of code `error_input` if the file is one that was read; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: i
-      logical :: taken
+      character(len=:), allocatable :: extension
 
-      path = request%directory
-      if (directory_exists(path) .or. path(len(path):) == '/') &
-         path = join_path(path, stem_of(source)//'_fit.nml')
-      if (.not. allocated(request%fit%source)) then
-         taken = same_file(path, source)
-      else
-         taken = same_file(path, sampled%case%source)
-         do i = 1, sampled%case%count('material')
-            if (.not. taken) taken = same_file(path, data_file(sampled%case, i))
-         end do
-      end if
-      if (taken) call raise(error, error_input, printable(source)//': the material would replace ' &
-         //path//': give another --output')
+      call keep_what_was_read(request%directory)
+      if (allocated(error)) return
+      call find_place(request%directory, stem_of(source)//'_fit', 'nml', path, extension, error)
+      if (allocated(error)) return
+      path = path//'.nml'
+      call keep_what_was_read(path)
+
+   contains
+
+      !> No file that was read is replaced
+      subroutine keep_what_was_read(name)
+         !> Name of a file
+         character(len=*), intent(in) :: name
+
+         integer :: i
+         logical :: taken
+
+         if (.not. allocated(request%fit%source)) then
+            taken = same_file(name, source)
+         else
+            taken = same_file(name, sampled%case%source)
+            do i = 1, sampled%case%count('material')
+               if (.not. taken) taken = same_file(name, data_file(sampled%case, i))
+            end do
+         end if
+         if (taken) call raise(error, error_input, printable(source)//': the material would ' &
+            //'replace '//name//': give another --output')
+      end subroutine keep_what_was_read
    end subroutine choose_path
 
    !> Name of a file without folder and ending

@@ -195,7 +195,8 @@ contains
          //'  --poisson-ratio NU      of the material; default 0.5, of shear moduli required'//nl &
          //'  --density RHO           of the material [kg/m3]'//nl &
          //'  --name NAME             of the material; default: that of the file'//nl &
-         //'  --output PATH           write the group to this file, or into this directory'//nl &
+         //'  --output PATH           write the group to NAME.nml, or to DATA_fit.nml in a'//nl &
+         //'                          folder of another name, made if it is not there'//nl &
          //'  --quiet                 print nothing'//nl//nl &
          //'With --from-model a material of a case is sampled in place of data, the one that'//nl &
          //'is named or that of the plate, and its impact is solved with it and with the fit.'//nl &
@@ -236,9 +237,10 @@ contains
          //'                          default: cor; names: vcor help output'//nl &
          //'  --legend TEXT           text of the legend, once for each file, in order;'//nl &
          //'                          default: titles, or in what the cases differ'//nl &
-         //'  --output FILE           name of the figure, or directory of STEM_KIND.svg;'//nl &
+         //'  --output PATH           NAME.svg, .pdf or .png: the figure; another name: the'//nl &
+         //'                          folder of STEM_KIND.svg, made if it is not there;'//nl &
          //'                          default: STEM_KIND.svg in the current directory'//nl &
-         //'  --format FORMAT         svg, pdf, png; default: what FILE ends with, else svg'//nl &
+         //'  --format FORMAT         svg, pdf, png; default: what PATH ends with, else svg'//nl &
          //'  --script                leave the script of gnuplot and its data, FILE with'//nl &
          //'                          .gp and .dat, for work by hand'//nl &
          //'  --quiet                 print nothing'//nl//nl &

@@ -2,9 +2,10 @@
 module vcor_app_plot
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
-   use vcor, only : build_figure, directory_exists, draw, error_input, error_t, error_usage, &
-      figure_formats, figure_kinds, figure_t, integer_text, join_path, legend_t, printable, raise, &
-      read_result, result_t, same_file, split_path, suggestion, usual_kind, write_stdout
+   use vcor_app_place, only : find_place
+   use vcor, only : build_figure, draw, error_input, error_t, error_usage, figure_formats, &
+      figure_kinds, figure_t, integer_text, legend_t, printable, raise, read_result, result_t, &
+      same_file, suggestion, usual_kind, write_stdout
    implicit none
    private
 
@@ -106,38 +107,21 @@ contains
       character(len=:), allocatable, intent(out) :: path
       !> Its extension, a known format
       character(len=:), allocatable, intent(out) :: format
-      !> Error of code `error_usage`, unallocated on success
+      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: directory, ending, name
-      logical :: is_directory
-      integer :: mark
+      character(len=:), allocatable :: ending
 
       format = 'svg'
       if (allocated(request%format)) format = request%format
       path = usual
       if (.not. allocated(request%directory)) return
-      path = trim(request%directory)
-      is_directory = directory_exists(path)
-      if (path(len(path):) == '/' .or. is_directory) then
-         path = join_path(path, usual)
-         return
-      end if
-      call split_path(path, directory, name)
-      mark = index(name, '.', back=.true.)
-      if (mark < 2) return
-      ending = name(mark + 1:)
-      if (.not. has_word(figure_formats, ending)) then
-         if (allocated(request%format)) return
-         call raise(error, error_usage, "unknown format '"//printable(ending)//"' of " &
-            //"'"//printable(path)//"'; "//suggestion(ending, figure_formats))
-      else if (allocated(request%format) .and. ending /= format) then
-         call raise(error, error_usage, "the name '"//printable(path)//"' ends with ."//ending &
-            //', but --format is '//format)
-      else
-         format = ending
-         path = directory//name(:mark - 1)
-      end if
+      call find_place(request%directory, usual, figure_formats, path, ending, error)
+      if (allocated(error) .or. ending == '') return
+      if (allocated(request%format) .and. ending /= format) call raise(error, error_usage, &
+         "the name '"//printable(request%directory)//"' ends with ."//ending &
+         //', but --format is '//format)
+      format = ending
    end subroutine find_path
 
    !> No file that is written may be one of the results

@@ -46,7 +46,7 @@ contains
          do i = 1, size(shown)
             do j = 1, size(quantities)
                if (quantities(j)%name == shown(i)) text = text//line(quantities(j)%meaning, &
-                  quantities(j)%symbol, quantity_value(outcome, j), &
+                  quantities(j)%symbol, shown_value(quantities(j)%name, j), &
                   merge('        ', quantities(j)%unit, quantities(j)%unit == '1'), &
                   remark(quantities(j)%name))
             end do
@@ -57,6 +57,20 @@ contains
       text = text//files//nl
 
    contains
+
+      !> A number of the table, 0 where only rounding is left of it
+      function shown_value(name, j) result(value)
+         !> Name of the quantity
+         character(len=*), intent(in) :: name
+         !> Its place in `quantities`
+         integer, intent(in) :: j
+         !> Its value
+         real(wp) :: value
+
+         value = quantity_value(outcome, j)
+         if (name == 'residual_indentation') value = visible(value, outcome%max_indentation)
+         if (name == 'residual_ratio') value = visible(value, 1.0_wp)
+      end function shown_value
 
       !> What stands behind a number
       function remark(name)
@@ -105,25 +119,16 @@ contains
 
       text = line('energy before the impact', 'KE_0', outcome%initial_energy, 'J', '') &
          //line('  lost in the contact (hysteresis)', 'W_h', &
-         visible(outcome%hysteresis_energy), 'J', share(outcome%hysteresis_energy)) &
-         //line('  radiated into the plate', 'W_wave', visible(outcome%wave_energy), 'J', &
+         visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
+         share(outcome%hysteresis_energy)) &
+         //line('  radiated into the plate', 'W_wave', &
+         visible(outcome%wave_energy, outcome%initial_energy), 'J', &
          share(outcome%wave_energy)) &
          //line('  left to the sphere', 'KE_1', outcome%final_energy, 'J', &
          share(outcome%final_energy)) &
          //line('  missing from the budget', 'dW', outcome%energy_imbalance, 'J', '')
 
    contains
-
-      !> An energy, 0 if it is below what rounding and the error leave of the budget
-      pure function visible(energy)
-         !> Energy [J]
-         real(wp), intent(in) :: energy
-         !> Energy [J]
-         real(wp) :: visible
-
-         visible = energy
-         if (abs(energy) <= 1.0e-8_wp*outcome%initial_energy) visible = 0.0_wp
-      end function visible
 
       !> Share of the kinetic energy
       pure function share(energy) result(percent)
@@ -137,6 +142,20 @@ contains
             1.0e-3_wp*max(0, nint(1.0e5_wp*energy/outcome%initial_energy)), ' %'
       end function share
    end function budget
+
+   !> A number, 0 where it is below the eight digits that the screen shows of its scale: that is
+   !> rounding and numerical error
+   pure function visible(value, scale)
+      !> The number
+      real(wp), intent(in) :: value
+      !> What it is a part of, > 0
+      real(wp), intent(in) :: scale
+      !> The number, or 0
+      real(wp) :: visible
+
+      visible = value
+      if (abs(value) <= 1.0e-8_wp*scale) visible = 0.0_wp
+   end function visible
 
    !> A number with so many significant digits, right-justified
    pure function significant(value, digits, width) result(text)

@@ -1,11 +1,12 @@
 """The examples, and the namelists that f90nml makes of them."""
 
+import re
 import subprocess
 
 import f90nml
 import pytest
 from cases import SLS, case_text
-from program import EXAMPLES, NUMERICAL
+from program import EXAMPLES, NUMERICAL, PAPER
 
 # Examples with the paper's scheme are there to show its error
 CONVERGED = {path for path in EXAMPLES if "adams_bashforth" not in path.read_text()}
@@ -196,3 +197,10 @@ def test_f90nml_reads_a_failed_case(vcor):
     start = lines.index("# case:") + 1
     text = "\n".join(line[2:] for line in lines[start:] if line.startswith("#"))
     assert f90nml.reads(text)["solver"]["end_time"] == 1e-3
+
+
+def test_rounding_is_shown_as_zero(vcor):
+    """An elastic body is left without a dent, and loses nothing in the contact."""
+    screen = vcor.succeeds("run", str(PAPER / "elastic.nml"))
+    for symbol, unit in {r"s\(t0\)": " m", "s0/smax": "", "W_h": " J"}.items():
+        assert re.search(rf" {symbol} +0{unit}( |$)", screen, re.M), symbol

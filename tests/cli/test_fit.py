@@ -358,6 +358,11 @@ def test_output_into_a_directory(vcor):
     out = vcor.succeeds("fit", "data.csv", "--model", "sls", "--output", "out", "--quiet")
     assert out == ""
     assert [path.name for path in (vcor.folder / "out").iterdir()] == ["data_fit.nml"]
+    for name, made in {"new": "new/data_fit.nml", "a/b/": "a/b/data_fit.nml", "c/d.nml": "c/d.nml"}.items():
+        vcor.succeeds("fit", "data.csv", "--model", "sls", "--output", name, "--quiet")
+        assert (vcor.folder / made).is_file()
+    words = ["fit", "data.csv", "--model", "sls", "--output", "fit.txt"]
+    vcor.refuses(*words, code=USAGE, says=["unknown format 'txt'", "nml"])
 
 
 def test_output_keeps_what_was_read(vcor):

@@ -131,3 +131,19 @@ def test_words_of_the_output(vcor, word):
 
 def test_misspelt_word_of_the_output(vcor):
     vcor.refuses("help", "contact_tiem", code=USAGE, says="'contact_time'")
+
+
+@pytest.mark.parametrize(
+    ("symbol", "name"),
+    {"e": "cor ", "e_a": "cor_sphere", "lambda": "inelasticity", "W_wave": "wave_energy", "KE_0": "initial_energy", "U": "plate_displacement"}.items(),
+)
+def test_symbols_of_the_screen(vcor, symbol, name):
+    assert f"   {name}" in vcor.succeeds("help", symbol)
+
+
+def test_words_of_the_screen(vcor):
+    """What a run prints that is no column."""
+    assert "left to the sphere" in vcor.succeeds("help", "KE_1")
+    assert "numerical error" in vcor.succeeds("help", "+-")
+    for word in ("exponentials", "kernel"):
+        assert "solver.accuracy" in vcor.succeeds("help", word)

@@ -438,13 +438,13 @@ def test_formats(vcor, plot, results, kind):
     begins = {"svg": b"<?xml", "pdf": b"%PDF", "png": b"\x89PNG"}[kind]
     assert plot("sls.h5", name=f"a.b.{kind}").read_bytes().startswith(begins)
     vcor.succeeds("plot", results / "sls.h5", "--format", kind, "--output", "name")
-    assert (vcor.folder / f"name.{kind}").read_bytes().startswith(begins)
+    assert (vcor.folder / "name" / f"sls_history.{kind}").read_bytes().startswith(begins)
     vcor.succeeds("plot", results / "sls.h5", "--format", kind)
     assert (vcor.folder / f"sls_history.{kind}").read_bytes().startswith(begins)
     # nothing else is left
     assert {path.name for path in vcor.folder.iterdir()} == {
         f"a.b.{kind}",
-        f"name.{kind}",
+        "name",
         f"sls_history.{kind}",
     }
 
@@ -472,6 +472,10 @@ def test_directory(vcor, results):
     )
     vcor.succeeds("plot", results / "sls.h5", "--output", "new/")
     assert (vcor.folder / "new" / "sls_history.svg").exists()
+    vcor.succeeds("plot", results / "sls.h5", "--output", "newer/folder")
+    assert (vcor.folder / "newer" / "folder" / "sls_history.svg").exists()
+    vcor.succeeds("plot", results / "sls.h5", "--output", "v1.2/")
+    assert (vcor.folder / "v1.2" / "sls_history.svg").exists()
 
 
 def by_hand(script, folder, **options):

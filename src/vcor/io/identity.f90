@@ -227,8 +227,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (found%version /= expected%version) then
-         call raise(error, error_file, quoted_path(path)//' is of another version: found '// &
-            shortened(found%version)//', expected '//expected%version)
+         call raise(error, error_file, quoted_path(path)//' is of another version: it has '// &
+            shortened(found%version)//', this is '//expected%version)
       else if (found%case_text /= expected%case_text) then
          call raise(error, error_file, quoted_path(path)//' is of another case: '// &
             first_difference(found%case_text, expected%case_text))
@@ -237,7 +237,7 @@ contains
             'other points')
       else if (found%part%parts /= expected%part%parts) then
          call raise(error, error_file, quoted_path(path)//' is one of '// &
-            integer_text(found%part%parts)//' shards, expected one of '// &
+            integer_text(found%part%parts)//' shards, this is one of '// &
             integer_text(expected%part%parts))
       end if
    end subroutine check_same
@@ -248,8 +248,7 @@ contains
       character(len=*), intent(in) :: found
       !> Another case
       character(len=*), intent(in) :: expected
-      !> Found and expected
-
+      !> Words for an error as well as for a note that the file is replaced
       character(len=:), allocatable :: text
       integer :: i, start
 
@@ -258,7 +257,7 @@ contains
          if (found(i:i) /= expected(i:i)) exit
          if (found(i:i) == new_line('a')) start = i + 1
       end do
-      text = "found '"//line_at(found)//"', expected '"//line_at(expected)//"'"
+      text = "it has '"//line_at(found)//"', this one '"//line_at(expected)//"'"
 
    contains
 
