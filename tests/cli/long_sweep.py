@@ -78,7 +78,7 @@ def interrupted(vcor, number=signal.SIGKILL, folder="out", *words, name=PART):
     process = begin(vcor, *words, folder=folder)
     wait_for(vcor.folder / folder / name, process)
     os.kill(process.pid, number)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=600)
     return process.returncode, out, err
 
 

@@ -55,7 +55,7 @@ def test_files(vcor, only, size):
         cwd=vcor.folder,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
     )
     if done.returncode in {1, 77} and "vcor" not in done.stderr:
         pytest.skip(f"no disk can be mounted here: {done.stderr.strip()}")

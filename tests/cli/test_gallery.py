@@ -76,7 +76,7 @@ def gallery(tmp_path_factory):
         env={**os.environ, "VCOR": program()},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=False,
     )
     assert (done.returncode, done.stderr) == (0, "")

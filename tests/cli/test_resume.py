@@ -222,7 +222,7 @@ def test_in_use(long):
     for more in ([], ["--resume"]):
         long.refuses("run", "case.nml", "--output", "out", *more, code=FILE, says="in use")
     process.send_signal(signal.SIGCONT)
-    assert process.wait(timeout=60) == NUMERICAL
+    assert process.wait(timeout=600) == NUMERICAL
     process.communicate()
     same_files(long.folder / "out", long.folder / "ref")
 
@@ -286,7 +286,7 @@ def test_full_disk(long, bytes_per_point):
         cwd=long.folder,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     if done.returncode in {1, 77} and "vcor" not in done.stderr:
         pytest.skip(f"no disk can be mounted here: {done.stderr.strip()}")

@@ -525,7 +525,7 @@ def script(vcor, *words):
         capture_output=True,
         text=True,
         check=True,
-        timeout=60,
+        timeout=600,
     ).stdout
 
 

@@ -4,4 +4,4 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 # Seconds after which a command counts as one that does not end
-LIMIT = 120
+LIMIT = 1000

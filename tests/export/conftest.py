@@ -27,7 +27,7 @@ def run(vcor):
             [vcor, "run", str(CASE), "--output", str(folder)],
             capture_output=True,
             text=True,
-            timeout=60,
+            timeout=600,
             **options,
         )
 

@@ -39,7 +39,7 @@ def solve(vcor, folder, text, code):
         [vcor, "run", str(case), "--output", str(folder), "--quiet"],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
     )
     assert done.returncode == code, done.stderr
     return folder / "cube_summary.csv", folder / "cube.h5"

@@ -97,7 +97,7 @@ def test_full_standard_output(vcor, tmp_path):
             stdout=full,
             stderr=subprocess.PIPE,
             text=True,
-            timeout=60,
+            timeout=600,
         )
     assert done.returncode == 4
     assert "No space left on device" in one_line(done)
@@ -118,7 +118,7 @@ def test_disk_that_ends_within_a_file(vcor, tmp_path):
         ["unshare", "-rm", "sh", "-c", script, "sh", str(tmp_path), vcor, str(CASE)],
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
     )
     if done.returncode in {1, 77} and "vcor" not in done.stderr:
         pytest.skip(f"no disk can be mounted here: {done.stderr.strip()}")

@@ -43,7 +43,7 @@ def start(vcor, *words, wrapper=()):
 
 
 def end(process):
-    out, err = process.communicate(timeout=120)
+    out, err = process.communicate(timeout=600)
     return Done(process.returncode, out, err)
 
 

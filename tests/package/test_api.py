@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-LIMIT = 170
+LIMIT = 1000
 
 
 @pytest.fixture(scope="module")

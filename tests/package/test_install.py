@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 CONSUMER = ROOT / "tests" / "consumer"
 PAPER = ROOT / "examples" / "paper"
-LIMIT = 120
+LIMIT = 1000
 
 # COR of examples/paper/sls.nml at 2.5 m/s, by vcor verify, and the setting for it
 COR = 0.407292416

@@ -37,7 +37,7 @@ COLUMNS = [
 ]
 
 # Seconds after which a run counts as one that does not end
-LIMIT = 30
+LIMIT = 1000
 
 
 def program():

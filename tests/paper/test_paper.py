@@ -256,7 +256,7 @@ def test_loop_in_the_comment(case, lines, columns, tmp_path):
         env={**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"},
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=600,
         check=True,
     )
     rows = [line.split() for line in done.stdout.splitlines()]
