@@ -50,7 +50,7 @@ contains
          //'is the initial energy less the energy left to the sphere, `hysteresis_energy` and ' &
          //'`wave_energy`.')
       call page%aside('The two coefficients of restitution are explained with ' &
-         //'[plate and contact](impact.md#two-coefficients), `cor_error` with ' &
+         //'[plate and contact](impact.md#two-coefficients), their estimated errors with ' &
          //'[solver and accuracy](accuracy.md).')
 
       call page%heading(1, 'Status')

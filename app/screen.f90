@@ -81,6 +81,7 @@ contains
 
          remark = ''
          if (name == 'cor') remark = '+- '//short(outcome%cor_error)
+         if (name == 'cor_sphere') remark = '+- '//short(outcome%cor_sphere_error)
       end function remark
    end function report
 

@@ -77,7 +77,7 @@ contains
             //' can be trusted, the best value is ' &
             //significant(comparison%compared(1)%best, 12, 0)//nl
          if (comparison%attempts(attempt_case)%made) text = text//'  the cor of the scheme that ' &
-            //'the case asks for is off by '//short(comparison%attempts(attempt_case)%seen)//nl
+            //'the case asks for is off by '//short(comparison%attempts(attempt_case)%seen(1))//nl
       else
          text = text//'  verified'//nl
       end if
@@ -148,9 +148,9 @@ contains
             end if
             honest = ''
             if (i /= attempt_case) honest = &
-               merge('  honest ', '  TOO LOW', is_honest(this, error_of_best(comparison)))
+               merge('  honest ', '  TOO LOW', all(is_honest(this, error_of_best(comparison))))
             text = text//significant(this%outcome%cor, 11, 17)//column(this%outcome%cor_error, 9) &
-               //column(this%seen, 9)//column(this%imbalance(), 9)//trim(honest)//nl
+               //column(this%seen(1), 9)//column(this%imbalance(), 9)//trim(honest)//nl
          end associate
       end do
    end function attempts_text

@@ -30,6 +30,7 @@ NAMES = [
     "inelasticity",
     "loss_tangent",
     "cor_error",
+    "cor_sphere_error",
     "steps",
     "status",
 ]

@@ -16,6 +16,7 @@ SUMMARY = {
     "inelasticity": "1",
     "loss_tangent": "1",
     "cor_error": "1",
+    "cor_sphere_error": "1",
     "steps": "1",
     "status": "",
 }

@@ -183,9 +183,11 @@ contains
    subroutine test_order()
       integer, parameter :: halvings = 3
       character(len=9), parameter :: quadrature(2) = ["rectangle", "trapezoid"]
+      ! of tests/reference
+      real(wp), parameter :: sls_cor_sphere = 0.4022529366124_wp
       type(impact_t) :: impact
       type(outcome_t) :: outcome
-      real(wp) :: error(0:halvings), order
+      real(wp) :: error(0:halvings), order, error_sphere
       integer :: i, j
 
       call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
@@ -196,6 +198,10 @@ contains
             call check(error(i) <= 10.0_wp*outcome%cor_error .and. &
                outcome%cor_error <= 30.0_wp*error(i), &
                quadrature(j)//": the estimate of the error is honest")
+            error_sphere = abs(outcome%cor_sphere - sls_cor_sphere)
+            call check(error_sphere <= 10.0_wp*outcome%cor_sphere_error .and. &
+               outcome%cor_sphere_error <= 30.0_wp*error_sphere, &
+               quadrature(j)//": that of cor_sphere is, too")
          end do
          order = log(error(0)/error(halvings))/(real(halvings, wp)*log(2.0_wp))
          ! the start u' ~ sqrt(t) adds a small term of order 1.5 to the trapezoids' 2, of the other

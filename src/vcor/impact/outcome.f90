@@ -53,6 +53,8 @@ module vcor_impact_outcome
       real(wp) :: loss_tangent = 0.0_wp
       !> Estimate of the error of `cor` [-]
       real(wp) :: cor_error = 0.0_wp
+      !> Estimate of the error of `cor_sphere` [-]
+      real(wp) :: cor_sphere_error = 0.0_wp
    end type outcome_t
 
 contains
@@ -101,6 +103,7 @@ contains
       modulus = impact%modulus%dynamic_modulus(outcome%min_frequency)
       outcome%loss_tangent = aimag(modulus)/real(modulus, wp)
       outcome%cor_error = trajectory%cor_error
+      outcome%cor_sphere_error = trajectory%cor_sphere_error
    end function evaluate
 
 end module vcor_impact_outcome

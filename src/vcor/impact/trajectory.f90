@@ -62,6 +62,8 @@ module vcor_impact_trajectory
       real(wp) :: time_of_max_force = 0.0_wp
       !> Estimate of the error of the coefficient of restitution [-]
       real(wp) :: cor_error = 0.0_wp
+      !> The same of that of the sphere alone [-]
+      real(wp) :: cor_sphere_error = 0.0_wp
       !> Exponentials that stood for a kernel that is no finite sum of them; 0: it was taken as it
       !> is
       integer :: kernel_terms = 0

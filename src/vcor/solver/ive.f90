@@ -24,7 +24,7 @@ module vcor_solver_ive
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
       new_collocator, relative_velocity, solve_step
-   use vcor_solver_landing, only : end_at_zero, error_of_cor, first_without_force, land, &
+   use vcor_solver_landing, only : end_at_zero, estimate_errors, first_without_force, land, &
       land_on_largest, slope_at_end
    use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
@@ -47,7 +47,7 @@ module vcor_solver_ive
    real(wp), parameter :: kernel_share = 0.01_wp, plate_share = 0.1_wp
    !> The usual accuracy, that the lengths of the steps are given for
    real(wp), parameter :: usual = 1.0e-8_wp
-   !> Error of the coefficient of restitution per relative error of the kernel [-]
+   !> Error of the coefficients of restitution per relative error of the kernel [-]
    real(wp), parameter :: sensitivity = 0.3_wp
 
    !> First step over the usual one where the contact recedes and the kernel does not relax within
@@ -117,7 +117,7 @@ contains
 
       real(wp), parameter :: margin = 2.0_wp, growth = 20.0_wp
       type(modes_t) :: modes
-      real(wp) :: end_time, window, time_scale
+      real(wp) :: end_time, window, time_scale, error_of_sums
       logical :: complete
 
       time_scale = impact%time_scale()
@@ -144,9 +144,12 @@ contains
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
-      if (trajectory%status == contact_separated) &
-         trajectory%cor_error = trajectory%cor_error + sensitivity &
-         *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)
+      if (trajectory%status == contact_separated) then
+         error_of_sums = sensitivity &
+            *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)
+         trajectory%cor_error = trajectory%cor_error + error_of_sums
+         trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
+      end if
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error
@@ -245,7 +248,7 @@ contains
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, growth, largest_growth, force_error, inner, velocity, fall
-      real(wp) :: end_found
+      real(wp) :: end_found, approach_error
       integer :: trial, n, ahead
       logical :: ends, last, inherited, shallow, branches, recedes, turns
 
@@ -356,9 +359,11 @@ contains
          recorded = panel
          largest_growth = max(largest_growth, growth)
          if (ends) then
-            trajectory%cor_error = max(share_of_growth*largest_growth, &
-               error_of_cor(self%collocator%rule, impact, panel, coarse, trajectory%steps + 1, &
-               branches))
+            call estimate_errors(self%collocator%rule, impact, panel, coarse, &
+               trajectory%steps + 1, branches, trajectory%cor_error, trajectory%cor_sphere_error)
+            trajectory%cor_error = max(share_of_growth*largest_growth, trajectory%cor_error)
+            trajectory%cor_sphere_error = max(share_of_growth*largest_growth, &
+               trajectory%cor_sphere_error)
             if (shallow) then
                recorded%force(n) = 0.0_wp
             else
@@ -396,9 +401,11 @@ contains
             call follow_rebound(self%collocator, impact, modes, stretches, rebound, accuracy, &
                end_time, trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
-            trajectory%cor_error = trajectory%cor_error + share_of_inner*inner &
-               /(impact%velocity*time_scale) + (abs(panel%impulse(n) - coarse%impulse(n - 1)) &
-               /impact%mass + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
+            approach_error = share_of_inner*inner/(impact%velocity*time_scale) &
+               + abs(panel%impulse(n) - coarse%impulse(n - 1))/(impact%mass*impact%velocity)
+            trajectory%cor_sphere_error = trajectory%cor_sphere_error + approach_error
+            trajectory%cor_error = trajectory%cor_error + approach_error &
+               + abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
             return
          end if
          call advance(self%collocator%coarse, step, modes, coarse, coarse_start)

@@ -12,7 +12,7 @@ module vcor_solver_landing
    private
 
    public :: first_without_force, land, land_on_largest
-   public :: end_at_zero, error_of_cor, slope_at_end
+   public :: end_at_zero, estimate_errors, slope_at_end
 
 contains
 
@@ -267,9 +267,11 @@ contains
       slope = sum(rule%derivative(rule%stages, :)*value)/(panel%map(1) + 2.0_wp*panel%map(2))
    end function slope_at_end
 
-   !> Error of the coefficient of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I. The
-   !> companion reaches F = 0 a little earlier or later, which only alpha' and the drift feel
-   pure function error_of_cor(rule, impact, panel, coarse, panels, branches) result(estimate)
+   !> Errors of the coefficients of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I and
+   !> z' = v0 - I/m. The companion reaches F = 0 a little earlier or later, which only alpha' and
+   !> the drift feel
+   pure subroutine estimate_errors(rule, impact, panel, coarse, panels, branches, cor_error, &
+                                   cor_sphere_error)
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> The impact
@@ -283,8 +285,10 @@ contains
       !> Whether the indentation ends next to zero, so that in this panel the solution is hardly
       !> better than its companion
       logical, intent(in) :: branches
-      !> Estimate [-]
-      real(wp) :: estimate
+      !> Error of that by the relative velocity [-]
+      real(wp), intent(out) :: cor_error
+      !> Error of that of the sphere alone [-]
+      real(wp), intent(out) :: cor_sphere_error
 
       ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
       real(wp), parameter :: rounding = 5.0e-13_wp
@@ -293,7 +297,7 @@ contains
       ! it is anybody's guess
       real(wp), parameter :: finer = 0.3_wp
       integer, parameter :: few = 2
-      real(wp) :: impulse_error, time_error, alpha_rate, fall
+      real(wp) :: impulse_error, time_error, alpha_rate, fall, least, share
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
@@ -304,13 +308,14 @@ contains
          time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          ! the end is moved to its zero along straight lines
-         estimate = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2 &
-            + merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity &
-            *(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
+         least = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2
+         share = merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity
+         cor_sphere_error = least + share*impulse_error/impact%mass
+         cor_error = cor_sphere_error + share*(impulse_error*alpha_rate &
             + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + abs(panel%drift(n) - coarse%drift(n - 1)))
       end associate
-   end function error_of_cor
+   end subroutine estimate_errors
 
 end module vcor_solver_landing

@@ -8,8 +8,8 @@
 module vcor_solver_marching
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz_contact_time, impact_t
-   use vcor_impact_trajectory, only : col_indentation, col_time, col_velocity, contact_separated, &
-      trajectory_t
+   use vcor_impact_trajectory, only : col_indentation, col_sphere_velocity, col_time, &
+      col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_march, only : capped, march, scheme_t, stable_damping
@@ -101,7 +101,7 @@ contains
       call run(self, impact, dt, self%ghost, trajectory, error)
       if (allocated(error)) return
       if (trajectory%status == contact_separated) &
-         trajectory%cor_error = error_of_cor(self, impact, dt, cor_of(impact, trajectory))
+         call estimate_errors(self, impact, dt, trajectory)
    end subroutine solve
 
    !> Say what the scheme cannot do
@@ -166,36 +166,35 @@ contains
       end if
    end subroutine run
 
-   !> Coefficient of restitution
+   !> Both coefficients of restitution
    pure function cor_of(impact, trajectory) result(cor)
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its course
       type(trajectory_t), intent(in) :: trajectory
-      !> -s'(t0)/v0 [-]
-      real(wp) :: cor
+      !> -s'(t0)/v0 and -z'(t0)/v0 [-]
+      real(wp) :: cor(2)
 
-      cor = -trajectory%state(col_velocity, trajectory%last)/impact%velocity
+      cor = -trajectory%state([col_velocity, col_sphere_velocity], trajectory%last)/impact%velocity
    end function cor_of
 
-   !> Error of the coefficient of restitution, by Richardson's extrapolation from runs with two and
-   !> four times the step and the order that they show, two at most; next to none where the kernel
-   !> falls within a step. Where longer steps are unstable from one other run, with the order of
-   !> rectangles or of the capped kernel
-   function error_of_cor(self, impact, dt, cor) result(estimate)
+   !> Errors of the coefficients of restitution, by Richardson's extrapolation from runs with two
+   !> and four times the step and the order that they show, two at most; next to none where the
+   !> kernel falls within a step. Where longer steps are unstable from one other run, with the order
+   !> of rectangles or of the capped kernel
+   subroutine estimate_errors(self, impact, dt, trajectory)
       !> The solver
       type(marching_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Coefficient of restitution with this step
-      real(wp), intent(in) :: cor
-      !> Estimate [-]
-      real(wp) :: estimate
+      !> The course with this step
+      type(trajectory_t), intent(inout) :: trajectory
 
       real(wp), parameter :: smallest_ratio = 1.2_wp, best_ratio = 8.0_wp
-      real(wp) :: coarse(2), fine, least, ratio
+      real(wp), dimension(2) :: cor, fine, estimate, ratio
+      real(wp) :: coarse(2, 2), least
       logical :: known
       integer :: i
 
@@ -204,33 +203,36 @@ contains
       if (capped(impact)) least = max(smallest_ratio, &
          2.0_wp*impact%kernel(2.0_wp*dt)/impact%kernel(dt))
 
+      cor = cor_of(impact, trajectory)
       do i = 1, 2
-         call attempt(2.0_wp**i*dt, coarse(i), known)
+         call attempt(2.0_wp**i*dt, coarse(:, i), known)
          if (.not. known) exit
       end do
       select case (i)
       case (3)
          ! where the last two agree by chance, the first two tell
-         estimate = max(abs(coarse(1) - cor), abs(coarse(2) - coarse(1))/best_ratio)
+         estimate = max(abs(coarse(:, 1) - cor), abs(coarse(:, 2) - coarse(:, 1))/best_ratio)
          ratio = 4.0_wp
-         if (estimate > 0.0_wp) ratio = abs(coarse(2) - coarse(1))/estimate
+         where (estimate > 0.0_wp) ratio = abs(coarse(:, 2) - coarse(:, 1))/estimate
          estimate = estimate/(min(max(ratio, smallest_ratio), 4.0_wp) - 1.0_wp)
       case (2)
-         estimate = abs(coarse(1) - cor)/(least - 1.0_wp)
+         estimate = abs(coarse(:, 1) - cor)/(least - 1.0_wp)
       case default
          call attempt(0.5_wp*dt, fine, known)
          estimate = abs(cor)
          if (known) estimate = abs(cor - fine)*least/(least - 1.0_wp)
       end select
+      trajectory%cor_error = estimate(1)
+      trajectory%cor_sphere_error = estimate(2)
 
    contains
 
-      !> Coefficient of restitution with another step
+      !> Coefficients of restitution with another step
       subroutine attempt(step, value, known)
          !> Time step [s]
          real(wp), intent(in) :: step
-         !> Coefficient of restitution
-         real(wp), intent(out) :: value
+         !> Coefficients of restitution
+         real(wp), intent(out) :: value(2)
          !> Whether there is one
          logical, intent(out) :: known
 
@@ -242,7 +244,7 @@ contains
          known = stable .and. complete .and. trajectory%status == contact_separated
          if (known) value = cor_of(impact, trajectory)
       end subroutine attempt
-   end function error_of_cor
+   end subroutine estimate_errors
 
    !> Largest stable time step, estimated along a course that product integration computes: it is
    !> stable with any step

@@ -92,7 +92,7 @@ contains
 
       integer, parameter :: first_steps = 64
       real(wp), parameter :: least_part = 32.0_wp
-      real(wp) :: dt, cor(3)
+      real(wp) :: dt, cor(3), cor_sphere(3)
       integer :: level
 
       if (self%time_step > 0.0_wp) then
@@ -114,10 +114,15 @@ contains
          ! coarse steps can miss the end, so only the given step decides that there is none
          if (trajectory%status /= contact_separated .and. &
              (.not. self%time_step > 0.0_wp .or. level == 3)) return
-         cor = [cor(2:3), -trajectory%state(col_velocity, trajectory%last)/impact%velocity]
+         associate (final => trajectory%state(:, trajectory%last))
+            cor = [cor(2:3), -final(col_velocity)/impact%velocity]
+            cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
+         end associate
          if (level >= 3) then
             trajectory%cor_error = error_of_last(cor)
-            if (self%time_step > 0.0_wp .or. trajectory%cor_error <= self%accuracy) return
+            trajectory%cor_sphere_error = error_of_last(cor_sphere)
+            if (self%time_step > 0.0_wp .or. max(trajectory%cor_error, &
+                trajectory%cor_sphere_error) <= self%accuracy) return
             if (2*trajectory%steps > most_steps) then
                call raise(error, error_numerical, 'the accuracy asked for is out of reach of ' &
                   //'product integration: give a larger solver.accuracy')

@@ -83,7 +83,7 @@ contains
       real(wp), parameter :: unreliable = 1.0e-6_wp
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end
-      real(wp) :: end_found, error_now, error_sum, alpha_rate, tolerance
+      real(wp) :: end_found, error_now, error_sum, impulse_error, sphere_sum, alpha_rate, tolerance
       integer :: trial, n, kind, closings, growths
       logical :: ends, last, inherited
 
@@ -98,6 +98,7 @@ contains
       if (modes%contact%error > 0.0_wp .or. modes%contact%viscosity > 0.0_wp) kind = 0
       call set_first_lengths()
       error_sum = 0.0_wp
+      sphere_sum = 0.0_wp
 
       do trial = 1, most_trials
          if (end_found > start%time) rest = end_found - start%time
@@ -145,8 +146,8 @@ contains
          end if
 
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
-         error_now = companion_share*(abs(panel%impulse(n) - companion%impulse(n - 1)) &
-            *(1.0_wp/impact%mass + alpha_rate) &
+         impulse_error = abs(panel%impulse(n) - companion%impulse(n - 1))
+         error_now = companion_share*(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
             + abs(panel%drift(n) - companion%drift(n - 1)) &
             + abs(panel%indentation(n) - companion%indentation(n - 1))/start%t1)/impact%velocity
          ! the companion ends a little earlier or later, which changes the velocity of the plate
@@ -191,11 +192,13 @@ contains
          growths = 0
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
+         sphere_sum = sphere_sum + companion_share*impulse_error/(impact%mass*impact%velocity)
          call record(collocator%rule, impact, panel%panel_t, trajectory)
          trajectory%last = trajectory%final
          if (ends) then
             trajectory%status = contact_separated
             trajectory%cor_error = error_sum + rounding*real(trajectory%steps, wp)
+            trajectory%cor_sphere_error = sphere_sum + rounding*real(trajectory%steps, wp)
             return
          else if (trajectory%is_stuck(impact%mass)) then
             trajectory%status = contact_sticking

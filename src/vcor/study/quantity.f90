@@ -76,7 +76,8 @@ module vcor_study_quantity
       quantity_t('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0'), &
       quantity_t('inelasticity', 'lambda', '1', "Zener's inelasticity parameter"), &
       quantity_t('loss_tangent', 'tan(d)', '1', 'loss tangent at min_frequency'), &
-      quantity_t('cor_error', 'de', '1', 'estimated error of cor')]
+      quantity_t('cor_error', 'de', '1', 'estimated error of cor'), &
+      quantity_t('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere')]
 
    !> Columns of a history, in the order of the rows of a trajectory's state
    type(quantity_t), parameter :: history_quantities(columns) = [ &
@@ -118,7 +119,8 @@ contains
          outcome%max_indentation, outcome%max_force, outcome%residual_indentation, &
          outcome%residual_ratio, outcome%hysteresis_energy, outcome%wave_energy, &
          outcome%initial_energy, outcome%energy_imbalance, outcome%min_frequency, &
-         outcome%inelasticity, outcome%loss_tangent, outcome%cor_error]
+         outcome%inelasticity, outcome%loss_tangent, outcome%cor_error, &
+         outcome%cor_sphere_error]
       if (outcome%status == contact_separated) return
       values = ieee_value(1.0_wp, ieee_quiet_nan)
       ! a contact that does not end has at least begun

@@ -27,13 +27,15 @@ module vcor_study_comparison_attempt
       character(len=:), allocatable :: failure
       !> Outcome, if nothing went wrong
       type(outcome_t) :: outcome
-      !> Distance of its cor from the most accurate one
-      real(wp) :: seen = 0.0_wp
+      !> Distances of its cor and cor_sphere from the most accurate ones
+      real(wp) :: seen(2) = 0.0_wp
    contains
       !> Solve with given settings
       procedure :: try
       !> Solve as the case says
       procedure :: try_case
+      !> Errors of both that it states
+      procedure :: stated
       !> Whether it ended in separation
       procedure :: separated
       !> What the budget of energies misses, over the energy before the impact
@@ -106,6 +108,16 @@ contains
       end if
       self%outcome = evaluate(impact, trajectory)
    end subroutine solve
+
+   !> Errors of cor and cor_sphere that it states
+   pure function stated(self)
+      !> The attempt, separated
+      class(attempt_t), intent(in) :: self
+      !> Errors
+      real(wp) :: stated(2)
+
+      stated = [self%outcome%cor_error, self%outcome%cor_sphere_error]
+   end function stated
 
    !> Whether it ended in separation
    pure function separated(self)

@@ -60,7 +60,7 @@ contains
       end do
       do i = 1, attempt_count
          if (self%attempts(i)%made) self%attempts(i)%seen &
-            = abs(self%compared(1)%value(i) - self%compared(1)%best)
+            = abs(self%compared(:2)%value(i) - self%compared(:2)%best)
       end do
       call judge_errors(self)
       call judge_distances(self)
@@ -107,48 +107,51 @@ contains
       self%digits = min(most_digits, max(0, floor(-log10(maxval(uncertainty)))))
    end subroutine tabulate
 
-   !> Whether each attempt is as far from the best cor as it says, or else within the accuracy that
-   !> the case asks for. Not the case's own scheme: how far that is off is shown, and the choice of
-   !> the case
+   !> Whether each attempt is as far from the best cor and cor_sphere as it says, or else within the
+   !> accuracy that the case asks for. Not the case's own scheme: how far that is off is shown, and
+   !> the choice of the case
    pure subroutine judge_errors(self)
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
 
-      integer :: i
+      logical :: fine(2)
+      integer :: i, j
 
       do i = attempt_first, attempt_count
          associate (this => self%attempts(i))
             if (.not. this%made) cycle
-            if (is_honest(this, error_of_best(self))) cycle
-            if (.not. within(this%seen, self%attempts(attempt_first)%accuracy)) &
-               call object(self, trim(this%label)//' is farther from the best cor than three ' &
-               //'times the error it states')
+            fine = is_honest(this, error_of_best(self)) &
+               .or. within(this%seen, self%attempts(attempt_first)%accuracy)
+            do j = 1, size(fine)
+               if (.not. fine(j)) call object(self, trim(this%label)//' is farther from the best ' &
+                  //trim(compared_names(j))//' than three times the error it states')
+            end do
          end associate
       end do
    end subroutine judge_errors
 
-   !> Whether the error that an attempt states is honest
-   elemental function is_honest(self, reference)
+   !> Whether the errors that an attempt states are honest
+   pure function is_honest(self, reference)
       !> The attempt, `seen` being set
       type(attempt_t), intent(in) :: self
-      !> Error that the best cor states itself
-      real(wp), intent(in) :: reference
-      !> Whether it is
-      logical :: is_honest
+      !> Errors that the best cor and cor_sphere state themselves
+      real(wp), intent(in) :: reference(2)
+      !> Whether each of them is
+      logical :: is_honest(2)
 
-      is_honest = within(self%seen, honest_factor*(self%outcome%cor_error + reference) + rounding)
+      is_honest = within(self%seen, honest_factor*(self%stated() + reference) + rounding)
    end function is_honest
 
-   !> Error that the best cor states: that of the refined internal variables, or of the shortest
-   !> step, whose limit is better
+   !> Errors that the best cor and cor_sphere state: those of the refined internal variables, or of
+   !> the shortest step, whose limit is better
    pure function error_of_best(self) result(error)
       !> The comparison, tabulated
       type(comparison_t), intent(in) :: self
-      !> Error of cor
-      real(wp) :: error
+      !> Errors of cor and cor_sphere
+      real(wp) :: error(2)
 
-      error = self%compared(1)%direct%error
-      if (self%two_methods) error = self%attempts(attempt_refined)%outcome%cor_error
+      error = self%compared(:2)%direct%error
+      if (self%two_methods) error = self%attempts(attempt_refined)%stated()
    end function error_of_best
 
    !> Whether a number is at most so large; one that is not finite is not
@@ -172,19 +175,23 @@ contains
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
 
-      real(wp) :: allowed
+      real(wp) :: allowed, best(2)
       integer :: i
 
+      best = error_of_best(self)
       do i = 1, size(self%compared)
          associate (this => self%compared(i))
             allowed = honest_factor*this%direct%error + rounding*this%scale &
                + abs(this%value(attempt_first) - this%best)
-            if (i == 1) then
-               allowed = allowed + honest_factor*error_of_best(self)
-            else
+            select case (i)
+            case (1)
+               allowed = allowed + honest_factor*best(1)
+            case (2)
+               allowed = allowed + honest_factor*best(2)
+            case default
                allowed = allowed + other_quantities*this%scale &
-                  *max(self%attempts(attempt_first)%accuracy, error_of_best(self))
-            end if
+                  *max(self%attempts(attempt_first)%accuracy, best(1))
+            end select
             if (.not. within(this%value(attempt_halved(3)) - this%best, allowed)) &
                call object(self, 'the methods do not agree on '//trim(this%name))
             if (.not. settles(this%value(attempt_halved), allowed_change(self)*this%scale)) &
