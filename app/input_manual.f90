@@ -48,7 +48,8 @@ contains
          //'not belong to the model. `vcor check` prints a case with every default filled in.')
       call page%paragraph('`--set GROUP.KEY=VALUE` replaces a value from the command line. A ' &
          //'material is addressed by its name instead of the group, with `_` for a blank or in ' &
-         //'quotes: `--set rubber.beta=600`.')
+         //'quotes: `--set rubber.beta=600`. A key that the impact does not read is refused, in ' &
+         //'`--set` and in `&sweep`, with the reason.')
       call page%aside('What stands behind the keys: [materials](materials.md), ' &
          //'[plate and contact](impact.md), [solver and accuracy](accuracy.md), ' &
          //'[sweeps](sweeps.md), [output](output.md).')

@@ -4,8 +4,8 @@ module vcor_app_job
    use vcor_app_cli, only : request_t
    use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
       integer_text, join_path, method_for, new_part, new_sweep, override, part_t, &
-      printable, quantity_names, raise, read_case, read_data, same_file, single_impact, &
-      suggestion, sweep_t
+      printable, quantity_names, raise, read_case, read_data, refuse_unread, same_file, &
+      single_impact, suggestion, sweep_t
    implicit none
    private
 
@@ -68,6 +68,8 @@ contains
                if (allocated(error)) return
             end do
             call job%case%validate(error)
+            if (.not. allocated(error)) call refuse_unread(job%case, &
+               any(request%command == ['material', 'fit     ']), error)
             if (allocated(error)) return
             call read_data(job%case, error)
             if (allocated(error)) return

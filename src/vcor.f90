@@ -75,6 +75,7 @@ module vcor
       worker_t
    use vcor_study_text, only : printable
    use vcor_study_threads, only : default_threads, most_threads
+   use vcor_study_unread, only : refuse_unread
    use vcor_study_units, only : frequency_units, modulus_units, time_units
    use vcor_study_verification, only : build_law, law_count, verify_law
    use vcor_study_verification_row, only : law_t, row_t, verdict_t
@@ -97,7 +98,7 @@ module vcor
    public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
-   public :: case_t, read_case, read_case_text, override, read_data, data_file
+   public :: case_t, read_case, read_case_text, override, refuse_unread, read_data, data_file
    public :: build_impact, build_material, build_solver
    public :: quantity_t, quantities, history_quantities, quantity_names, quantity_value
    public :: status_t, statuses, status_name

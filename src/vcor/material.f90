@@ -57,14 +57,17 @@ module vcor_material
 contains
 
    !> Set a number by its name, that of the component
-   pure subroutine set(self, name, value)
+   pure subroutine set(self, name, value, is_taken)
       !> The description
       class(material_data_t), intent(inout) :: self
-      !> Name of a number; any other changes nothing
+      !> Name of a number
       character(len=*), intent(in) :: name
       !> Its value, in the unit of the component
       real(wp), intent(in) :: value
+      !> Whether there is a number of this name; otherwise nothing changes
+      logical, intent(out) :: is_taken
 
+      is_taken = .true.
       select case (name)
       case ('density')
          self%density = value
@@ -91,7 +94,7 @@ contains
       case ('time')
          self%time = value
       case default
-         continue
+         is_taken = .false.
       end select
    end subroutine set
 
@@ -164,6 +167,8 @@ contains
          material%name = data%name
          material%density = data%density
          material%poisson_ratio = data%poisson_ratio
+         call material%check_constants(error)
+         if (allocated(error)) deallocate (material)
       end subroutine accept
    end subroutine new_material
 

@@ -2,7 +2,7 @@
 
 import pytest
 from cases import SLS, case_text, edit
-from program import NUMERICAL, PAPER, ROOT, SUCCESS
+from program import INPUT, NUMERICAL, PAPER, ROOT, SUCCESS
 
 # Round-off of numbers near 1 after some hundred steps
 ROUNDOFF = 1e-13
@@ -152,13 +152,16 @@ def test_stiff_material_without_equilibrium_modulus(vcor):
 
 
 def test_step_without_effect(vcor):
-    """A time step beside the method that chooses its own is told to be without effect."""
-    path = PAPER / "sls.nml"
-    step = ["--set", "solver.time_step=1e-6"]
+    """A time step beside the method that chooses its own is told to be without effect; set for it,
+    it is refused."""
+    path = PAPER / "sls_elastic_limit.nml"
     note = "note: solver.time_step is without effect"
-    assert note in vcor("run", path, *step).out
-    assert note not in vcor("run", path, *step, "--set", "solver.method=direct").out
+    ive = ["--set", "solver.method=ive", "--set", "solver.scheme=product"]
+    assert note in vcor("run", path, *ive).out
     assert note not in vcor("run", path).out
+    step = ["--set", "solver.time_step=1e-6"]
+    vcor.refuses("run", PAPER / "sls.nml", *step, code=INPUT, at="--set solver.time_step", says="ive")
+    assert note not in vcor("run", PAPER / "sls.nml", *step, "--set", "solver.method=direct").out
 
 
 def test_stiff_dashpot(vcor):

@@ -241,6 +241,14 @@ def test_velocity_beyond_the_numbers(sls):
     complaint(done, INPUT, "beyond", at="case.nml:8")
 
 
+@pytest.mark.parametrize("path", ["plate.half_thickness", "rubber.density"])
+@pytest.mark.parametrize("value", ["1e155", "1e-155", "1e300", "1e-300"])
+def test_plate_beyond_the_numbers(sls, path, value):
+    """The square of its thickness would overflow."""
+    says = ["half_thickness", "beyond"]
+    sls.refuses("run", "case.nml", "--set", f"{path}={value}", code=INPUT, says=says)
+
+
 def test_others_are_done_when_one_fails(sls):
     """Numerical failure of one case does not stop the next."""
     text, _ = edit(SLS, "solver", "end_time", "1.0e-3")

@@ -62,6 +62,17 @@ REFUSED = {
     "no values": (["parameter = 'impact.velocity'"], 0, ["values, or start, stop and count"]),
     "both": (["parameter = 'impact.velocity'", "values = 1", "start = 1"], 3, ["both"]),
     "both, count": (["parameter = 'impact.velocity'", "count = 1", "values = 1"], 2, ["both"]),
+    "value twice": (["parameter = 'impact.velocity'", "values = 3, 1, 2, 1.0"], 2, ["1.0", "twice"]),
+    "a million times": (
+        ["parameter = 'impact.velocity'", "values = 1000000*1.0"],
+        2,
+        ["1.0", "twice"],
+    ),
+    "ends that are one": (
+        ["parameter = 'impact.velocity'", "start = 2", "stop = 2", "count = 3"],
+        4,
+        ["2.0", "twice"],
+    ),
     "log of values": (
         ["parameter = 'impact.velocity'", "values = 1, 2", "spacing = 'log'"],
         3,
@@ -148,6 +159,21 @@ def test_too_many_points_in_all(vcor):
     vcor.refuses("run", "case.nml", code=INPUT, says=["4.0e8 points"])
 
 
+def test_no_more_groups_than_dimensions(vcor):
+    """HDF5 has 32 dimensions at most, and each parameter is one."""
+    terms = 16
+    text = case_text("sls").replace("&sphere", "&sphere mass = 0.03,")
+    text += "".join(
+        f"&material name = 'm{i}', model = 'elastic', modulus = 1e6, poisson_ratio = 0.5 /\n"
+        for i in range(terms)
+    )
+    keys = [f"m{i}.{key}" for i in range(terms) for key in ("modulus", "poisson_ratio")]
+    groups = [sweep(key, "values = 0.5") for key in ["impact.velocity", *keys]]
+    vcor.write(text + "".join(groups))
+    line = (text + "".join(groups[:32])).count("\n") + 2
+    vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says=["33", "32", "HDF5"])
+
+
 def test_verify_is_for_single_impacts(vcor):
     vcor.write(SLS + VELOCITIES)
     line = SLS.count("\n") + 2
@@ -208,7 +234,7 @@ KEYS = [
     ("rubber.poisson_ratio", "0.3, 0.5"),
     ("rubber.glassy_modulus", "5e6, 50e6"),
     ("rubber.alpha", "100, 600"),
-    ("solver.accuracy", "1e-4, 1e-9, 1e-4"),
+    ("solver.accuracy", "1e-6, 1e-9, 1e-7"),
     ("solver.end_time", "1.0, 2.0"),
 ]
 
@@ -293,7 +319,7 @@ def test_spacing(vcor):
         (("start = 1e-3", "stop = 1e3", "count = 7", "spacing = 'log'"), numpy.logspace(-3, 3, 7)),
         (("start = 3", "stop = 1", "count = 3"), [3, 2, 1]),
         (("start = 3", "stop = 1", "count = 1"), [3]),
-        (("values = 3, 2*1", "spacing = 'linear'"), [3, 1, 1]),
+        (("values = 3, 1, 2", "spacing = 'linear'"), [3, 1, 2]),
     ]:
         vcor.write(SLS + sweep("impact.velocity", *lines))
         found = [float(row[0]) for row in rows(vcor, "impact.velocity")]
@@ -411,7 +437,7 @@ def test_sticking_and_failing(vcor):
     vcor.write(text + sweep("rubber.beta", "values = 1e6, 100"))
     assert [row[0] for row in rows(vcor, "status")] == ["sticks", "separated"]
     text, _ = edit(SLS, "solver", "scheme", "'adams_bashforth'")
-    vcor.write(text + sweep("solver.time_step", "values = 1e-6, 1e-3, 2e-3, 1e-6"))
+    vcor.write(text + sweep("solver.time_step", "values = 1e-6, 1e-3, 2e-3, 2e-6"))
     done = vcor("run", "case.nml")
     assert done.code == NUMERICAL
     assert [row["status"] for row in summary(vcor)] == ["separated", "failed", "failed", "separated"]

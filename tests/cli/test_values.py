@@ -2,7 +2,7 @@
 
 import pytest
 from cases import MODELS, SLS, add_line, case_text, edit, without
-from program import INPUT, PAPER
+from program import INPUT, PAPER, complaint
 
 # Model, group and key, for each key that has to be a positive number
 POSITIVE = [
@@ -408,3 +408,15 @@ def test_rare_values(vcor, group, key, value, method):
     text, _ = edit(text, "solver", "method", f"'{method}'")
     vcor.write(text)
     assert vcor.numbers("case.nml")["status"] == "separated"
+
+
+@pytest.mark.parametrize("sign", ["\t", "\x1b", "\x7f"])
+def test_name_with_a_control_character(vcor, sign):
+    """What cannot be seen makes two names of what looks like one."""
+    text = SLS.replace("'rubber'", f"'soft{sign}rubber'")
+    line = text.splitlines().index(f"   name = 'soft{sign}rubber'") + 1
+    vcor.write(text)
+    done = vcor("run", "case.nml")
+    complaint(done, INPUT, "control character")
+    if sign == "\t":
+        vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="tab")

@@ -1,6 +1,6 @@
 !> Contact modulus, plate, impact, trajectory and outcome
 program test_impact
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
@@ -63,6 +63,7 @@ program test_impact
    call test_pair()
    call test_integral_of_pair()
    call test_refused_pairs()
+   call test_unsound_constants()
    call test_plate()
    call test_radius()
    call test_time_scale()
@@ -72,6 +73,46 @@ program test_impact
    call finish()
 
 contains
+
+   !> Density and Poisson's ratio are set after a material is built: whoever takes it looks at them
+   subroutine test_unsound_constants()
+      type(prony_t) :: soft
+      type(contact_modulus_t) :: modulus
+      type(plate_t) :: plate
+      type(error_t), allocatable :: error
+      real(wp) :: ratio(5)
+      integer :: i
+
+      ratio = [1.0_wp, -1.0_wp, 0.51_wp, -7.0_wp, ieee_value(1.0_wp, ieee_positive_inf)]
+      do i = 1, size(ratio)
+         soft = sls
+         soft%poisson_ratio = ratio(i)
+         call new_contact_modulus(modulus, rigid, soft, .false., error)
+         call check_refused(error, "Poisson's ratio on the plate")
+         call new_contact_modulus(modulus, soft, rigid, .false., error)
+         call check_refused(error, "Poisson's ratio in the sphere")
+         call new_plate(plate, soft, 0.02_wp, waves_relaxing, error)
+         call check_refused(error, "Poisson's ratio in the plate that moves")
+      end do
+      soft = sls
+      soft%density = -1.0_wp
+      call new_plate(plate, soft, 0.02_wp, waves_relaxing, error)
+      call check_refused(error, "a density below zero")
+      soft%density = 1.0e300_wp
+      call new_plate(plate, soft, 0.02_wp, waves_relaxing, error)
+      call check_refused(error, "a density beyond the numbers")
+      call new_plate(plate, sls, 1.0e155_wp, waves_relaxing, error)
+      call check_refused(error, "a thickness whose square is beyond the numbers")
+   end subroutine test_unsound_constants
+
+   !> An error of the input was raised
+   subroutine check_refused(error, what)
+      type(error_t), intent(in), allocatable :: error
+      character(len=*), intent(in) :: what
+
+      call check(allocated(error), what//" is refused")
+      if (allocated(error)) call check(error%code == error_input, what//": as wrong input")
+   end subroutine check_refused
 
    !> The cases of the paper's Section III
    subroutine test_four_cases()

@@ -8,12 +8,13 @@ program test_sweep
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
-   use vcor_study_axes, only : new_grid, swept_handles
+   use vcor_study_axes, only : new_grid
    use vcor_study_blueprint, only : place_of, place_t
    use vcor_study_build, only : build_impact, build_solver
    use vcor_study_case, only : case_t
    use vcor_study_failures, only : failures_t
    use vcor_study_grid, only : axis_t, grid_t, spaced
+   use vcor_study_path, only : swept_handles
    use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_values, &
       status_name
    use vcor_study_summary, only : new_summary, summary_t

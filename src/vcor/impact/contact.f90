@@ -91,6 +91,9 @@ contains
       real(wp) :: a, b
       logical :: series
 
+      call sphere%check_constants(error)
+      if (.not. allocated(error)) call plate%check_constants(error)
+      if (allocated(error)) return
       series = .false.
       if (present(pair)) series = pair == pair_series
       if (sphere%rigid .and. plate%rigid) then

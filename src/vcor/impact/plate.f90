@@ -74,11 +74,20 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      ! alpha, its products with the mass and their squares stay far inside the range of the numbers
+      real(wp), parameter :: largest = 1.0e60_wp
+
       if (waves == waves_none .or. material%rigid) return
+      call material%check_constants(error)
+      if (allocated(error)) return
       if (.not. half_thickness > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs a positive half_thickness')
       else if (.not. material%density > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its material')
+      else if (max(half_thickness, material%density) > largest &
+               .or. min(half_thickness, material%density) < 1.0_wp/largest) then
+         call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
+            //'that can be computed')
       else if (.not. material%glassy() > 0.0_wp .and. waves /= waves_hereditary) then
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
             //'a dashpot: its modulus is 0 and its deflection infinite')

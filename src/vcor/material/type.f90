@@ -1,5 +1,7 @@
 !> What a solver may ask of a linear viscoelastic material
 module vcor_material_type
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    implicit none
@@ -44,6 +46,8 @@ module vcor_material_type
       procedure :: elastic
       !> Factor 1/(1 - nu^2) from E to the plane-strain modulus E' of Eq. (1)
       procedure :: plane_strain_factor
+      !> Check density and Poisson's ratio
+      procedure :: check_constants
    end type material_t
 
    abstract interface
@@ -115,6 +119,27 @@ contains
 
       factor = 1.0_wp/(1.0_wp - self%poisson_ratio**2)
    end function plane_strain_factor
+
+   !> Check density and Poisson's ratio, which whoever builds a material sets by himself
+   pure subroutine check_constants(self, error)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> Error of code `error_input`, unallocated if both are within their ranges
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: sound
+
+      sound = ieee_is_finite(self%density)
+      if (sound) sound = self%density >= 0.0_wp
+      if (.not. sound) then
+         call raise(error, error_input, 'the density of a material must be a number >= 0 [kg/m3]')
+         return
+      end if
+      sound = ieee_is_finite(self%poisson_ratio)
+      if (sound) sound = self%poisson_ratio > -1.0_wp .and. self%poisson_ratio <= 0.5_wp
+      if (.not. sound) call raise(error, error_input, &
+         "Poisson's ratio of a material must be a number in (-1, 0.5]")
+   end subroutine check_constants
 
    !> Whether the modulus is constant: the material neither relaxes nor flows
    pure function elastic(self)

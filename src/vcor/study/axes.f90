@@ -2,39 +2,25 @@
 module vcor_study_axes
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
+   use vcor_numeric_sorting, only : sort
    use vcor_study_entries, only : entries_t
    use vcor_study_grid, only : axis_t, grid_t, log_spacing, spaced
    use vcor_study_keys, only : catalogue, groups, key_t, keys_of, list_key, real_key, row_for_model
    use vcor_study_path, only : resolve_path
    use vcor_study_text, only : integer_text, real_text, shortened
+   use vcor_study_unread, only : why_unread
    use vcor_study_words, only : join_words
    implicit none
    private
 
-   public :: new_grid, swept_handles, most_points
+   public :: new_grid, most_points
 
    !> Most points of a grid
    integer, parameter :: most_points = 100000000
+   !> Most parameters of a grid: each is a dimension in the HDF5 file, which has 32 at most
+   integer, parameter :: most_axes = 32
 
 contains
-
-   !> Handles of what the &sweep groups vary, as far as their paths lead somewhere: for checks,
-   !> which do not ask for a value that the sweep gives
-   pure function swept_handles(case) result(handles)
-      !> The case
-      class(entries_t), intent(in) :: case
-      !> Handles, 0 where a path leads nowhere, shape (number of &sweep groups)
-      integer, allocatable :: handles(:)
-
-      character(len=:), allocatable :: path, message
-      integer :: item
-
-      allocate (handles(case%count('sweep')))
-      do item = 1, size(handles)
-         call case%get('sweep', 'parameter', path, item)
-         call resolve_path(case, path, handles(item), message)
-      end do
-   end function swept_handles
 
    !> Build the grid of a case; the values are not held against the ranges of their keys
    subroutine new_grid(case, grid, error)
@@ -49,6 +35,12 @@ contains
       integer :: item
 
       allocate (grid%axes(case%count('sweep')))
+      if (size(grid%axes) > most_axes) then
+         call refuse(case, 'parameter', most_axes + 1, 'found '//integer_text(size(grid%axes)) &
+            //' &sweep groups, expected at most '//integer_text(most_axes) &
+            //', the dimensions that an HDF5 file may have', error)
+         return
+      end if
       points = 1.0_wp
       do item = 1, size(grid%axes)
          call find_parameter(case, item, grid%axes(:item - 1), grid%axes(item), error)
@@ -72,7 +64,7 @@ contains
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: path, message, model
+      character(len=:), allocatable :: path, message, model, reason
       integer :: group, row, owner, i
 
       call case%get('sweep', 'parameter', path, item)
@@ -97,6 +89,10 @@ contains
       else if (catalogue(row)%value_kind /= real_key) then
          message = "found '"//shortened(path)//"', which is "//kind_of(catalogue(row)) &
             //'; expected a single real number'
+      else
+         reason = why_unread(case, axis%handle)
+         if (reason /= '') message = "found '"//shortened(path) &
+            //"', which the impact does not read: "//reason
       end if
       do i = 1, size(before)
          if (before(i)%handle /= axis%handle) cycle
@@ -206,7 +202,38 @@ contains
          return
       end if
       if (.not. allocated(values)) values = spaced(start, stop, n, spacing)
+      call refuse_repeated(case, item, values, error)
    end subroutine find_values
+
+   !> Refuse a value that stands twice: its points would be solved twice, and no file could tell
+   !> them apart
+   subroutine refuse_repeated(case, item, values, error)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> Number of the &sweep group
+      integer, intent(in) :: item
+      !> Its values, shape (n)
+      real(wp), intent(in) :: values(:)
+      !> Error, unallocated if no two are the same
+      type(error_t), allocatable, intent(inout) :: error
+
+      real(wp), allocatable :: sorted(:)
+      character(len=:), allocatable :: key
+      integer :: i, n
+
+      n = size(values)
+      if (all(values(2:) > values(:n - 1)) .or. all(values(2:) < values(:n - 1))) return
+      sorted = values
+      call sort(sorted)
+      do i = 2, n
+         if (sorted(i) > sorted(i - 1)) cycle
+         key = 'count'
+         if (case%given('sweep', 'values', item)) key = 'values'
+         call refuse(case, key, item, 'the value '//real_text(sorted(i))//' is there twice, ' &
+            //'expected different values', error)
+         return
+      end do
+   end subroutine refuse_repeated
 
    !> Raise an error about a key of a &sweep group
    subroutine refuse(case, key, item, message, error)

@@ -198,55 +198,82 @@ contains
    end function solver_place
 
    !> Set a number; nothing is checked before the impact is built
-   pure subroutine set(self, place, value)
+   subroutine set(self, place, value, is_taken)
       !> The blueprint
       class(blueprint_t), intent(inout) :: self
       !> Place of a real number, one of those announced as varying
       type(place_t), intent(in) :: place
       !> Its value, in the unit of the key
       real(wp), intent(in) :: value
+      !> Whether an impact is built from it
+      logical, intent(out) :: is_taken
 
-      if (place%group == 'material') then
+      is_taken = .true.
+      select case (place%group)
+      case ('impact')
+         if (place%key == 'velocity') then
+            self%velocity = value
+         else
+            is_taken = .false.
+         end if
+      case ('sphere')
+         select case (place%key)
+         case ('radius')
+            self%radius = value
+         case ('mass')
+            self%mass = value
+         case default
+            is_taken = .false.
+         end select
+      case ('plate')
+         select case (place%key)
+         case ('surface_radius')
+            self%surface_radius = value
+         case ('half_thickness')
+            self%half_thickness = value
+            self%contact_is_current = .false.
+         case default
+            is_taken = .false.
+         end select
+      case ('material')
+         self%contact_is_current = .false.
+         is_taken = .false.
          call set_in(self%sphere)
          call set_in(self%plate)
-         self%contact_is_current = .false.
-         return
-      end if
-      select case (place%key)
-      case ('velocity')
-         self%velocity = value
-      case ('radius')
-         self%radius = value
-      case ('mass')
-         self%mass = value
-      case ('surface_radius')
-         self%surface_radius = value
-      case ('half_thickness')
-         self%half_thickness = value
-         self%contact_is_current = .false.
-      case ('time_step')
-         self%settings%time_step = value
-      case ('end_time')
-         self%settings%end_time = value
-      case ('accuracy')
-         self%settings%accuracy = value
-      case ('volterra_coefficient')
-         if (self%second_term) self%settings%second_coefficient = value
+      case ('solver')
+         call set_in_solver()
       case default
-         continue
+         is_taken = .false.
       end select
 
    contains
 
       !> Set it where a body is of the material
-      pure subroutine set_in(body)
+      subroutine set_in(body)
          !> The body
          type(body_t), intent(inout) :: body
 
          if (place%item /= body%item) return
-         call body%data%set(place%key, value)
+         call body%data%set(place%key, value, is_taken)
          if (takes_part(place%key)) body%is_current = .false.
       end subroutine set_in
+
+      !> Set it in the settings of the solver
+      subroutine set_in_solver()
+         select case (place%key)
+         case ('time_step')
+            self%settings%time_step = value
+         case ('end_time')
+            self%settings%end_time = value
+         case ('accuracy')
+            self%settings%accuracy = value
+         case ('volterra_coefficient')
+            is_taken = self%second_term
+            if (is_taken) self%settings%second_coefficient = value
+         case default
+            is_taken = .false.
+         end select
+      end subroutine set_in_solver
    end subroutine set
 
    !> Build the impact

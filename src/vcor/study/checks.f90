@@ -2,12 +2,13 @@
 !> contradicts itself
 module vcor_study_checks
    use vcor_error, only : error_input, error_t, raise
-   use vcor_study_axes, only : new_grid, swept_handles
+   use vcor_study_axes, only : new_grid
    use vcor_study_consistency, only : check_consistency
    use vcor_study_entries, only : entries_t
    use vcor_study_grid, only : grid_t
    use vcor_study_keys, only : catalogue, find_key, first_row, groups, keys_of, last_row, &
       & row_for_model, wanted
+   use vcor_study_path, only : swept_handles
    use vcor_study_store, only : entry_t, range_message
    use vcor_study_text, only : printable, shortened
    use vcor_study_words, only : join_words

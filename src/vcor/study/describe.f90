@@ -24,6 +24,7 @@ contains
 
       real(wp) :: value
       integer :: group, row
+      logical :: is_taken
 
       group = find_group('material')
       call case%get('material', 'name', data%name, item)
@@ -31,7 +32,7 @@ contains
       do row = first_row(group), last_row(group)
          if (catalogue(row)%value_kind /= real_key) cycle
          call case%get('material', catalogue(row)%name, value, item)
-         if (.not. ieee_is_nan(value)) call data%set(catalogue(row)%name, value)
+         if (.not. ieee_is_nan(value)) call data%set(catalogue(row)%name, value, is_taken)
       end do
       call case%get('material', 'moduli', data%moduli, item)
       call case%get('material', 'times', data%times, item)

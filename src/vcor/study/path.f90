@@ -9,7 +9,7 @@ module vcor_study_path
    implicit none
    private
 
-   public :: resolve_path, unknown_group, unknown_key, material_names
+   public :: resolve_path, swept_handles, unknown_group, unknown_key, material_names
 
 contains
 
@@ -69,6 +69,24 @@ contains
             & //shortened(join_words(material_names(self)))
       end if
    end subroutine resolve_path
+
+   !> Handles of what the &sweep groups vary, as far as their paths lead somewhere: for checks,
+   !> which do not ask for a value that the sweep gives
+   pure function swept_handles(case) result(handles)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> Handles, 0 where a path leads nowhere, shape (number of &sweep groups)
+      integer, allocatable :: handles(:)
+
+      character(len=:), allocatable :: path, message
+      integer :: item
+
+      allocate (handles(case%count('sweep')))
+      do item = 1, size(handles)
+         call case%get('sweep', 'parameter', path, item)
+         call resolve_path(case, path, handles(item), message)
+      end do
+   end function swept_handles
 
    !> What to say about a key that is not in the catalogue
    pure function unknown_key(key, group) result(message)

@@ -10,7 +10,7 @@
 !> deferred length, whose length gfortran 12 keeps there: such a function is called before the
 !> threads begin, or by one at a time.
 module vcor_study_sweep
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_input, error_internal, error_t, raise
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
@@ -193,6 +193,7 @@ contains
 
       real(wp) :: value
       integer :: i, place(size(self%grid%axes))
+      logical :: is_taken
 
       if (.not. allocated(worker%places)) then
          worker%blueprint = self%blueprint
@@ -207,7 +208,11 @@ contains
             call raise(error, error_input, self%objections(i)%message)
             return
          end if
-         call worker%blueprint%set(self%places(i), value)
+         call worker%blueprint%set(self%places(i), value, is_taken)
+         if (.not. is_taken) then
+            call raise(error, error_internal, 'what is swept is not read')
+            return
+         end if
          worker%places(i) = place(i)
       end do
       call worker%blueprint%build(worker%impact, error, cause)

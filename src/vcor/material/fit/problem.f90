@@ -176,11 +176,12 @@ contains
       type(material_data_t) :: data
 
       integer :: i
+      logical :: is_taken
 
       data%name = model
       data%model = model
       do i = 1, size(parameters)
-         call data%set(trim(parameters(i)%name), parameters(i)%value)
+         call data%set(trim(parameters(i)%name), parameters(i)%value, is_taken)
       end do
       ! the rubbery modulus does not exceed the glassy one
       if (model == 'sls') data%alpha = min(data%alpha, data%beta)
