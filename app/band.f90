@@ -9,7 +9,7 @@ module vcor_app_band
    implicit none
    private
 
-   public :: warn_of_bands
+   public :: warn_of_bands, percent
 
 contains
 
@@ -103,22 +103,72 @@ contains
          call job%case%get('material', 'name', name, item)
          place = ''
          if (job%sweep%is_grid()) place = ' (at '//coordinates(job, point)//')'
-         text = "the impact leans on '"//printable(name)//"' beyond the data it was fitted to ("
-         if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'
-         if (all(found%ends)) text = text//', '
-         if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
-         text = text//'): with its modulus held constant there '
-         if (found%solved) then
-            associate (cor => summary%values(place_of('cor'))%at(point))
+         associate (contact_time => summary%values(time)%at(point), &
+                    cor => summary%values(place_of('cor'))%at(point))
+            text = 'the contact lasts '//short(contact_time)//' s'//place//', and ' &
+               //share_outside(found%band, found%ends, contact_time)//" the data of '" &
+               //printable(name)//"' ("
+            if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'
+            if (all(found%ends)) text = text//', '
+            if (found%ends(2)) text = text//'valid_to '//short(found%band(2))//' s'
+            text = text//'): with the modulus held constant there '
+            if (found%solved) then
                text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
                   //trim(adjustl(significant(cor, 5)))//' to ' &
-                  //trim(adjustl(significant(cor + found%held - found%cor, 5)))//place
-            end associate
-         else
-            text = text//'it has no result'//place
-         end if
+                  //trim(adjustl(significant(cor + found%held - found%cor, 5))) &
+                  //', a lower bound of the doubt'
+            else
+               text = text//'it has no result'
+            end if
+         end associate
       end function message
    end subroutine warn_of_band
+
+   !> How much of a contact lies outside of a band of times: all of it where no lag within it is
+   !> known
+   pure function share_outside(band, ends, contact_time) result(text)
+      !> First and last time of the data [s]
+      real(wp), intent(in) :: band(2)
+      !> Whether there is such an end
+      logical, intent(in) :: ends(2)
+      !> Contact time [s]
+      real(wp), intent(in) :: contact_time
+      !> In words, as `5.0 % of it is earlier than`
+      character(len=:), allocatable :: text
+
+      real(wp) :: before, after
+
+      before = 0.0_wp
+      after = 0.0_wp
+      if (ends(1)) before = min(1.0_wp, band(1)/contact_time)
+      if (ends(2)) after = max(0.0_wp, 1.0_wp - band(2)/contact_time)
+      text = ''
+      if (before > 0.0_wp) text = percent(before)//' of it lies before'
+      if (before > 0.0_wp .and. after > 0.0_wp) text = text//' and '
+      if (after > 0.0_wp) text = text//percent(after)//' of it lies after'
+      if (text == '') text = 'hardly any of it lies outside'
+   end function share_outside
+
+   !> A share in percent, with two digits
+   pure function percent(share) result(text)
+      !> The share, 0 to 1
+      real(wp), intent(in) :: share
+      !> The text; `all` where it is all
+      character(len=:), allocatable :: text
+
+      character(len=16) :: buffer, form
+      real(wp) :: value
+
+      text = 'all'
+      if (share >= 1.0_wp) return
+      value = 100.0_wp*share
+      write (form, '(a, i0, a)') '(f16.', max(0, 1 - floor(log10(value))), ')'
+      write (buffer, form) value
+      text = trim(adjustl(buffer))
+      if (index(text, '.') == len(text)) text = text(:len(text) - 1)
+      if (text(1:1) == '.') text = '0'//text
+      text = text//' %'
+   end function percent
 
    !> Place of a quantity in a summary
    pure function place_of(name) result(place)

@@ -6,8 +6,8 @@ module vcor_app_fit
    use vcor_app_place, only : find_place
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
    use vcor, only : data_file, error_input, error_t, error_usage, fit_material, fit_t, &
-      material_text, printable, raise, read_samples, reading_t, same_file, samples_t, write_file, &
-      write_stdout, wp
+      material_text, printable, raise, read_samples, reading_t, same_file, samples_t, &
+      standard_input, write_file, write_stdout, wp
    implicit none
    private
 
@@ -49,6 +49,7 @@ contains
             return
          end if
          call read_samples(samples, source, reading, note, place, error)
+         if (source == standard_input) source = 'stdin'
       end if
       if (allocated(error)) return
       call fit_material(fit, request%fit%model, request%fit%terms, request%fit%fixed, samples, &

@@ -182,10 +182,11 @@ contains
          //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
          //'storage and loss modulus (or loss tangent), and prints its parameters with'//nl &
          //'standard errors, the misfit, the band of the data and a &material group to be'//nl &
-         //'pasted into a case. Columns are told by a header (t,E or f,E_stor,E_loss ...),'//nl &
-         //'units by the header, by a second line of units or by --units; without a header,'//nl &
-         //'two columns are s and Pa, three are rad/s, Pa and Pa. Times in s and moduli in Pa'//nl &
-         //'are what a header means that names no units.'//nl//nl &
+         //'pasted into a case. DATA may be - for the standard input. Columns are told by a'//nl &
+         //'header (t,E or f,E_stor,E_loss ...), units by the header, by a second line of'//nl &
+         //'units or by --units; other lines before the header are passed over. Without a'//nl &
+         //'header, two columns are s and Pa, three are rad/s, Pa and Pa. Times in s and'//nl &
+         //'moduli in Pa are what a header means that names no units.'//nl//nl &
          //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
          //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
          //'                          support, or until the largest misfit is below 0.05 %'//nl &

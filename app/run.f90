@@ -1,7 +1,7 @@
 !> Running a case: its impact; its sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
-   use vcor_app_band, only : warn_of_bands
+   use vcor_app_band, only : percent, warn_of_bands
    use vcor_app_files, only : write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
@@ -162,9 +162,12 @@ contains
          call job%case%get('material', 'times', times, item)
          name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
          if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
-            //short(times(1))//' s: before that the modulus is taken as constant')
+            //short(times(1))//' s: '//percent(min(1.0_wp, times(1)/outcome%contact_time)) &
+            //' of the contact lies before, where the modulus is taken as constant')
          if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
-            //short(times(size(times)))//' s: after that the modulus is taken as constant')
+            //short(times(size(times)))//' s: '//percent(1.0_wp - times(size(times)) &
+            /outcome%contact_time)//' of the contact lies after, where the modulus is taken as ' &
+            //'constant')
       end subroutine remark_on_data
 
       !> One line

@@ -31,7 +31,7 @@ module vcor
    use vcor_io_real, only : read_real
    use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_row_text, only : place_in_table, write_rows
-   use vcor_io_sample_file, only : read_samples, reading_t
+   use vcor_io_sample_file, only : read_samples, reading_t, standard_input
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
@@ -119,7 +119,7 @@ module vcor
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
    public :: remark_t, write_summary
    public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
-   public :: samples_t, reading_t, read_samples, fit_t, parameter_t, fit_material
+   public :: samples_t, reading_t, read_samples, standard_input, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound
    public :: material_text, put_material, reliance_t, find_reliance, solve_case
    public :: sampled_times, time_units, frequency_units, modulus_units

@@ -193,6 +193,62 @@ def test_own_files_are_read(vcor):
         is_the_sls(group(vcor.succeeds("fit", f"sls_material_{kind}.csv", "--model", "sls")))
 
 
+# As instruments write them
+
+OMEGA = np.logspace(-1, 6, 36)
+SPECTRUM = (OMEGA, *sls_dynamic(OMEGA))
+
+
+def test_trios(vcor):
+    """A preamble, tabs, names with blanks, units below, both frequencies, an empty unit."""
+    storage, loss = SPECTRUM[1:]
+    head = (
+        "Filename\tC:\\data\\rubber.tri\nInstrument name\tRSA-G2\nDate\t2026-01-05\nWidth\t10.05\tmm\n"
+        "\n[step]\nFrequency sweep - 1\n"
+        "Angular frequency\tStep time\tTemperature\tStorage modulus\tLoss modulus\tTan(delta)\tFrequency\n"
+        "rad/s\ts\t\N{DEGREE SIGN}C\tMPa\tMPa\t\tHz\n"
+    )
+    rows = columns(OMEGA, OMEGA, 0 * OMEGA + 23, storage / 1e6, loss / 1e6, loss / storage, OMEGA / 2 / np.pi, separator="\t")
+    is_the_sls(fitted(vcor, head + rows))
+    # the one that is asked for
+    words = ["--units", "Hz,MPa,MPa"]
+    is_the_sls(fitted(vcor, head + rows, *words))
+    # a unit does not go to the neighbour of its column
+    vcor.write(head.replace("MPa\tMPa", "MPa\t") + rows, "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:9", says=["'loss_modulus'", "unit"])
+
+
+def test_netzsch(vcor):
+    """The header behind ##, decimal commas, tan and delta as Greek letters, falling frequencies."""
+    storage, loss = SPECTRUM[1:]
+    values = [OMEGA / 2 / np.pi, storage / 1e6, loss / 1e6, loss / storage]
+    rows = "\n".join(
+        ";".join(f"{x:.17f}".replace(".", ",") for x in (25.0, 1.0, *row)) for row in list(zip(*values))[::-1]
+    )
+    head = "#EXPORTTYPE:DATA ALL\n#FILE:rubber.ngb\n#RANGE: 20 Hz; a, b\n##Temp./\N{DEGREE SIGN}C;Time/min;f/Hz;E'/MPa;E''/MPa;tan \N{GREEK SMALL LETTER DELTA}\n"
+    for encoding in ("utf-8", "iso-8859-7"):
+        is_the_sls(fitted(vcor, (head + rows + "\n").encode(encoding)), rel=1e-7)
+
+
+def test_falling_frequencies(vcor):
+    text = columns(*(x[::-1] for x in SPECTRUM), head="omega,E',E''\n")
+    is_the_sls(fitted(vcor, text))
+    vcor.write("omega,E',E''\n9,3,1\n5,2,1\n7,1,1\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:4", says=["7.0 after 5.0", "line 3", "decrease"])
+    vcor.write("omega,E',E''\n9,3,1\n5,2,1\n5,1,1\n", "data.csv")
+    vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:4", says=["5.0 after 5.0"])
+
+
+def test_standard_input(vcor):
+    text = columns(TIMES, sls(TIMES))
+    out = vcor.succeeds("fit", "-", "--model", "sls", input=text)
+    is_the_sls(group(out))
+    assert group(out)["name"] == "stdin"
+    vcor.succeeds("fit", "-", "--model", "sls", "--output", "new", "--quiet", input=text)
+    assert (vcor.folder / "new" / "stdin_fit.nml").is_file()
+    vcor.refuses("fit", "-", code=INPUT, at="stdin:2", says="'x'", input="1,2\n2,x\n")
+
+
 # What is wrong with data
 
 BAD = {
@@ -501,7 +557,16 @@ def test_data_that_begin_too_late(vcor):
     line = warning(vcor, "--set", "butyl.valid_from=1e-6")
     assert line.startswith("vcor: warning: ") and line.count("\n") == 1
     assert "valid_from 1.0E-06 s" in line and "'butyl'" in line
-    assert change(line) == pytest.approx(1.1e-2, rel=0.05)
+    assert "the contact lasts 7.7E-04 s, and 0.13 % of it lies before the data" in line
+    assert change(line) == pytest.approx(1.1e-2, rel=0.05) and "lower bound of the doubt" in line
+
+
+def test_contact_before_all_data(vcor):
+    line = warning(vcor, "--set", "butyl.valid_from=1e-2")
+    assert "the contact lasts 7.7E-04 s, and all of it lies before the data of 'butyl'" in line
+    # said whatever the change of cor is
+    line = warning(vcor, "--set", "butyl.valid_from=1e-2", "--set", "butyl.coefficient=1e-3")
+    assert "all of it lies before" in line and change(line) < 1e-4
 
 
 def test_data_that_begin_early(vcor):
@@ -514,6 +579,7 @@ def test_data_that_begin_early(vcor):
 def test_data_that_end_too_soon(vcor):
     line = warning(vcor, "--set", "butyl.valid_to=1e-4")
     assert "valid_to 1.0E-04 s" in line and change(line) > 1e-2
+    assert "87 % of it lies after the data" in line
 
 
 def test_sweep_leans(vcor):

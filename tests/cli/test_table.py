@@ -1,6 +1,7 @@
 """Model table: E(t) from a data file."""
 
 import os
+import re
 
 import numpy as np
 import pytest
@@ -111,6 +112,38 @@ def test_units_of_the_header(table, head, name, unit):
     table.write(other, "data.csv")
     table.write(TABLE[: TABLE.rindex("/")] + "   modulus_unit = 'MPa'\n/\n")
     assert float(table.numbers("case.nml")["cor"]) > 0
+
+
+@pytest.mark.parametrize(
+    "head, says",
+    {
+        "t,G": ["'g'", "shear modulus", "2 (1 + nu) G"],
+        "t [s];G [Pa]": ["'g'", "shear modulus"],
+        "t,shear modulus": ["'shear_modulus'", "shear modulus"],
+        "time shear modulus": ["'shear'", "title", "shear modulus"],
+        "t\tShear modulus": ["'shear_modulus'"],
+        "f [Hz],E [Pa]": ["'f'", "a frequency", "vcor fit"],
+        "omega,E": ["'omega'", "frequency"],
+        "x [rad/s],E": ["'x'", "frequency"],
+        "t,E'": ["'e''", "storage modulus"],
+        "t,E*": ["complex modulus"],
+        "t,tan delta": ["loss tangent"],
+        "f E' E''": ["'f'", "frequency"],
+        "E,t": ["a relaxation modulus, as column 1"],
+        "log t,log E": ["'log_t'", "t or time"],
+        "t,E [bar]": ["'bar'", "Pa, kPa, MPa"],
+        "t [days],E": ["'days'", "ms"],
+    }.items(),
+)
+def test_headers_that_mean_something_else(table, head, says):
+    table.write(head + "\n" + DATA, "data.csv")
+    table.refuses("run", "case.nml", code=INPUT, at="data.csv:1", says=says)
+
+
+def test_units_in_remarks(table):
+    """As vcor itself writes them."""
+    table.write("# time [s] of relaxation\n# modulus [MPa]\ntime,modulus\n" + DATA, "data.csv")
+    table.refuses("run", "case.nml", code=INPUT, at="data.csv:3", says="modulus_unit = 'MPa'")
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -336,6 +369,7 @@ def test_note_on_data_that_do_not_cover_the_contact(table):
     table.write("\n".join(LINES[75:]), "data.csv")
     out = table.succeeds("run", "case.nml")
     assert "note: the data of the plate (data.csv) begin at 1.0E-04 s" in out
+    assert re.search(r"begin at 1.0E-04 s: [0-9.]+ % of the contact lies before", out)
     assert out.count("note") == 1
     table.write("\n".join(LINES[:50]), "data.csv")
     out = table.succeeds("run", "case.nml")

@@ -10,7 +10,7 @@ module vcor_io_column_plan
       role_time
    use vcor_kinds, only : wp
    use vcor_study_text, only : integer_text, shortened
-   use vcor_study_units, only : time_units
+   use vcor_study_units, only : angular_units, time_units
    use vcor_study_words, only : contains_word
    implicit none
    private
@@ -85,6 +85,7 @@ contains
       do i = 1, header%count
          call role_of(header%columns(i), roles(i), shear(i), units(i))
       end do
+      call choose_frequency(reading, units, roles)
       if (size(reading%units) > 0) then
          i = merge(role_time, role_frequency, contains_word(time_units, reading%units(1)))
          if (any(roles == merge(role_frequency, role_time, i == role_time)) &
@@ -146,6 +147,26 @@ contains
          plan%units(i) = word
       end do
    end subroutine make_plan
+
+   !> Of a frequency and an angular frequency side by side, which say the same, keep one: the one in
+   !> the unit that the user gives, else the angular one
+   pure subroutine choose_frequency(reading, units, roles)
+      !> What the user says
+      type(reading_t), intent(in) :: reading
+      !> Units of the columns, shape (n)
+      character(len=*), intent(in) :: units(:)
+      !> What they hold, shape (n)
+      integer, intent(inout) :: roles(:)
+
+      logical :: kept(size(roles))
+      integer :: i
+
+      if (count(roles == role_frequency) < 2) return
+      kept = [(contains_word(angular_units, units(i)), i=1, size(roles))]
+      if (size(reading%units) > 0) kept = units == reading%units(1)
+      kept = kept .and. roles == role_frequency
+      if (any(kept)) where (roles == role_frequency .and. .not. kept) roles = role_none
+   end subroutine choose_frequency
 
    !> Refuse a header that does not say which columns to read
    subroutine check_names(header, roles, units, told, plan, head, error)

@@ -1,8 +1,9 @@
 !> Columns of numbers in text files, as spreadsheets, other programs and people write them
 !>
-!> Between columns stands a comma, a semicolon, a tab or blanks. Lines end as they do on any system,
-!> what follows a # does not count, and a byte-order mark is passed over. Numbers may have decimal
-!> commas where something else stands between the columns. A line `sep=;` counts as blank.
+!> Between columns stands a comma, a semicolon, a tab or blanks; between words with tabs, which are
+!> names or units, tabs alone. Lines end as they do on any system, what follows a # does not count,
+!> and a byte-order mark is passed over. Numbers may have decimal commas where something else stands
+!> between the columns. A line `sep=;` counts as blank.
 module vcor_io_columns
    use vcor_study_text, only : lower
    implicit none
@@ -14,7 +15,7 @@ module vcor_io_columns
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
    !> What is blank
-   character(len=*), parameter :: blanks = " "//achar(9)
+   character(len=*), parameter :: tab = achar(9), blanks = " "//tab
 
    !> What to say of a file with both ways to write numbers
    character(len=*), parameter :: mixed_decimals = "found both decimal commas and decimal points" &
@@ -131,7 +132,8 @@ contains
       yes = .true.
    end function has_decimal_commas
 
-   !> Find the columns of a line: between commas or semicolons if there are any, else between blanks
+   !> Find the columns of a line: between commas or semicolons if there are any, else between tabs
+   !> in a line of words (a cell may be empty there), else between blanks
    pure subroutine split(content, columns, from, to)
       !> The line
       character(len=*), intent(in) :: content
@@ -141,20 +143,24 @@ contains
       integer, intent(out) :: from(:)
       !> Where it ends, blanks left out, shape (n)
       integer, intent(out) :: to(:)
+      character(len=:), allocatable :: between
       integer :: start, last
 
       columns = 0
       from = 1
       to = 0
-      if (verify(content, blanks) == 0) return
+      start = verify(content, blanks)
+      if (start == 0) return
+      between = blanks
+      if (scan(content, ",;") > 0) then
+         between = ",;"
+      else if (scan(content, tab) > 0 .and. verify(content(start:start), "+-.0123456789") > 0) then
+         between = tab
+      end if
       start = 1
       do
-         if (scan(content, ",;") > 0) then
-            last = scan(content(start:), ",;") + start - 2
-         else
-            start = verify(content(start:), blanks) + start - 1
-            last = scan(content(start:), blanks) + start - 2
-         end if
+         if (between == blanks) start = verify(content(start:), blanks) + start - 1
+         last = scan(content(start:), between) + start - 2
          if (last < start - 1) last = len(content)
          columns = columns + 1
          if (columns <= size(from)) then
@@ -165,7 +171,7 @@ contains
          end if
          start = last + 2
          if (last == len(content)) exit
-         if (scan(content, ",;") == 0 .and. verify(content(last+1:), blanks) == 0) exit
+         if (between /= ",;" .and. verify(content(last+1:), blanks) == 0) exit
       end do
    end subroutine split
 

@@ -3,12 +3,14 @@
 !> Between the two stands a comma, a semicolon, a tab or blanks. Blank lines and what follows a #
 !> do not count, one line before the first number may say what the columns are, lines end as
 !> they do on any system, and a byte-order mark is passed over. Units stand in the case; a header
-!> that says something else is refused.
+!> of other units, of shear moduli or of dynamic data is refused.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
       & take_decimals, take_line
-   use vcor_io_header, only : header_t, longest_word, read_names, role_of
+   use vcor_io_column_plan, only : name_of
+   use vcor_io_header, only : check_unit, header_t, longest_word, note_comment, read_names, &
+      & role_none, role_of, role_relaxation, role_time
    use vcor_io_path, only : join_path
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
@@ -16,9 +18,8 @@ module vcor_io_data_file
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
    use vcor_study_case, only : case_t
    use vcor_study_store, only : entry_t
-   use vcor_study_text, only : has_control, integer_text, printable, real_text
-   use vcor_study_units, only : modulus_units, time_units, unit_size
-   use vcor_study_words, only : contains_word
+   use vcor_study_text, only : has_control, integer_text, printable, real_text, shortened
+   use vcor_study_units, only : unit_size
    implicit none
    private
 
@@ -26,6 +27,8 @@ module vcor_io_data_file
 
    !> What the columns hold
    character(len=*), parameter :: names(2) = [character(len=7) :: "time", "modulus"]
+   !> The same as roles of a header
+   integer, parameter :: expected_roles(2) = [role_time, role_relaxation]
 
 contains
 
@@ -89,7 +92,8 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(decimals_t) :: decimals, before
-      character(len=:), allocatable :: content, message
+      type(header_t) :: header
+      character(len=:), allocatable :: content, comment, message
       real(wp), allocatable :: points(:, :)
       integer :: start, line, n, last_line, columns, from(2), to(2)
       logical :: first
@@ -100,8 +104,9 @@ contains
       n = 0
       first = .true.
       do while (start <= len(text))
-         call take_line(text, start, content)
+         call take_line(text, start, content, comment)
          line = line + 1
+         if (first) call note_comment(header, comment)
          call take_decimals(content, decimals)
          call split(content, columns, from, to)
          if (columns == 0) cycle
@@ -109,7 +114,8 @@ contains
             first = .false.
             if (.not. any([looks_numeric(content(from(1):to(1))), &
                & looks_numeric(content(from(2):to(2)))])) then
-               call compare_units(content, name, line, scale, error)
+               call read_names(header, content, line)
+               call check_header(header, name, scale, error)
                if (allocated(error)) return
                cycle
             end if
@@ -145,40 +151,68 @@ contains
       moduli = points(2, :n)*scale(2)
    end subroutine read_points
 
-   !> Refuse a header with other units than those of the case
-   subroutine compare_units(content, name, line, scale, error)
-      !> The line of the header
-      character(len=*), intent(in) :: content
+   !> Refuse a header that names something else than a time and a relaxation modulus, or other units
+   !> than those of the case. A line of other than two names is a title
+   subroutine check_header(header, name, scale, error)
+      !> The header
+      type(header_t), intent(in) :: header
       !> Name of the file
       character(len=*), intent(in) :: name
-      !> Number of the line
-      integer, intent(in) :: line
       !> Units of times and moduli by the case [s], [Pa]
       real(wp), intent(in) :: scale(2)
       !> Error of code `error_input`, unallocated where nothing is against them
       type(error_t), allocatable, intent(out) :: error
-      type(header_t) :: header
       character(len=longest_word) :: unit, key
+      character(len=:), allocatable :: place, found
       integer :: i, role
-      logical :: known, shear
+      logical :: shear
 
-      call read_names(header, content, line)
-      if (header%count /= 2) return
-      do i = 1, 2
+      place = name//":"//integer_text(header%line)
+      do i = 1, header%count
          call role_of(header%columns(i), role, shear, unit)
-         known = contains_word(time_units, unit)
-         if (i == 2) known = contains_word(modulus_units, unit)
-         if (.not. known) cycle
+         found = place//": found '"//shortened(trim(header%columns(i)%name))//"'"
+         if (header%count /= 2) found = found//" in a title"
+         if (shear .or. index(header%columns(i)%name, "shear") > 0) then
+            call raise(error, error_input, found//", a shear modulus, expected a relaxation " &
+               & //"modulus E: write E = 2 (1 + nu) G, or identify a material by vcor fit")
+         else if (all(role /= [role_none, role_time, role_relaxation])) then
+            call raise(error, error_input, found//", a "//name_of(role, unit)//", expected a " &
+               & //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
+               & //"identifies a material in them")
+         else if (header%count == 2 .and. all(role /= [role_none, expected_roles(i)])) then
+            call raise(error, error_input, found//", a "//name_of(role, unit)//", as column " &
+               & //integer_text(i)//", expected a time and a relaxation modulus")
+         else if (header%count == 2 .and. role == role_none .and. unit == "") then
+            call raise(error, error_input, found//" as name of a column, expected "//example(i) &
+               & //", or a unit beside it")
+         end if
+         if (allocated(error)) return
+         if (header%count /= 2 .or. unit == "") cycle
+         call check_unit(unit, expected_roles(i), place, error)
+         if (allocated(error)) return
          if (abs(unit_size(trim(unit))/scale(i) - 1.0_wp) < 0.01_wp) cycle
          key = unit
          if (unit == "N/mm2") key = "MPa"
          if (unit == "N/m2") key = "Pa"
-         call raise(error, error_input, name//":"//integer_text(line)//": found '"//trim(unit) &
+         call raise(error, error_input, place//": found '"//trim(unit) &
             & //"' as unit of the "//trim(names(i))//", which is not that of the case; give " &
             & //trim(names(i))//"_unit = '"//trim(key)//"' in its &material group")
          return
       end do
-   end subroutine compare_units
+
+   contains
+
+      !> Names of a column, for messages
+      pure function example(i) result(text)
+         !> Number of the column
+         integer, intent(in) :: i
+         !> Some names
+         character(len=:), allocatable :: text
+
+         text = "t or time"
+         if (i == 2) text = "E or modulus"
+      end function example
+   end subroutine check_header
 
    !> Read time and modulus
    subroutine read_point(content, from, to, scale, point, message)

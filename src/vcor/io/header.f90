@@ -13,7 +13,8 @@ module vcor_io_header
    implicit none
    private
 
-   public :: header_t, column_name_t, read_names, read_units, note_comment, role_of, check_unit
+   public :: header_t, column_name_t, read_names, names_columns, read_units, note_comment, role_of
+   public :: check_unit
    public :: most_columns, longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
       role_tangent, role_complex
@@ -123,6 +124,8 @@ contains
       header%count = 0
       do i = 1, min(columns, most_columns)
          cell = unquoted(content(from(i):to(i)))
+         ! more than one tab between two names
+         if (scan(content, ",;") == 0 .and. cell == "") cycle
          if (scan(content, ",;") == 0 .and. scan(cell, "[(") == 1 .and. header%count > 0) then
             ! a unit after a blank
             header%columns(header%count)%unit = without_brackets(cell)
@@ -139,6 +142,29 @@ contains
          end do
       end do
    end subroutine read_names
+
+   !> Whether a line tells the names of columns: two of them at least are known ones
+   pure function names_columns(content) result(yes)
+      !> The line
+      character(len=*), intent(in) :: content
+      !> True if it does
+      logical :: yes
+
+      type(header_t) :: header
+      character(len=longest_word) :: unit
+      integer :: i, known, role
+      logical :: shear
+
+      call read_names(header, content, 0)
+      known = 0
+      do i = 1, header%count
+         ! a line of units names nothing
+         header%columns(i)%unit = ""
+         call role_of(header%columns(i), role, shear, unit)
+         if (role /= role_none) known = known + 1
+      end do
+      yes = known > 1
+   end function names_columns
 
    !> Read the line of the units
    pure subroutine read_units(header, content, line)

@@ -1,16 +1,17 @@
 !> Data files that materials are identified from: relaxation moduli over time, or storage and loss
 !> moduli (or the storage or complex modulus and the loss tangent) over frequency
 !>
-!> With a header of names, and units in it or in a second line, or without. Where nothing tells, two
-!> columns are time and relaxation modulus, three are angular frequency, storage and loss modulus,
-!> and units are those of the SI. What is read becomes tensile moduli in SI units.
+!> With a header of names, and units in it or in a second line, or without. Instruments write other
+!> lines before it (TRIOS), or the header behind `##` (NETZSCH). Where nothing tells, two columns
+!> are time and relaxation modulus, three are angular frequency, storage and loss modulus, and units
+!> are those of the SI. What is read becomes tensile moduli in SI units, in rising order.
 module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_column_plan, only : columns_text, make_plan, name_of, plan_t, reading_t
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
       take_decimals, take_line
-   use vcor_io_header, only : header_t, most_columns, note_comment, read_names, read_units, &
-      role_complex, role_frequency, role_tangent
+   use vcor_io_header, only : header_t, most_columns, names_columns, note_comment, read_names, &
+      read_units, role_complex, role_frequency, role_tangent
    use vcor_io_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
@@ -21,7 +22,10 @@ module vcor_io_sample_file
    implicit none
    private
 
-   public :: read_samples, reading_t
+   public :: read_samples, reading_t, standard_input
+
+   !> Name that means the standard input
+   character(len=*), parameter :: standard_input = "-"
 
 contains
 
@@ -29,7 +33,7 @@ contains
    subroutine read_samples(samples, filename, reading, note, place, error)
       !> The samples, of tensile moduli in SI units
       type(samples_t), intent(out) :: samples
-      !> Name of the file
+      !> Name of the file; `-` is the standard input
       character(len=*), intent(in) :: filename
       !> What the user says about it
       type(reading_t), intent(in) :: reading
@@ -41,17 +45,24 @@ contains
       !> are wrong, `error_usage` when something has to be said about it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=*), parameter :: expected = "a file of moduli over time or frequency"
       type(plan_t) :: plan
-      character(len=:), allocatable :: text
+      character(len=:), allocatable :: name, text
       real(wp), allocatable :: points(:, :)
       integer :: lines(2), n
 
-      call read_text_file(filename, text, error, kind="a file of moduli over time or frequency")
+      if (filename == standard_input) then
+         name = "stdin"
+         call read_text_file("/dev/stdin", text, error, kind=expected)
+      else
+         name = printable(filename)
+         call read_text_file(filename, text, error, kind=expected)
+      end if
       if (allocated(error)) return
-      call read_points(text, printable(filename), reading, plan, points, n, lines, error)
+      call read_points(text, name, reading, plan, points, n, lines, error)
       if (allocated(error)) return
       if (plan%shear .and. reading%poisson_ratio > 0.5_wp) then
-         call raise(error, error_usage, printable(filename)//": found shear moduli, which become " &
+         call raise(error, error_usage, name//": found shear moduli, which become " &
             //"tensile ones, E = 2 (1 + nu) G, by Poisson's ratio: give --poisson-ratio")
          return
       end if
@@ -70,7 +81,7 @@ contains
          samples%loss = 2.0_wp*(1.0_wp + reading%poisson_ratio)*samples%loss
       end if
       note = described(plan, n)
-      place = printable(filename)//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
+      place = name//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
    end subroutine read_samples
 
    !> How a file was understood
@@ -115,10 +126,12 @@ contains
       type(header_t) :: header
       type(decimals_t) :: decimals, before
       character(len=:), allocatable :: content, comment, message
-      integer :: start, line, columns, from(most_columns), to(most_columns), i
-      logical :: numeric
+      integer :: start, line, columns, from(most_columns), to(most_columns), i, names_line
+      logical :: numeric, falls
 
       allocate (points(3, lines_in(text)))
+      names_line = line_of_names(text)
+      falls = .false.
       start = start_of(text)
       line = 0
       lines = 0
@@ -130,6 +143,10 @@ contains
          if (has_control(content)) then
             call raise(error, error_input, name//":"//integer_text(line)//": "//not_a_text)
             return
+         end if
+         if (line <= names_line) then
+            if (line == names_line) call read_names(header, names_in(content, comment), line)
+            cycle
          end if
          call take_decimals(content, decimals)
          call split(content, columns, from, to)
@@ -160,10 +177,14 @@ contains
          else
             call read_point(content, from, to, plan, points(:, n + 1), message)
             if (.not. allocated(message) .and. n > 0) then
-               if (.not. points(1, n + 1) > points(1, n)) message = "found " &
-                  //name_of(plan%roles(1), "")//" "//real_text(points(1, n + 1))//" after " &
-                  //real_text(points(1, n))//" in line "//integer_text(lines(2)) &
-                  //", expected them to increase"
+               ! instruments sweep frequencies in either direction
+               if (n == 1) falls = plan%roles(1) == role_frequency &
+                  .and. points(1, n + 1) < points(1, n)
+               if (.not. merge(points(1, n + 1) < points(1, n), points(1, n + 1) > points(1, n), &
+                  falls)) message = "found "//name_of(plan%roles(1), "")//" " &
+                  //real_text(points(1, n + 1))//" after "//real_text(points(1, n))//" in line " &
+                  //integer_text(lines(2))//", expected them to " &
+                  //trim(merge("decrease as before", "increase          ", falls))
             end if
          end if
          if (allocated(message)) then
@@ -175,6 +196,7 @@ contains
          lines(2) = line
       end do
       plan%decimals = before
+      if (falls) points(:, :n) = points(:, n:1:-1)
       if (n >= 2) return
       message = "found no numbers"
       if (n == 1) message = "found one row of numbers"
@@ -182,6 +204,44 @@ contains
          //", expected two rows at least, of time and modulus or of frequency, storage and loss " &
          //"modulus")
    end subroutine read_points
+
+   !> Line that names the columns: the last one before the numbers that has two known names
+   function line_of_names(text) result(found)
+      !> Contents of the file
+      character(len=*), intent(in) :: text
+      !> Number of the line; 0 if there is none
+      integer :: found
+
+      type(decimals_t) :: decimals
+      character(len=:), allocatable :: content, comment
+      integer :: start, line, columns, from(most_columns), to(most_columns), i
+
+      found = 0
+      line = 0
+      start = start_of(text)
+      do while (start <= len(text))
+         call take_line(text, start, content, comment)
+         line = line + 1
+         if (names_columns(names_in(content, comment))) found = line
+         call take_decimals(content, decimals)
+         call split(content, columns, from, to)
+         if (columns < 2) cycle
+         if (all([(looks_numeric(content(from(i):to(i))), i=1, min(columns, most_columns))])) exit
+      end do
+   end function line_of_names
+
+   !> What a line may name columns by: its content, or what stands behind ##
+   pure function names_in(content, comment) result(text)
+      !> The line without its comment
+      character(len=*), intent(in) :: content
+      !> The comment, without its #
+      character(len=*), intent(in) :: comment
+      !> The words
+      character(len=:), allocatable :: text
+
+      text = content
+      if (content == "" .and. index(comment, "#") == 1) text = comment(2:)
+   end function names_in
 
    !> Read one point
    subroutine read_point(content, from, to, plan, point, message)

@@ -93,8 +93,9 @@ contains
       reliance%solved = .not. allocated(error)
       if (reliance%solved) reliance%solved = held%status == contact_separated
       reliance%held = held%cor
-      reliance%leans = .true.
-      if (reliance%solved) reliance%leans = abs(held%cor - free%cor) > little
+      ! a contact that is over before the data begin is made up altogether, whatever changes
+      reliance%leans = .not. reliance%solved .or. (reliance%ends(1) .and. first > contact_time)
+      if (.not. reliance%leans) reliance%leans = abs(held%cor - free%cor) > little
    end subroutine find_reliance
 
    !> Solve the impact of a case

@@ -5,12 +5,14 @@ module vcor_study_units
    implicit none
    private
 
-   public :: unit_size, time_units, frequency_units, modulus_units
+   public :: unit_size, time_units, frequency_units, angular_units, modulus_units
 
    !> Units of time
    character(len=*), parameter :: time_units = "ns us ms s min h"
-   !> Units of frequency, the last two of angular frequency
-   character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz rad/s krad/s"
+   !> Units of angular frequency
+   character(len=*), parameter :: angular_units = "rad/s krad/s"
+   !> Units of frequency, angular or not
+   character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
    !> Units of modulus
    character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
 
