@@ -3,8 +3,8 @@ module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
    use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
    use vcor_app_option_value, only : read_positive, read_whole
-   use vcor, only : error_t, error_usage, most_threads, printable, quantity_names, raise, &
-      suggestion, time_range_t
+   use vcor, only : control_in, error_t, error_usage, most_threads, name_flaw, printable, &
+      quantity_names, raise, suggestion, time_range_t
    implicit none
    private
 
@@ -130,6 +130,11 @@ contains
          i = i + 1
          name = words(i)%text
          if (plain .or. index(name, '-') /= 1 .or. name == '-') then
+            if (request%command /= 'help' .and. control_in(name) /= '') then
+               call raise(error, error_usage, "found "//control_in(name)//" in the name '" &
+                  //printable(name)//"', expected the name of a file that can be read on one line")
+               return
+            end if
             call append_word(request%files, name)
             cycle
          end if
@@ -238,10 +243,21 @@ contains
          return
       end if
       select case (option)
+      case ('--set', '--fix', '--units')
+         continue
+      case default
+         if (control_in(value) /= '') call raise(error, error_usage, option//": found " &
+            //control_in(value)//" in '"//printable(value)//"', expected a text that can be read " &
+            //'on one line')
+         if (allocated(error)) return
+      end select
+      select case (option)
       case ('--set')
          call append_word(request%settings, value)
       case ('--output')
          request%directory = value
+         if (name_flaw(value) /= '') call raise(error, error_usage, "--output: the name '" &
+            //printable(value)//"' "//name_flaw(value)//', expected another name')
       case ('--kind')
          request%kind = value
       case ('--format')

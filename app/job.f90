@@ -3,7 +3,7 @@ module vcor_app_job
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
-      integer_text, join_path, method_for, new_part, new_sweep, override, part_t, &
+      integer_text, join_path, method_for, name_flaw, new_part, new_sweep, override, part_t, &
       printable, quantity_names, raise, read_case, read_data, refuse_unread, same_file, &
       single_impact, suggestion, sweep_t
    implicit none
@@ -92,6 +92,9 @@ contains
             if (allocated(request%directory)) directory = request%directory
             call job%case%get('output', 'stem', stem)
             job%path = join_path(directory, stem)
+            call check_output_name(job, 'directory', directory, error)
+            if (.not. allocated(error)) call check_output_name(job, 'stem', stem, error)
+            if (allocated(error)) return
             job%part = new_part(job%sweep%grid%count(), 1, 1)
             call job%case%get('output', 'csv', csv)
             call job%case%get('output', 'hdf5', hdf5)
@@ -122,6 +125,25 @@ contains
          end do
       end do
    end subroutine prepare
+
+   !> Check a name that files are written under
+   subroutine check_output_name(job, key, name, error)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Key of &output
+      character(len=*), intent(in) :: key
+      !> Its value, or what stands for it
+      character(len=*), intent(in) :: name
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: flaw
+
+      flaw = name_flaw(name)
+      if (flaw /= '') call raise(error, error_input, job%case%location('output', key, 1) &
+         //": output."//key//": the name '"//printable(name)//"' "//flaw &
+         //', expected another name')
+   end subroutine check_output_name
 
    !> Take the part of --shard
    subroutine take_shard(request, job, error)

@@ -62,6 +62,7 @@ module vcor
    use vcor_study_monitor, only : monitor_t
    use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
       share_flag, this_rank
+   use vcor_study_name, only : control_in, name_flaw
    use vcor_study_nearest, only : nearest_name, suggestion
    use vcor_study_partition, only : new_part, part_t
    use vcor_study_path, only : material_names
@@ -129,6 +130,7 @@ module vcor
    public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
    public :: file_exists, directory_exists, plain_file_exists, quoted_path
    public :: remove_file, stderr_is_terminal, write_terminal
+   public :: control_in, name_flaw
    public :: real_text, integer_text, printable, nearest_name, suggestion, read_real
    public :: material_names
 

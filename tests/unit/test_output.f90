@@ -10,7 +10,8 @@ program test_output
       & write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_number, only : integer_text, real_text
-   use vcor_io_path, only : directory_exists, file_exists, join_path, make_directory, quoted_path
+   use vcor_io_path, only : check_name, directory_exists, file_exists, for_shell, join_path, &
+      & make_directory, quoted_path
    use vcor_io_posix, only : c_getpid
    use vcor_io_table, only : check_table, coordinate_row, new_table, row_count, table_t
    use vcor_io_table_columns, only : add_column, add_dimension
@@ -150,7 +151,34 @@ contains
       call check_text(join_path("out", "/a.csv"), "/a.csv", "absolute path")
       call check_text(join_path("out  ", "a.csv "), "out/a.csv", "padding does not count")
       call check_text(quoted_path("a"//lf//"b c"), "'a?b c'", "messages have one line")
+      call check_text(for_shell("a.gp"), "'a.gp'", "a word of the shell")
+      call check_text(for_shell("/it's"), "'/it'\''s'", "a quote")
+      call check_text(for_shell("|a"), "'./|a'", "no pipe")
+      call check_text(for_shell("-a"), "'./-a'", "no option")
+      call refuses_name("a"//achar(9)//"b", "holds a tab")
+      call refuses_name("a/b"//cr, "holds a line end")
+      call refuses_name("a"//char(194)//char(133), "holds the control character 133")
+      call refuses_name("|a", "begins with '|'")
+      call refuses_name("/a/<b", "has a part that begins with '<'")
+      call refuses_name("", "")
+      call refuses_name("a|b/c<d é "//char(195)//char(133)//char(233), "")
    end subroutine test_paths
+
+   !> A name that is refused with a reason, or taken where the reason is empty
+   subroutine refuses_name(name, reason)
+      !> The name
+      character(len=*), intent(in) :: name
+      !> The reason
+      character(len=*), intent(in) :: reason
+      type(error_t), allocatable :: error
+
+      call check_name(name, error)
+      if (reason == "") then
+         call check(.not. allocated(error), "a good name: "//quoted_path(name))
+      else
+         call check_failed(error, reason, "a bad name: "//quoted_path(name))
+      end if
+   end subroutine refuses_name
 
    !> Directories
    subroutine test_make_directory()

@@ -1,6 +1,7 @@
 !> Labels of figures: units that suit the numbers, parameters by their paths, numbers as text
 module vcor_figure_label
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_io_figure, only : plain
    use vcor_kinds, only : wp
    implicit none
    private
@@ -13,13 +14,13 @@ contains
    !> A unit with a prefix, such that the largest of some numbers has one to three digits before the
    !> point, or none; a power of ten for pure numbers that are all very small
    pure subroutine suit_unit(unit, largest, factor, name)
-      !> SI unit
+      !> SI unit, or any text: it comes from a file
       character(len=*), intent(in) :: unit
       !> Largest magnitude, in that unit
       real(wp), intent(in) :: largest
       !> What the numbers are multiplied by
       real(wp), intent(out) :: factor
-      !> The unit with its prefix
+      !> The unit with its prefix, as a figure takes it
       character(len=:), allocatable, intent(out) :: name
 
       character(len=*), parameter :: prefixes(-6:3) = [character(len=2) :: 'a', 'f', 'p', 'n', &
@@ -32,7 +33,7 @@ contains
       real(wp) :: magnitude
 
       factor = 1.0_wp
-      name = unit
+      name = plain(unit)
       if (.not. ieee_is_finite(largest)) return
       if (.not. largest > 0.0_wp) return
       magnitude = largest

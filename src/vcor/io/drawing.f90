@@ -9,7 +9,7 @@ module vcor_io_drawing
    use vcor_io_figure, only : figure_t
    use vcor_io_file, only : create_file, discard, output_file_t, write_file
    use vcor_io_gnuplot, only : data_text, script_text
-   use vcor_io_path, only : file_exists, join_path, make_directory, quoted_path
+   use vcor_io_path, only : file_exists, for_shell, join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_getpid, c_remove, c_rename, c_text, last_errno, system_reason
    use vcor_study_text, only : integer_text
    implicit none
@@ -66,7 +66,7 @@ contains
                & //quoted_path(path//".gp"))
          else if (.not. allocated(error) .and. .not. done) then
             call raise(error, error_file, "cannot draw "//quoted_path(path//"."//format) &
-               & //": gnuplot fails; to see why: gnuplot "//quoted_path(path//".gp"))
+               & //": gnuplot fails; to see why: gnuplot "//for_shell(path//".gp"))
          end if
       end if
 
@@ -129,26 +129,6 @@ contains
       done = file_exists(path//"."//format)
       done = done .and. status == 0 .and. code == 0
    end subroutine run_gnuplot
-
-   !> A word as the shell takes it
-   pure function for_shell(word) result(between)
-      !> Any word
-      character(len=*), intent(in) :: word
-      !> The word in single quotes
-      character(len=:), allocatable :: between
-      integer :: i
-
-      between = "'"
-      if (index(word, "-") == 1) between = "'./"
-      do i = 1, len(word)
-         if (word(i:i) == "'") then
-            between = between//"'\''"
-         else
-            between = between//word(i:i)
-         end if
-      end do
-      between = between//"'"
-   end function for_shell
 
    !> Folder and name of a path
    pure subroutine split_path(path, directory, name)

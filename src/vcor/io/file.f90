@@ -17,7 +17,7 @@ module vcor_io_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_path, only : check_text_of, directory_exists, file_exists, quoted_path, raise_system
+   use vcor_io_path, only : check_name, directory_exists, file_exists, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_isatty, c_remove, &
       & c_rename, c_text, c_write, errno_exists, errno_interrupted, is_regular, last_errno, &
       & standard_error, standard_output
@@ -78,7 +78,7 @@ contains
       integer(c_int) :: reason
       integer :: count
 
-      call check_name(path, error)
+      call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
       if (present(given)) then
@@ -281,13 +281,13 @@ contains
    end function temporary_path
 
    !> Check that a file may have that name
-   subroutine check_name(path, error)
+   subroutine check_target(path, error)
       !> Name to check
       character(len=*), intent(in) :: path
       !> Set if it may not
       type(error_t), allocatable, intent(out) :: error
 
-      call check_text_of(path, error)
+      call check_name(path, error)
       if (allocated(error)) return
       if (len_trim(path) == 0) then
          call raise(error, error_file, "cannot write a file without a name")
@@ -301,7 +301,7 @@ contains
          if (.not. is_regular(trim(path))) call raise(error, error_file, "cannot write "// &
             & quoted_path(path)//": it is a device or a pipe, expected a file or nothing there")
       end if
-   end subroutine check_name
+   end subroutine check_target
 
    !> Check that a file is open
    subroutine check_open(file, error)

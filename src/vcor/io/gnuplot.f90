@@ -4,6 +4,10 @@
 !> finds its data beside itself wherever it is called from. Nothing in a script or in an SVG file
 !> depends on the time or the machine.
 !>
+!> A script is a program. What comes from a file of results or from a name stands in it between
+!> single quotes (`in_quotes`) or in a remark of one line (`remark`), and file names begin with a
+!> slash or a point: gnuplot takes `|name` and `<name` for commands.
+!>
 !> Gnuplot 5.4 and later. Curves differ in colour, in lightness and in dashes or markers, so that
 !> they can be told apart in print without colour.
 module vcor_io_gnuplot
@@ -12,8 +16,9 @@ module vcor_io_gnuplot
    use vcor_io_gnuplot_axis, only : across, along, in_quotes, number, put_axis
    use vcor_io_layout, only : body_height, frame_t, lay_out, line_height, title_count
    use vcor_kinds, only : wp
+   use vcor_io_path, only : for_shell
    use vcor_study_buffer, only : buffer_t
-   use vcor_study_text, only : integer_text
+   use vcor_study_text, only : integer_text, printable
    use vcor_version, only : version
    implicit none
    private
@@ -55,10 +60,11 @@ contains
       integer :: first, i
 
       call lay_out(figure, frames, width, height)
-      call buffer%add("# vcor "//version//": "//figure%subject//nl &
-         & //"# Data: "//name//".dat. To draw it again: gnuplot "//name//".gp"//nl//nl)
+      call buffer%add(remark("vcor "//version//": "//figure%subject) &
+         & //remark("Data: "//name//".dat. To draw it again: gnuplot "//for_shell(name//".gp"))//nl)
       call buffer%add("slash(s, i) = i == 0 ? 0 : s[i:i] eq '/' ? i : slash(s, i - 1)"//nl &
          & //"here = exists('ARG0') ? ARG0[1:slash(ARG0, strlen(ARG0))] : ''"//nl &
+         & //"here = here[1:1] eq '/' ? here : './'.here"//nl &
          & //"data = here."//in_quotes(name//".dat")//nl//nl &
          & //"set encoding utf8"//nl)
       first = 1
@@ -98,20 +104,22 @@ contains
       type(buffer_t) :: buffer
       integer :: count, i, j, k
 
-      call buffer%add("# vcor "//version//": "//figure%subject//nl)
+      character(len=:), allocatable :: head
+
+      call buffer%add(remark("vcor "//version//": "//figure%subject))
       count = 0
       do i = 1, size(figure%panels)
          associate (panel => figure%panels(i))
             do j = 1, panel%curve_count
                associate (curve => panel%curves(j))
-                  call buffer%add("# "//integer_text(count)//": "//panel%x%label//", ")
+                  head = integer_text(count)//": "//panel%x%label//", "
                   if (curve%at_right) then
-                     call buffer%add(panel%right%label)
+                     head = head//panel%right%label
                   else
-                     call buffer%add(panel%y%label)
+                     head = head//panel%y%label
                   end if
-                  if (curve%title /= "") call buffer%add(", "//curve%title)
-                  call buffer%add(nl)
+                  if (curve%title /= "") head = head//", "//curve%title
+                  call buffer%add(remark(head))
                   do k = 1, size(curve%x)
                      call buffer%add(number(curve%x(k))//" "//number(curve%y(k))//nl)
                   end do
@@ -123,6 +131,18 @@ contains
       end do
       text = buffer%text()
    end function data_text
+
+   !> A remark
+   pure function remark(text) result(line)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> One line, with its end
+      character(len=:), allocatable :: line
+
+      ! a backslash at the end would make the next line a part of the remark
+      line = "# "//printable(trim(text))//trim(merge(" .", "  ", index(text, "\", back=.true.) &
+         & == max(1, len_trim(text))))//nl
+   end function remark
 
    !> Command that sets the format and the size
    function terminal(format, width, height) result(text)

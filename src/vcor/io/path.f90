@@ -1,18 +1,20 @@
-!> What there is at a path, directories, and how a path stands in a message
+!> What there is at a path, directories, and how a path stands in a message or in a command
 !>
 !> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
 !> with the path and the system's reason.
 module vcor_io_path
-   use, intrinsic :: iso_c_binding, only : c_int, c_null_char
+   use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, &
       & is_regular, last_errno, resolved_path, system_reason
+   use vcor_study_name, only : name_flaw
+   use vcor_study_text, only : printable
    implicit none
    private
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
-   public :: join_path, same_file, quoted_path
-   public :: check_text_of, raise_system
+   public :: join_path, same_file, quoted_path, for_shell
+   public :: check_name, raise_system
 
 contains
 
@@ -59,7 +61,7 @@ contains
       integer(c_int) :: reason, status
       integer :: last
 
-      call check_text_of(path, error)
+      call check_name(path, error)
       if (allocated(error)) return
       if (directory_exists(path)) return
 
@@ -147,18 +149,40 @@ contains
       do i = 1, len(quoted)
          if (iachar(quoted(i:i)) < iachar(" ") .or. iachar(quoted(i:i)) == 127) quoted(i:i) = "?"
       end do
+      quoted = printable(quoted)
    end function quoted_path
 
-   !> Check that a path can be handed to C
-   subroutine check_text_of(path, error)
+   !> A path as the shell takes it, and as a program takes it that gives a meaning to a name's first
+   !> character: gnuplot reads `|name` as a pipe, many programs `-name` as an option
+   pure function for_shell(path) result(word)
+      !> Any path
+      character(len=*), intent(in) :: path
+      !> The path in single quotes; it begins with a slash, a point, a letter or a digit
+      character(len=:), allocatable :: word
+      character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz" &
+         & //"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+      integer :: i
+
+      word = trim(path)
+      if (scan(word, letters//"/.") /= 1) word = "./"//word
+      do i = len(word), 1, -1
+         if (word(i:i) == "'") word = word(:i-1)//"'\''"//word(i+1:)
+      end do
+      word = "'"//word//"'"
+   end function for_shell
+
+   !> Check that something of that name may be written
+   subroutine check_name(path, error)
       !> Path to check
       character(len=*), intent(in) :: path
-      !> Set if C would take a part of it for the whole
+      !> Set if it may not, see `vcor_study_name`
       type(error_t), allocatable, intent(out) :: error
+      character(len=:), allocatable :: flaw
 
-      if (index(path, c_null_char) > 0) call raise(error, error_file, &
-         & "the path "//quoted_path(path)//" holds a NUL character, expected text")
-   end subroutine check_text_of
+      flaw = name_flaw(path)
+      if (flaw /= "") call raise(error, error_file, "cannot write "//quoted_path(path) &
+         & //": the name "//flaw//", expected another name")
+   end subroutine check_name
 
    !> Set an error with the reason of the system
    subroutine raise_system(error, what, reason)

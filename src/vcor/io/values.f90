@@ -6,6 +6,7 @@ module vcor_io_values
    use vcor_kinds, only : wp
    use vcor_study_keys, only : integer_key, key_t, list_key, logical_key, real_key, text_key, wanted
    use vcor_study_store, only : entry_t
+   use vcor_study_name, only : control_in
    use vcor_study_text, only : integer_text, is_utf8, lower, quoted, shortened
    use vcor_study_words, only : spelled
    implicit none
@@ -211,6 +212,9 @@ contains
       if (key%choices /= "") string = spelled(key%choices, trim(adjustl(string)))
       if (.not. is_utf8(string)) then
          message = "found a text that is not UTF-8, '"//shortened(string)//"'"
+      else if (control_in(string) /= "") then
+         message = "found "//control_in(string)//" in '"//shortened(string) &
+            & //"', expected a text that can be read on one line"
       else if (len(string) > longest_text) then
          message = "found a text of "//integer_text(len(string))//" bytes, expected at most " &
             & //integer_text(longest_text)

@@ -5,7 +5,7 @@ module vcor_io_gnuplot_axis
    use vcor_io_layout, only : letter_width
    use vcor_kinds, only : wp
    use vcor_study_buffer, only : buffer_t
-   use vcor_study_text, only : real_text
+   use vcor_study_text, only : printable, real_text
    implicit none
    private
 
@@ -220,19 +220,22 @@ contains
 
    !> A text as gnuplot reads it
    pure function in_quotes(text) result(between)
-      !> Any text of one line
+      !> Any text
       character(len=*), intent(in) :: text
-      !> The text in single quotes, in which nothing has a meaning; single quotes in double ones,
-      !> since gnuplot 5.4 stumbles over two of them doubled
+      !> The text on one line, without control characters, in single quotes: nothing has a meaning
+      !> there, neither a backslash nor a command between backticks. Single quotes are in double
+      !> ones, since gnuplot 5.4 stumbles over two of them doubled
       character(len=:), allocatable :: between
+      character(len=len_trim(text)) :: shown
       integer :: i
 
+      shown = printable(text)
       between = "'"
-      do i = 1, len_trim(text)
-         if (text(i:i) == "'") then
+      do i = 1, len(shown)
+         if (shown(i:i) == "'") then
             between = between//"'.""'"".'"
          else
-            between = between//text(i:i)
+            between = between//shown(i:i)
          end if
       end do
       between = between//"'"
