@@ -1,8 +1,8 @@
 !> What the screen shows of a fit
 module vcor_app_fit_screen
    use vcor_app_screen, only : short, significant
-   use vcor, only : fit_t, integer_text, printable, samples_t, state_bound, &
-      state_fixed, version, wp
+   use vcor, only : fit_t, integer_text, printable, samples_t, state_bound, state_fixed, &
+      unseen_earlier, unseen_later, version, wp
    implicit none
    private
 
@@ -10,8 +10,9 @@ module vcor_app_fit_screen
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
-   !> Root mean square misfit of a model that is not that of the data
-   real(wp), parameter :: poor = 0.1_wp
+   !> What is said of misfits that are no noise
+   character(len=*), parameter :: no_noise = 'the model does not follow the data: its misfits ' &
+      //'are no noise'
 
 contains
 
@@ -45,8 +46,10 @@ contains
       if (samples%dynamic) text = text//', from '//short(samples%at(1))//' to ' &
          //short(samples%at(size(samples%at)))//' rad/s'
       text = text//nl
-      if (fit%rms > poor) text = text//'  note: the model does not follow the data, its standard ' &
-         //'errors mean little'//nl
+      if (fit%structured) text = text//'  note: '//no_noise//', its standard errors mean ' &
+         //'little'//nl
+      if (is_open(fit)) text = text//'  note: the modulus still falls where the data end: ' &
+         //'equilibrium_modulus holds all that relaxes later'//nl
       text = text//tail//nl
    end function fit_report
 
@@ -67,6 +70,9 @@ contains
          //printable(source)//nl &
          //'! rms misfit '//trim(adjustl(percent(fit%rms)))//', largest ' &
          //trim(adjustl(percent(fit%largest)))//place_of(fit, samples)//nl
+      if (fit%structured) text = text//'! '//no_noise//nl
+      if (is_open(fit)) text = text//'! equilibrium_modulus is not seen: 0 to ' &
+         //short(most_of(fit))//' Pa'//nl
       do i = 1, size(fit%parameters)
          associate (parameter => fit%parameters(i))
             if (parameter%state == state_bound) text = text//'! '//name_of(fit, i) &
@@ -75,6 +81,30 @@ contains
          end associate
       end do
    end function fit_remarks
+
+   !> Whether the equilibrium modulus of a series is only what has not relaxed when the data end,
+   !> and the material may go on to relax all of it
+   pure function is_open(fit) result(yes)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Whether it is
+      logical :: yes
+
+      associate (first => fit%parameters(1))
+         yes = fit%data%model == 'prony' .and. first%unseen == unseen_later &
+            .and. first%error < first%value
+      end associate
+   end function is_open
+
+   !> Most that the first parameter can be, three standard errors above it
+   pure function most_of(fit) result(value)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> The value, in its unit
+      real(wp) :: value
+
+      value = fit%parameters(1)%value + 3.0_wp*fit%parameters(1)%error
+   end function most_of
 
    !> Number of terms of a Prony series
    function terms_of(fit) result(text)
@@ -107,15 +137,54 @@ contains
       end if
    end function place_of
 
-   !> A ratio in percent
+   !> A ratio in percent, to two digits
    pure function percent(ratio) result(text)
       !> The ratio
       real(wp), intent(in) :: ratio
       !> Its text
       character(len=:), allocatable :: text
 
-      text = short(100.0_wp*ratio)//' %'
+      !> Of exact data, rounding
+      real(wp), parameter :: rounding = 1.0e-12_wp
+      character(len=9) :: digits
+      character(len=24) :: buffer
+      character(len=8) :: form
+      integer :: exponent
+
+      write (digits, '(es9.1e3)') 100.0_wp*ratio
+      read (digits(6:), *) exponent
+      if (abs(ratio) < rounding) then
+         text = '0 %'
+      else if (abs(exponent) > 4) then
+         text = short(100.0_wp*ratio)//' %'
+      else
+         write (form, '(a, i0, a)') '(f24.', max(1, 1 - exponent), ')'
+         write (buffer, form) 100.0_wp*ratio
+         if (exponent > 0) write (buffer, '(i0)') nint(100.0_wp*ratio)
+         text = trim(adjustl(buffer))//' %'
+      end if
    end function percent
+
+   !> Under what condition a standard error is one
+   pure function condition(fit, i) result(text)
+      !> The fit
+      type(fit_t), intent(in) :: fit
+      !> Number of the parameter
+      integer, intent(in) :: i
+      !> In words; nothing where the data show all that counts
+      character(len=:), allocatable :: text
+
+      text = ' if the model holds '
+      if (fit%data%model == 'prony') text = ' if nothing relaxes '
+      select case (fit%parameters(i)%unseen)
+      case (unseen_earlier)
+         text = text//'earlier'
+      case (unseen_later)
+         text = text//'later'
+      case default
+         text = ''
+      end select
+   end function condition
 
    !> Name of a parameter, with the number of the term of a series
    function name_of(fit, i) result(name)
@@ -149,12 +218,17 @@ contains
          text = '    '//name//significant(parameter%value)//' '//unit
          if (parameter%state == state_fixed) then
             text = text//'given'
+         else if (i == 1 .and. is_open(fit)) then
+            text = text//'not seen: 0 to '//short(most_of(fit))
          else
             text = text//'+- '//short(parameter%error)
             if (parameter%state == state_bound) text = text//', at its bound'
             ! not even its order of magnitude; of what is 0 the error is a limit
-            if (parameter%value > 0.0_wp .and. .not. parameter%error < parameter%value) &
+            if (parameter%value > 0.0_wp .and. .not. parameter%error < parameter%value) then
                text = text//', the data do not determine it'
+            else
+               text = text//condition(fit, i)
+            end if
          end if
       end associate
       text = text//nl

@@ -213,6 +213,10 @@ contains
          //nl &
          //'standard errors. A parameter at its bound has one too: 0 +- 1E+5 may be 1E+5, and'//nl &
          //'the errors of the others allow for it.'//nl//nl &
+         //'A note says where the misfits are above 0.5 % and no noise: then the model does'//nl &
+         //'not follow the data. Where the modulus still falls at the end of the data, an'//nl &
+         //'error holds only if nothing relaxes later, and the equilibrium modulus of a'//nl &
+         //'series is "not seen": what is fitted holds all that relaxes later.'//nl//nl &
          //'exit code 5: the fit does not converge, or the data do not determine the'//nl &
          //'parameters.'//nl
    end function fit_page

@@ -38,7 +38,7 @@ module vcor
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_fit, only : fit_material, fit_models, fit_t, fixable_parameters, parameter_t, &
-      samples_t, state_bound, state_fixed, state_free
+      samples_t, state_bound, state_fixed, state_free, unseen_earlier, unseen_later
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
@@ -122,6 +122,7 @@ module vcor
    public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, standard_input, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound
+   public :: unseen_earlier, unseen_later
    public :: material_text, put_material, reliance_t, find_reliance, solve_case
    public :: sampled_times, time_units, frequency_units, modulus_units
    public :: moduli_t, curves_t, time_range_t, compute_moduli, loss_tangent, moduli_tables

@@ -440,8 +440,100 @@ def test_fixed_parameter(vcor):
 def test_wrong_model(vcor):
     """A model that is not that of the data is told."""
     words = ["fit", "--from-model", POWER_LAW, "--from", "1e-8", "--to", "1e-2", "--model"]
-    assert "does not follow the data" in vcor.succeeds(*words, "sls")
-    assert "does not follow the data" not in vcor.succeeds(*words, "power_law")
+    assert NO_NOISE in vcor.succeeds(*words, "sls")
+    assert NO_NOISE not in vcor.succeeds(*words, "power_law")
+
+
+NO_NOISE = "does not follow the data"
+
+
+def noisy(modulus, noise, seed):
+    """Data with a relative noise."""
+    return modulus * np.exp(noise * np.random.default_rng(seed).standard_normal(modulus.size))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("model", ["sls", "prony"])
+def test_noise_is_noise(vcor, model, seed):
+    """10 % of it on the right model say nothing against the model."""
+    vcor.write(columns(TIMES, noisy(sls(TIMES), 0.1, seed)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", model)
+    assert float(re.search(r"rms misfit +(\S+) %", out)[1]) > 7
+    assert NO_NOISE not in out
+
+
+@pytest.mark.parametrize("model, most", [("cerf", 10), ("sls", 25), ("mittag_leffler", 6)])
+def test_little_noise_on_the_wrong_model(vcor, model, most):
+    """A few percent of misfit that are no noise are told, on the screen and in the group."""
+    times = np.logspace(-6, -2, 41)
+    rates, moduli = [972.0, 6426.0, 34221.0], [20.181e6, 38.204e6, 87.344e6]
+    modulus = 10.421e6 + np.exp(-np.outer(times, rates)) @ moduli
+    vcor.write(columns(times, noisy(modulus, 0.02, 1)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", model)
+    assert 2 < float(re.search(r"rms misfit +(\S+) %", out)[1]) < most
+    assert f"note: the model {NO_NOISE}" in out and f"\n! the model {NO_NOISE}" in out
+    assert NO_NOISE not in vcor.succeeds("fit", "data.csv")
+
+
+def test_misfit_that_does_not_matter(vcor):
+    """A series never is the power law, but follows it as close as any data."""
+    words = ["--from-model", POWER_LAW, "--from", "1e-6", "--to", "1e-2", "--terms"]
+    assert NO_NOISE not in vcor.succeeds("fit", *words, "8")
+    assert NO_NOISE in vcor.succeeds("fit", *words, "3")
+
+
+def decades(times):
+    """A series of a term to a decade, equilibrium modulus 3 MPa."""
+    return 3.0e6 + np.exp(-np.outer(times, 10.0 ** np.arange(1, 7))) @ (1e7 * np.arange(1, 7))
+
+
+@pytest.mark.parametrize("last", [-4, -3, -2])
+def test_half_a_window(vcor, last):
+    """Data that end before the slowest terms do not tell the equilibrium modulus from what relaxes
+    later: no standard error, but 0 to what has not relaxed."""
+    times = np.logspace(-7, last, 12 * (7 + last))
+    vcor.write(columns(times, noisy(decades(times), 0.003, last + 9)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv")
+    most = re.search(r"equilibrium_modulus +\S+ Pa +not seen: 0 to (\S+)$", out, re.M)[1]
+    assert 3.0e6 < float(most) < 2.0 * decades(times)[-1]
+    assert f"\n! equilibrium_modulus is not seen: 0 to {most} Pa" in out
+    assert "note: the modulus still falls where the data end" in out
+    ends = re.findall(r"(\w+)\((\d)\).*\+- \S+ if nothing relaxes (\w+)$", out, re.M)
+    terms = str(len(group(out)["times"]))
+    assert [("moduli", terms, "later"), ("times", terms, "later")] == ends[-2:]
+    assert {(number, when) for _, number, when in ends[:-2]} <= {("1", "earlier")}
+
+
+def test_whole_window(vcor):
+    times = np.logspace(-8, 1, 91)
+    vcor.write(columns(times, noisy(decades(times), 0.01, 3)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv")
+    assert "not seen" not in out and "relaxes" not in out and "still falls" not in out
+    value, error = re.search(r"equilibrium_modulus +(\S+) Pa +\+- (\S+)$", out, re.M).groups()
+    assert abs(float(value) - 3.0e6) < 3.0 * float(error) < 1.0e5
+
+
+def test_law_beyond_the_data(vcor):
+    """What a law says of times that the data do not have is marked."""
+    times = np.logspace(-5, np.log10(5e-4), 41)
+    vcor.write(columns(times, noisy(sls(times), 0.002, 1)), "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", "sls")
+    marked = re.findall(r"^ +(\w+) .* if the model holds (\w+)$", out, re.M)
+    assert marked == [("alpha", "later"), ("beta", "later")]
+
+
+@pytest.mark.parametrize(
+    "part, text",
+    [(0.5, r"33 %"), (0.02, r"2\.0 %"), (2e-4, r"0\.020 %"), (3e-6, r"0\.00030 %")],
+)
+def test_percent(vcor, part, text):
+    """1.9 %, not 1.9E+00 %. An SLS that is given and off by a part."""
+    vcor.write(columns(TIMES, (1 + part) * sls(TIMES)), "data.csv")
+    fixed = ["--fix", "glassy_modulus=15e6", "--fix", "beta=1200"]
+    out = vcor.succeeds("fit", "data.csv", "--model", "sls", *fixed)
+    assert re.search(rf"^  largest misfit +-{text} at", out, re.M)
+    vcor.write(columns(TIMES, sls(TIMES)), "data.csv")
+    assert re.search(r"^  rms misfit +0 %$", vcor.succeeds("fit", "data.csv", *fixed, "--model", "sls"), re.M)
 
 
 def test_what_the_data_do_not_determine(vcor):

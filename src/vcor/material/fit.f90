@@ -4,14 +4,15 @@ module vcor_material_fit
    use vcor_kinds, only : wp
    use vcor_material_fit_problem, only : parameters_of
    use vcor_material_fit_parametric, only : fit_parametric
-   use vcor_material_fit_result, only : fit_t, parameter_t, state_bound, state_fixed, state_free
+   use vcor_material_fit_result, only : fit_t, parameter_t, state_bound, state_fixed, state_free, &
+      unseen_earlier, unseen_later
    use vcor_material_fit_samples, only : samples_t
    use vcor_material_fit_series, only : fit_series
    implicit none
    private
 
    public :: fit_t, parameter_t, samples_t, fit_material, fit_models, fixable_parameters
-   public :: state_free, state_fixed, state_bound
+   public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
 
    !> Models that can be fitted
    character(len=*), parameter :: fit_models = 'prony sls power_law cerf mittag_leffler'

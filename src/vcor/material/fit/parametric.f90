@@ -6,6 +6,7 @@ module vcor_material_fit_parametric
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
+   use vcor_material_fit_ends, only : mark_ends
    use vcor_material_fit_interval, only : widen_errors
    use vcor_material_fit_problem, only : described, nothing, parameters_of, problem_t, release, &
       set_free, unit_of, unknowns_of
@@ -88,9 +89,11 @@ contains
       call judge(fit, material, samples)
       problem%parameters = fit%parameters
       call release(problem)
-      call set_errors(fit, problem, unknowns_of(problem), best, problem%free, error)
+      call set_errors(fit, problem, unknowns_of(problem), best, problem%free, size(samples%at), &
+         error)
       if (allocated(error)) return
       call widen_errors(fit, problem, sum(best**2))
+      call mark_ends(fit, material, samples)
    end subroutine fit_parametric
 
    !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1,

@@ -4,12 +4,13 @@ module vcor_material_fit_result
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
    use vcor_material_fit_samples, only : samples_t
+   use vcor_material_fit_structure, only : is_structured
    use vcor_material_type, only : material_t
    use vcor_numeric_least_squares, only : covariance, least_squares_t
    implicit none
    private
 
-   public :: fit_t, parameter_t, state_free, state_fixed, state_bound
+   public :: fit_t, parameter_t, state_free, state_fixed, state_bound, unseen_earlier, unseen_later
    public :: moduli_of, judge, set_errors
 
    !> State of a parameter: found by the fit
@@ -18,6 +19,10 @@ module vcor_material_fit_result
    integer, parameter :: state_fixed = 1
    !> Run to the end of its range: the data say no more than how far away it can be
    integer, parameter :: state_bound = 2
+   !> What a parameter depends on beyond the data: on what relaxes before they begin
+   integer, parameter :: unseen_earlier = 1
+   !> On what relaxes after they end
+   integer, parameter :: unseen_later = 2
    !> Condition of the scaled derivatives beyond which parameters are not determined: they would
    !> have no digit in common with those of data that differ by 1e-7
    real(wp), parameter :: worst_condition = 1.0e7_wp
@@ -34,6 +39,8 @@ module vcor_material_fit_result
       real(wp) :: error = 0.0_wp
       !> One of the `state_*` constants
       integer :: state = state_free
+      !> What its value depends on that the data do not show: `unseen_earlier`, `unseen_later`, or 0
+      integer :: unseen = 0
    end type parameter_t
 
    !> A fit
@@ -52,6 +59,8 @@ module vcor_material_fit_result
       logical :: largest_in_loss = .false.
       !> Variance of the data, as relative misfits, if the model is right [-]
       real(wp) :: variance = 0.0_wp
+      !> Whether the misfits are no noise: the model does not follow the data
+      logical :: structured = .false.
       !> Condition of the derivatives by the parameters that are free, each scaled to length 1
       real(wp) :: condition = 1.0_wp
    end type fit_t
@@ -99,10 +108,11 @@ contains
       fit%largest_at = samples%at(place)
    end subroutine judge
 
-   !> Set standard errors from the derivatives at the solution: those of a linear problem about it.
+   !> Set standard errors from the derivatives at the solution: those of a linear problem about it;
+   !> and tell whether the residuals are the noise that they are made of.
    !> What is at its bound is an unknown of it like the others: their errors allow for what it could
    !> be instead
-   subroutine set_errors(fit, problem, x, r, free, error)
+   subroutine set_errors(fit, problem, x, r, free, points, error)
       !> The fit, its values and states set
       type(fit_t), intent(inout) :: fit
       !> The problem
@@ -113,6 +123,8 @@ contains
       real(wp), intent(in) :: r(:)
       !> Numbers of the parameters that the unknowns stand for, shape (n)
       integer, intent(in) :: free(:)
+      !> Number of times or frequencies
+      integer, intent(in) :: points
       !> Error of code `error_numerical` if the data do not determine the parameters
       type(error_t), allocatable, intent(out) :: error
 
@@ -128,6 +140,7 @@ contains
             //fit%data%model//": take fewer, by --terms or --fix, or another model")
          return
       end if
+      fit%structured = is_structured(r, j(:, inner), points)
       fit%variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
       call covariance(j, inverse, condition)
       do i = 1, size(x)

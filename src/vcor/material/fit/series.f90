@@ -13,6 +13,7 @@ module vcor_material_fit_series
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
+   use vcor_material_fit_ends, only : mark_ends
    use vcor_material_fit_exponentials, only : fastest_rate, new_series_problem, refine, series_t, &
       series_problem_t, slowest_rate, solve_moduli
    use vcor_material_fit_result, only : fit_t, judge, parameter_t, set_errors, state_bound, &
@@ -432,7 +433,8 @@ contains
             //'or leave --terms out')
          return
       end if
-      call set_errors(fit, problem, x, series%residuals, free, error)
+      call set_errors(fit, problem, x, series%residuals, free, size(samples%at), error)
+      if (.not. allocated(error)) call mark_ends(fit, material, samples)
    end subroutine conclude
 
 end module vcor_material_fit_series
