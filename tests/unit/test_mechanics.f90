@@ -34,6 +34,7 @@ program test_mechanics
    call test_order()
    call test_reduced_dimension()
    call test_reversible()
+   call test_tight_accuracy()
    call test_fractional()
    call test_nearly_fluid()
    call test_series()
@@ -219,6 +220,43 @@ contains
          call check_close(outcome%cor, usual%cor, direct_tolerance, "elastic contact: direct, cor")
       end do
    end subroutine test_reversible
+
+   !> A rebound feels the approach between the ends of its panels, too, which is no floor for its
+   !> error: the stated one is what was asked for
+   subroutine test_tight_accuracy()
+      integer, parameter :: waves(4) = [waves_none, waves_constant, waves_relaxing, &
+         waves_hereditary]
+      ! rubbery over glassy modulus, and rates from slow to fast against the contact [1/s]
+      real(wp), parameter :: rubbery(2) = [0.95_wp, 0.5_wp]
+      real(wp), parameter :: rate(3) = [100.0_wp, 1200.0_wp, 2.0e4_wp]
+      real(wp), parameter :: tight = 1.0e-10_wp, tightest = 1.0e-11_wp, largest_stated = 5.0e-11_wp
+      type(ive_t) :: fine, finest
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, exact
+      type(error_t), allocatable :: error
+      integer :: i, j, k
+
+      call make_ive(tight, fine)
+      call make_ive(tightest, finest)
+      do i = 1, size(waves)
+         do j = 1, size(rubbery)
+            do k = 1, size(rate)
+               call new_sls(rubber, 15.0e6_wp, rubbery(j)*rate(k), rate(k), error)
+               call success(error, "an SLS is built")
+               call rigid_on_plate(rubber, waves(i), 2.0_wp, impact)
+               impact%law = law_receding
+               call run(fine, impact, outcome)
+               call run(finest, impact, exact)
+               call check_close(outcome%cor_error, 0.0_wp, tight, "receding at 1e-10: stated")
+               call check_close(exact%cor_error, 0.0_wp, largest_stated, &
+                  "receding at 1e-11: stated")
+               call check_close(outcome%cor, exact%cor, outcome%cor_error + exact%cor_error, &
+                  "receding at 1e-10: cor")
+            end do
+         end do
+      end do
+   end subroutine test_tight_accuracy
 
    !> The fractional kernels by both methods, product integration extrapolated
    subroutine test_fractional()

@@ -25,7 +25,7 @@ module vcor_solver_ive
    use vcor_solver_collocator, only : accompany, advance, collocator_t, guess, most_steps, &
       new_collocator, relative_velocity, solve_step
    use vcor_solver_landing, only : end_at_zero, estimate_errors, first_without_force, land, &
-      land_on_largest, slope_at_end
+      land_on_largest, share_of_difference, slope_at_end
    use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_rebound, only : follow_rebound
@@ -58,9 +58,12 @@ module vcor_solver_ive
    !> Loosest accuracy that is worked to: less would save next to nothing, and one cannot tell
    !> panels that are crude from those that are wrong
    real(wp), parameter :: loosest = 1.0e-6_wp
-   !> What the rebound feels of the difference of the two solutions between the ends of the panels,
-   !> measured
-   real(wp), parameter :: share_of_inner = 5.0e-3_wp
+   !> Power of the accuracy by which the first step of a receding contact is shorter where more than
+   !> the usual one is asked for: the rebound feels the solution between the ends of the panels, too
+   real(wp), parameter :: receding_growth = 0.1_wp
+   !> What the rebound feels of the difference of the two solutions there, measured, and the share
+   !> of the wanted accuracy that it may have
+   real(wp), parameter :: share_of_inner = 5.0e-3_wp, inner_share = 0.3_wp
 
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
@@ -247,8 +250,8 @@ contains
       type(rebound_start_t) :: rebound
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
-      real(wp) :: excess, refused, growth, largest_growth, force_error, inner, velocity, fall
-      real(wp) :: end_found, approach_error
+      real(wp) :: excess, refused, growth, largest_growth, force_error, velocity, fall
+      real(wp) :: end_found, inner, largest_inner, share_left, approach_error
       integer :: trial, n, ahead
       logical :: ends, last, inherited, shallow, branches, recedes, turns
 
@@ -264,7 +267,7 @@ contains
       start%p = 0.0_wp
       coarse_start = start
       recedes = impact%law == law_receding
-      inner = 0.0_wp
+      largest_inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth
          if (levels(accuracy) == 0 .and. .not. recedes) step%reach = three_panels
@@ -273,6 +276,7 @@ contains
       else
          step%reach = min(longest_step, long_step*(accuracy/usual)**long_growth)
       end if
+      if (recedes .and. accuracy < usual) step%reach = step%reach*(accuracy/usual)**receding_growth
       step%reach = step%reach*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
@@ -341,6 +345,11 @@ contains
          else
             excess = max(excess, share(force_error, largest_force*force_tolerance))
          end if
+         if (recedes) then
+            inner = share_of_inner*difference_inside(self%collocator, panel, coarse) &
+               /(impact%velocity*time_scale)
+            excess = max(excess, inner/(inner_share*accuracy))
+         end if
          ! what a shorter panel did not reduce has been handed down by the panels before
          inherited = excess <= tolerable .and. excess > 0.5_wp*refused
          if (.not. (excess <= 1.0_wp .or. inherited)) then
@@ -374,7 +383,7 @@ contains
          complete = .not. panel%time(n) > window
          if (.not. complete) return
          if (recedes) then
-            inner = max(inner, difference_inside(self%collocator, panel, coarse))
+            largest_inner = max(largest_inner, inner)
             call stretches%add(self%collocator%rule, self%collocator%rule%map(step%index), &
                step%map_scale(), modes%contact, panel, velocity, &
                trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
@@ -397,15 +406,16 @@ contains
 
          call advance(self%collocator%rule, step, modes, panel, start)
          if (turns) then
+            share_left = share_of_difference(trajectory%steps)
+            approach_error = largest_inner + share_left &
+               *abs(panel%impulse(n) - coarse%impulse(n - 1))/(impact%mass*impact%velocity)
             call turn_round(modes, start, stretches, rebound)
             call follow_rebound(self%collocator, impact, modes, stretches, rebound, accuracy, &
                end_time, trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
-            approach_error = share_of_inner*inner/(impact%velocity*time_scale) &
-               + abs(panel%impulse(n) - coarse%impulse(n - 1))/(impact%mass*impact%velocity)
             trajectory%cor_sphere_error = trajectory%cor_sphere_error + approach_error
             trajectory%cor_error = trajectory%cor_error + approach_error &
-               + abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
+               + share_left*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
             return
          end if
          call advance(self%collocator%coarse, step, modes, coarse, coarse_start)

@@ -12,7 +12,7 @@ module vcor_solver_landing
    private
 
    public :: first_without_force, land, land_on_largest
-   public :: end_at_zero, estimate_errors, slope_at_end
+   public :: end_at_zero, estimate_errors, share_of_difference, slope_at_end
 
 contains
 
@@ -292,11 +292,6 @@ contains
 
       ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
       real(wp), parameter :: rounding = 5.0e-13_wp
-      ! the difference is the error of the companion: that of the solution is less, where
-      ! the solution is smooth by orders, where it is not by a factor of this size; with few panels
-      ! it is anybody's guess
-      real(wp), parameter :: finer = 0.3_wp
-      integer, parameter :: few = 2
       real(wp) :: impulse_error, time_error, alpha_rate, fall, least, share
 
       associate (n => rule%stages)
@@ -309,7 +304,7 @@ contains
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          ! the end is moved to its zero along straight lines
          least = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2
-         share = merge(1.0_wp, finer, branches .or. panels <= few)/impact%velocity
+         share = merge(1.0_wp, share_of_difference(panels), branches)/impact%velocity
          cor_sphere_error = least + share*impulse_error/impact%mass
          cor_error = cor_sphere_error + share*(impulse_error*alpha_rate &
             + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
@@ -317,5 +312,20 @@ contains
             + abs(panel%drift(n) - coarse%drift(n - 1)))
       end associate
    end subroutine estimate_errors
+
+   !> Error of the solution over its difference to the companion. The difference is the error of the
+   !> companion: that of the solution is less, where the solution is smooth by orders, where it is
+   !> not by a factor of some size; with few panels it is anybody's guess
+   pure function share_of_difference(panels) result(share)
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Share
+      real(wp) :: share
+
+      real(wp), parameter :: finer = 0.3_wp
+      integer, parameter :: few = 2
+
+      share = merge(1.0_wp, finer, panels <= few)
+   end function share_of_difference
 
 end module vcor_solver_landing

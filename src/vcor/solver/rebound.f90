@@ -58,8 +58,8 @@ contains
       integer, parameter :: most_trials = 400
       ! share of the accuracy that one panel may use up
       real(wp), parameter :: panel_share = 0.45_wp
-      ! error of a panel, over what it may have, that can be put up with if a shorter one does not
-      ! reduce it: handed down by the panels before, or rounding in stiff internal variables
+      ! error of a panel, over what it may have, that can be put up with if half the panel does not
+      ! reduce it by half: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
       ! panels in which t1 grows, each half of the one before, that make it a fact
@@ -82,14 +82,16 @@ contains
       ! error of a sum of exponentials with which nothing is certain that is as small
       real(wp), parameter :: unreliable = 1.0e-6_wp
       type(rebound_panel_t) :: panel, companion, previous
-      real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_end
-      real(wp) :: end_found, error_now, error_sum, impulse_error, sphere_sum, alpha_rate, tolerance
+      real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_length
+      real(wp) :: refused_end, end_found, error_now, error_sum, impulse_error, sphere_sum
+      real(wp) :: alpha_rate, tolerance
       integer :: trial, n, kind, closings, growths
-      logical :: ends, last, inherited
+      logical :: ends, last, halved, inherited
 
       n = collocator%rule%stages
       tolerance = share_of_tolerance*collocator%coarse_tolerance
       refused = huge(1.0_wp)
+      refused_length = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
       growths = 0
@@ -131,6 +133,7 @@ contains
                   ! the end is closer than expected
                   rest = taken*where_zero(panel)
                   refused = huge(1.0_wp)
+                  refused_length = huge(1.0_wp)
                   cycle
                end if
             end if
@@ -156,14 +159,18 @@ contains
             + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
             /impact%velocity
          excess = error_now/(panel_share*accuracy)
-         inherited = excess <= tolerable .and. excess > 0.5_wp*refused
+         halved = taken <= 0.5_wp*refused_length
+         inherited = excess <= tolerable .and. halved .and. excess > 0.5_wp*refused
          if (ends) then
             closings = closings + 1
             inherited = inherited .or. (excess <= tolerable_end &
                .and. (excess > 0.5_wp*refused_end .or. closings >= enough_closings))
          end if
          if (.not. (excess <= 1.0_wp .or. inherited)) then
-            refused = excess
+            if (halved) then
+               refused = excess
+               refused_length = taken
+            end if
             if (ends) then
                refused_end = excess
                end_length = taken*cut((excess/aim)**(-1.0_wp/order_at_end))
@@ -173,6 +180,7 @@ contains
             cycle
          end if
          refused = huge(1.0_wp)
+         refused_length = huge(1.0_wp)
          if (any(panel%t1(1:n) - panel%t1(0:n - 1) > noticeable*approach%end &
              + growing*(panel%time(1:n) - panel%time(0:n - 1)))) then
             ! a shorter panel knows more of what is inside
