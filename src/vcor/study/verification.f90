@@ -10,7 +10,7 @@ module vcor_study_verification
    use vcor_kinds, only : wp
    use vcor_solver, only : new_solver, solver_settings_t, solver_t
    use vcor_study_verification_elastic, only : hertz, zener
-   use vcor_study_verification_golden, only : golden, printed
+   use vcor_study_verification_golden, only : beyond, golden, printed
    use vcor_study_verification_kelvin_voigt, only : exact, pade, series, zener_relation
    use vcor_study_verification_memory, only : limits, mittag_leffler, &
       power_law, scaling, weak_maxwell
@@ -21,7 +21,7 @@ module vcor_study_verification
    public :: law_count, build_law, verify_law
 
    !> Number of laws
-   integer, parameter :: law_count = 13
+   integer, parameter :: law_count = 14
 
 contains
 
@@ -59,6 +59,8 @@ contains
          call limits(law)
       case (12)
          call golden(law)
+      case (13)
+         call beyond(law)
       case (law_count)
          call printed(law)
       case default

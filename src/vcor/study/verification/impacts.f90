@@ -1,11 +1,11 @@
-!> Impacts of the verification table: a rigid sphere on a plate of one material
+!> Impacts of the verification table: a sphere, mostly rigid, on a plate of one material
 !>
 !> The sphere and the plate are those of Green's paper unless a law needs others: a ball of 10 mm
 !> radius and 7800 kg/m3 on a plate of 20 mm half thickness, 1100 kg/m3 and Poisson's ratio 0.5.
 module vcor_study_verification_impacts
    use vcor_constants, only : pi
    use vcor_error, only : error_t
-   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_series
    use vcor_impact_plate, only : new_plate, plate_t, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_kinds, only : wp
@@ -33,8 +33,9 @@ module vcor_study_verification_impacts
 
 contains
 
-   !> A rigid sphere strikes a material; the first error stays
-   subroutine strike(impact, error, material, waves, velocity, mass, radius, half_thickness)
+   !> A sphere strikes a material; the first error stays
+   subroutine strike(impact, error, material, waves, velocity, mass, radius, half_thickness, law, &
+                     sphere)
       !> The impact
       type(impact_t), intent(out) :: impact
       !> Unallocated on success
@@ -51,9 +52,12 @@ contains
       real(wp), intent(in), optional :: radius
       !> Half thickness of the plate [m]; absent: the paper's
       real(wp), intent(in), optional :: half_thickness
+      !> One of the `law_*` constants; absent: Boltzmann's
+      integer, intent(in), optional :: law
+      !> Material of the sphere, in series with the plate's; absent: it is rigid
+      type(material_data_t), intent(in), optional :: sphere
 
-      class(material_t), allocatable :: body
-      type(material_data_t) :: data
+      class(material_t), allocatable :: body, ball
       type(prony_t) :: rigid
       type(contact_modulus_t) :: modulus
       type(plate_t) :: plate
@@ -73,19 +77,38 @@ contains
       h = usual_half_thickness
       if (present(half_thickness)) h = half_thickness
 
+      call make_body(body, material, trouble)
+      if (present(sphere)) then
+         if (.not. allocated(trouble)) call make_body(ball, sphere, trouble)
+      else
+         call new_rigid(rigid)
+         allocate (ball, source=rigid)
+      end if
+      if (.not. allocated(trouble)) &
+         call new_contact_modulus(modulus, ball, body, .false., trouble, pair_series)
+      if (.not. allocated(trouble)) call new_plate(plate, body, h, model, trouble)
+      if (.not. allocated(trouble)) &
+         call new_impact(impact, v, m, r, 0.0_wp, modulus, plate, trouble, law)
+      if (allocated(trouble)) call move_alloc(trouble, error)
+   end subroutine strike
+
+   !> A material of the plates' density
+   subroutine make_body(body, material, error)
+      !> The material
+      class(material_t), allocatable, intent(out) :: body
+      !> Its description
+      type(material_data_t), intent(in) :: material
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(material_data_t) :: data
+
       data = material
       data%name = 'body'
       data%density = plate_density
       if (.not. allocated(data%moduli)) allocate (data%moduli(0), data%rates(0))
-      call new_rigid(rigid)
-      call new_material(body, data, trouble)
-      if (.not. allocated(trouble)) &
-         call new_contact_modulus(modulus, rigid, body, .false., trouble)
-      if (.not. allocated(trouble)) call new_plate(plate, body, h, model, trouble)
-      if (.not. allocated(trouble)) &
-         call new_impact(impact, v, m, r, 0.0_wp, modulus, plate, trouble)
-      if (allocated(trouble)) call move_alloc(trouble, error)
-   end subroutine strike
+      call new_material(body, data, error)
+   end subroutine make_body
 
    !> A rigid sphere strikes a plate of a given lambda, which falls with the square of the thickness
    subroutine zener_plate(impact, error, material, waves, lambda)

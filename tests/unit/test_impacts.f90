@@ -1,0 +1,272 @@
+!> Impacts of every plate, contact law, pair and material against references: tests/reference/
+!> practical.txt, by both methods, at several accuracies
+program test_impacts
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_io_case_reader, only : read_case_text
+   use vcor_io_data_file, only : read_data
+   use vcor_kinds, only : wp
+   use vcor_solver_ive, only : ive_t
+   use vcor_solver_product, only : product_t
+   use vcor_solver_type, only : solver_t
+   use vcor_study_build, only : build_impact
+   use vcor_study_case, only : case_t
+   use vcor_test, only : check, finish, suite
+   use vcor_test_cases, only : make_ive, make_product, success
+   implicit none
+
+   !> Where the references stand, from the top of the sources
+   character(len=*), parameter :: folder = "tests/reference/"
+   !> Longest line of a set
+   integer, parameter :: longest = 2000
+   !> What each impact expects, in the order of the file; the first two absolute, the others over a
+   !> scale of their own
+   character(len=*), parameter :: names(9) = [character(len=20) :: "cor", "cor_sphere", &
+      "contact_time", "max_indentation", "max_force", "residual_indentation", &
+      "hysteresis_energy", "wave_energy", "initial_energy"]
+   !> Stated errors above the accuracy asked for that are let pass, in a set at one accuracy
+   integer, parameter :: most_above = 5
+   !> An error is stated too small when it is more than so many times larger ...
+   real(wp), parameter :: honest_share = 3.0_wp
+   !> ... and rounding does not explain it
+   real(wp), parameter :: rounding = 1.0e-12_wp
+   !> The contact time is promised within ten times the accuracy down to 1e-9, as are maxima and
+   !> energies down to 1e-7, docs/accuracy.md
+   real(wp), parameter :: share = 10.0_wp, best_time = 1.0e-9_wp, best_other = 1.0e-7_wp
+
+   !> Checks that are known to fail, by the beginning of their names. Ends at which the bodies creep
+   !> apart, and a force with a dashpot (9 to 55, 191, 263); a frozen plate whose estimate is next
+   !> to too small (117); contact times of the reference that are themselves off (169, 329, 371);
+   !> estimates of receding contact above 1e-10
+   character(len=*), parameter :: known(*) = [character(len=70) :: &
+      "practical.txt 9, ive 1.0E-08: residual_indentation", &
+      "practical.txt 9, ive 1.0E-10: contact_time", &
+      "practical.txt 11, ive 1.0E-08: residual_indentation", &
+      "practical.txt 55, ive 1.0E-08: max_force", &
+      "practical.txt 103, ive", &
+      "practical.txt 117, ive 1.0E-08: cor_sphere_error", &
+      "practical.txt 169, ive", &
+      "practical.txt 191, ive 1.0E-08: ", &
+      "practical.txt 263, direct 1.0E-06: ", &
+      "practical.txt 329, ive 1.0E-10: contact_time", &
+      "practical.txt 371, ive 1.0E-10: contact_time", &
+      "practical.txt, ive 1.0E-10: few"]
+
+   !> One impact
+   type :: row_t
+      !> Number in its set, and remark
+      character(len=80) :: name = ""
+      !> The impact
+      type(impact_t) :: impact
+      !> What is to come out, in the order of `names`
+      real(wp) :: expect(9) = 0.0_wp
+   end type row_t
+
+   !> One set
+   type(row_t), allocatable :: rows(:)
+
+   call suite("impacts")
+   call test_set("practical.txt", 230, 1.0e-11_wp)
+   call finish()
+
+contains
+
+   !> Every impact of a set by both methods
+   subroutine test_set(filename, count, accuracy)
+      !> Name of the file
+      character(len=*), intent(in) :: filename
+      !> Number of impacts in it
+      integer, intent(in) :: count
+      !> Accuracy of the references
+      real(wp), intent(in) :: accuracy
+
+      real(wp), parameter :: asked(3) = [1.0e-6_wp, 1.0e-8_wp, 1.0e-10_wp]
+      real(wp), parameter :: direct_asked = 1.0e-6_wp
+      type(ive_t) :: ive
+      type(product_t) :: product
+      integer :: i
+
+      call read_set(filename)
+      call check(size(rows) == count, filename//": all impacts were read")
+      do i = 1, size(asked)
+         call make_ive(asked(i), ive)
+         call test_method(filename, "ive", ive, asked(i), accuracy)
+      end do
+      call make_product(0.0_wp, direct_asked, product)
+      call test_method(filename, "direct", product, direct_asked, accuracy)
+   end subroutine test_set
+
+   !> Read a set
+   subroutine read_set(filename)
+      !> Name of the file
+      character(len=*), intent(in) :: filename
+
+      character(len=*), parameter :: begin = "! impact ", numbers = "! expect "
+      character(len=longest) :: line
+      character(len=:), allocatable :: text
+      type(row_t), allocatable :: more(:)
+      integer :: unit, status, n
+
+      n = 0
+      allocate (rows(64))
+      text = ""
+      open(newunit=unit, file=folder//filename, status="old", action="read", iostat=status)
+      call check(status == 0, folder//filename//" is there")
+      do while (status == 0)
+         read(unit, "(a)", iostat=status) line
+         if (status /= 0 .or. index(line, begin) == 1) then
+            if (n > 0) call build(rows(n), folder//filename, text)
+            if (status /= 0) exit
+            if (n == size(rows)) then
+               allocate (more(2*n))
+               more(:n) = rows
+               call move_alloc(more, rows)
+            end if
+            n = n + 1
+            rows(n)%name = line(len(begin) + 1:)
+            text = ""
+         else if (index(line, numbers) == 1) then
+            read(line(len(numbers) + 1:), *) rows(n)%expect
+         else
+            text = text//trim(line)//new_line(line)
+         end if
+      end do
+      close(unit)
+      rows = rows(:n)
+   end subroutine read_set
+
+   !> The impact of a case
+   subroutine build(row, source, text)
+      !> Its row
+      type(row_t), intent(inout) :: row
+      !> Name of the file that it stands in
+      character(len=*), intent(in) :: source
+      !> Its text
+      character(len=*), intent(in) :: text
+
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+
+      call read_case_text(case, text, source, error)
+      if (.not. allocated(error)) call read_data(case, error)
+      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call build_impact(case, row%impact, error)
+      if (allocated(error)) call success(error, source//" "//trim(row%name))
+   end subroutine build
+
+   !> The impacts of a set by one method
+   subroutine test_method(filename, method, solver, asked, accuracy)
+      !> Name of the set
+      character(len=*), intent(in) :: filename
+      !> Name of the method
+      character(len=*), intent(in) :: method
+      !> The method
+      class(solver_t), intent(in) :: solver
+      !> Accuracy asked for
+      real(wp), intent(in) :: asked
+      !> Accuracy of the references
+      real(wp), intent(in) :: accuracy
+
+      character(len=40) :: way
+      integer :: i, above
+
+      write(way, "(a, 1x, es7.1)") method, asked
+      above = 0
+      do i = 1, size(rows)
+         call test_impact(rows(i), filename//" "//trim(rows(i)%name)//", "//trim(way), solver, &
+            asked, accuracy, above)
+      end do
+      associate (name => filename//", "//trim(way)//": few stated errors are above it")
+         if (.not. is_known(name)) call check(above <= most_above, name)
+      end associate
+   end subroutine test_method
+
+   !> One impact by one method
+   subroutine test_impact(row, name, solver, asked, accuracy, above)
+      !> The impact
+      type(row_t), intent(in) :: row
+      !> Its name and that of the method
+      character(len=*), intent(in) :: name
+      !> The method
+      class(solver_t), intent(in) :: solver
+      !> Accuracy asked for
+      real(wp), intent(in) :: asked
+      !> Accuracy of the references
+      real(wp), intent(in) :: accuracy
+      !> Number of stated errors that are above the accuracy asked for, so far
+      integer, intent(inout) :: above
+
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      real(wp) :: found(9), scale(9), difference(9), tolerance
+      integer :: i
+
+      call solver%solve(row%impact, trajectory, error)
+      if (allocated(error)) then
+         if (.not. is_known(name)) call success(error, name//" is solved")
+         return
+      end if
+      outcome = evaluate(row%impact, trajectory)
+      call check(outcome%status == contact_separated, name//": the bodies separate")
+      if (outcome%status /= contact_separated) return
+      found = [outcome%cor, outcome%cor_sphere, outcome%contact_time, outcome%max_indentation, &
+         outcome%max_force, outcome%residual_indentation, outcome%hysteresis_energy, &
+         outcome%wave_energy, outcome%initial_energy]
+      scale = row%expect
+      scale(1:2) = 1.0_wp
+      scale(6) = row%expect(4)
+      scale(7:8) = row%expect(9)
+      difference = abs(found - row%expect)/scale
+      do i = 1, size(names)
+         select case (i)
+         case (1, 2)
+            tolerance = asked
+         case (3)
+            tolerance = max(share*asked, best_time)
+         case default
+            tolerance = max(share*asked, best_other)
+         end select
+         call check_difference(difference(i), tolerance + accuracy, name//": "//trim(names(i)))
+      end do
+      call check_difference(difference(1), honest_share*outcome%cor_error + rounding + accuracy, &
+         name//": cor_error")
+      call check_difference(difference(2), honest_share*outcome%cor_sphere_error + rounding &
+         + accuracy, name//": cor_sphere_error")
+      if (.not. max(outcome%cor_error, outcome%cor_sphere_error) < asked) above = above + 1
+   end subroutine test_impact
+
+   !> Whether a check is one that is known to fail
+   function is_known(name)
+      !> Name of the check
+      character(len=*), intent(in) :: name
+      !> Whether it is known
+      logical :: is_known
+
+      integer :: i
+
+      is_known = .false.
+      do i = 1, size(known)
+         if (index(name, trim(known(i))) == 1) is_known = .true.
+      end do
+   end function is_known
+
+   !> Check a difference; the name of a failed check tells it
+   subroutine check_difference(difference, tolerance, name)
+      !> The difference
+      real(wp), intent(in) :: difference
+      !> What it may be
+      real(wp), intent(in) :: tolerance
+      !> What is compared
+      character(len=*), intent(in) :: name
+
+      character(len=40) :: numbers
+
+      if (is_known(name)) return
+      write(numbers, "(a, es7.1, a, es7.1)") ": ", difference, " against ", tolerance
+      call check(difference <= tolerance, name//trim(numbers))
+   end subroutine check_difference
+
+end program test_impacts
