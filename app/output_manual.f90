@@ -162,6 +162,12 @@ contains
          //'that are all the same are not stored but read as the fill value of their dataset.')
       call page%block('python', 'import xarray'//nl//nl &
          //'summary = xarray.open_dataset("sls.h5", group="summary", engine="h5netcdf")'//nl)
+      call page%paragraph('Behind what HDF5 reads, each file ends with a check sum (CRC-32) of ' &
+         //'all its bytes. vcor compares it before it reads anything else: a damaged file is an ' &
+         //'error of one line, exit code 4. A program that changes the file, such as h5py, ' &
+         //'takes the check sum off. vcor reads such a file too, but then HDF5 is on its own: a ' &
+         //'file that somebody has made for the purpose can crash the HDF5 library, or keep it ' &
+         //'in an endless loop. Do not open HDF5 files from people you do not trust.')
    end subroutine put_hdf5
 
    !> Exit codes and where messages go

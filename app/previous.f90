@@ -14,6 +14,10 @@ module vcor_app_previous
    type :: previous_t
       !> Whether there are any
       logical :: exist = .false.
+      !> Whether all files are there
+      logical :: is_whole = .false.
+      !> Whether the HDF5 file is there
+      logical :: has_hdf5 = .false.
       !> File that was looked into
       character(len=:), allocatable :: path
       !> What it is about; all texts are empty if it is not of this program
@@ -47,28 +51,32 @@ contains
       !> What is there
       type(previous_t), intent(out) :: previous
 
-      type(error_t), allocatable :: ignored
+      type(error_t), allocatable :: damage
       integer :: i
-      logical :: is_ours
+      logical :: is_ours, is_there(size(endings))
 
+      is_there = [(plain_file_exists(path//trim(endings(i))), i=1, size(endings))]
+      previous%is_whole = all(is_there .or. .not. writes)
       is_ours = .false.
       do i = size(endings), 1, -1
          ! a history says nothing that the others do not
-         if (i == 2 .or. .not. writes(i)) cycle
+         if (i == 2 .or. .not. (writes(i) .and. is_there(i))) cycle
          previous%path = path//trim(endings(i))
-         if (.not. plain_file_exists(previous%path)) cycle
          previous%exist = .true.
+         previous%has_hdf5 = i == 3
          if (i == 1) then
             call read_csv_identity(previous%path, previous%identity, is_ours)
             previous%identity%data = expected%data
          else
-            call read_identity(previous%path, previous%identity, is_ours, ignored)
+            call read_identity(previous%path, previous%identity, is_ours, damage)
          end if
          if (is_ours) then
             call check_same(previous%path, previous%identity, expected, previous%objection)
          else
             call raise(previous%objection, error_file, quoted_path(previous%path) &
                //' is not a file of results of vcor')
+            if (allocated(damage)) previous%objection%message = previous%objection%message//' (' &
+               //damage%message//')'
          end if
          return
       end do
@@ -91,7 +99,8 @@ contains
          error = previous%objection
          return
       end if
-      is_finished = .true.
+      is_finished = previous%is_whole
+      if (.not. is_finished) return
       if (size(request%names) > 0) then
          call remark(finished_text())
       else if (.not. request%quiet) then

@@ -12,8 +12,9 @@ module vcor_app_sweep
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
    use vcor, only : create_checkpoint, differs, error_input, error_numerical, error_t, &
-      failures_t, identity_of, integer_text, new_summary, number_of, open_checkpoint, &
-      plain_file_exists, point_pending, quoted_path, raise, rank_count, remove_file, share_error, &
+      failures_t, identity_of, identity_t, integer_text, move_file, new_summary, number_of, &
+      open_checkpoint, plain_file_exists, point_pending, quoted_path, raise, rank_count, &
+      read_points, read_results, remove_file, share_error, &
       share_flag, solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, &
       trajectory_t, write_stdout
    implicit none
@@ -95,14 +96,20 @@ contains
       is_unfinished = .false.
       if (watch%keeps) is_unfinished = plain_file_exists(watch%path)
       call look_back(job, watch%identity, previous)
-      if (.not. is_unfinished) then
-         call heed(request, previous, is_finished, error)
-         if (allocated(error) .or. is_finished) return
-      end if
       call new_summary(summary, job%part%count(), error)
       if (allocated(error)) return
+      if (.not. is_unfinished) then
+         if (request%resume .and. request%shards > 0) &
+            call look_into_shard(previous, watch, summary, is_unfinished, error)
+         if (.not. (is_unfinished .or. allocated(error))) &
+            call heed(request, previous, is_finished, error)
+         if (allocated(error) .or. is_finished) return
+      end if
       if (is_unfinished .and. request%resume) then
          call open_checkpoint(watch%file, watch%path, watch%identity, summary, error)
+      else if (request%resume .and. previous%has_hdf5) then
+         ! the text is missing: all points are there
+         call read_results(previous%path, summary, error)
       else if (is_unfinished) then
          call refuse_unfinished(watch%path, watch%identity, error)
          if (.not. allocated(error)) call remark(quoted_path(watch%path) &
@@ -123,6 +130,29 @@ contains
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
+
+   !> A shard may be finished and have points that are damaged: these are solved again
+   subroutine look_into_shard(previous, watch, summary, is_unfinished, error)
+      !> The shard, if it is there
+      type(previous_t), intent(in) :: previous
+      !> Who watches
+      type(watch_t), intent(in) :: watch
+      !> Room for its outcomes
+      type(summary_t), intent(inout) :: summary
+      !> Whether there is something to solve; then its file is that of an unfinished one
+      logical, intent(out) :: is_unfinished
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(identity_t) :: found
+
+      is_unfinished = .false.
+      if (.not. previous%exist .or. allocated(previous%objection)) return
+      call read_points(previous%path, found, summary, error, watch%identity)
+      if (allocated(error)) return
+      is_unfinished = any(summary%status == point_pending)
+      if (is_unfinished) call move_file(previous%path, watch%path, error)
+   end subroutine look_into_shard
 
    !> After the points: write the results, or say what ended the sweep
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)

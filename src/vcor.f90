@@ -13,12 +13,12 @@ module vcor
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint
-   use vcor_io_checkpoint_points, only : read_points
+   use vcor_io_checkpoint_points, only : read_points, read_results
    use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : remove_file, stderr_is_terminal, write_file, write_stdout, &
+   use vcor_io_file, only : move_file, remove_file, stderr_is_terminal, write_file, write_stdout, &
       write_terminal
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
@@ -117,7 +117,8 @@ module vcor
    public :: part_t, new_part, monitor_t, solve_part, new_grid
    public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
-   public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points
+   public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points, &
+      read_results
    public :: remark_t, write_summary
    public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, standard_input, fit_t, parameter_t, fit_material
@@ -130,7 +131,7 @@ module vcor
    public :: read_result, usual_kind, build_figure, draw
    public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
    public :: file_exists, directory_exists, plain_file_exists, quoted_path
-   public :: remove_file, stderr_is_terminal, write_terminal
+   public :: move_file, remove_file, stderr_is_terminal, write_terminal
    public :: control_in, name_flaw
    public :: real_text, integer_text, printable, nearest_name, suggestion, read_real
    public :: material_names

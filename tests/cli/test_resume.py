@@ -147,6 +147,48 @@ def test_resume_of_a_finished_one(vcor, only):
     vcor.refuses(*words, code=FILE, says=["another case", "beta = 1200", "beta = 900"])
 
 
+@pytest.mark.parametrize("missing", FILES)
+def test_resume_where_a_file_is_missing(vcor, missing):
+    """Of two files one is not finished."""
+    vcor.write(sweep_text(30))
+    reference = vcor("run", "case.nml", "--output", "ref")
+    shutil.copytree(vcor.folder / "ref", vcor.folder / "out")
+    (vcor.folder / "out" / missing).unlink()
+    done = vcor("run", "case.nml", "--output", "out", "--resume")
+    assert (done.code, done.err) == (NUMERICAL, reference.err)
+    assert done.out.replace("out/", "ref/") == reference.out
+    same_files(vcor.folder / "out", vcor.folder / "ref")
+
+
+@pytest.mark.parametrize("missing", ["case.h5", "case.csv", "case_summary.csv"])
+def test_resume_of_one_impact_where_a_file_is_missing(vcor, missing):
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--output", "ref")
+    shutil.copytree(vcor.folder / "ref", vcor.folder / "out")
+    (vcor.folder / "out" / missing).unlink()
+    vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
+    same_files(vcor.folder / "out", vcor.folder / "ref", [*FILES, "case.csv"])
+
+
+def test_hdf5_gets_its_name_last(vcor):
+    """Whenever a small sweep is killed: where the HDF5 file is there, so is the other."""
+    vcor.write(sweep_text(300))
+    vcor("run", "case.nml", "--output", "ref")
+    for number in range(25):
+        process = begin(vcor, "--quiet")
+        time.sleep(0.002 * number)
+        process.kill()
+        process.communicate()
+        found = vcor.folder / "out"
+        if (found / "case.h5").exists():
+            assert (found / "case_summary.csv").exists()
+        done = vcor("run", "case.nml", "--output", "out", "--quiet", "--resume")
+        assert done.code in {SUCCESS, NUMERICAL}
+        for name in FILES:
+            assert (found / name).read_bytes() == (vcor.folder / "ref" / name).read_bytes()
+        shutil.rmtree(found)
+
+
 def test_resume_of_one_impact(vcor):
     vcor.write(SLS)
     vcor.succeeds("run", "case.nml", "--resume")

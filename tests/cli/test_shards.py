@@ -2,12 +2,15 @@
 
 import shutil
 import signal
+import zlib
 
 import h5py
+import numpy
 import pytest
 from cases import SLS
+from damage import column_place
 from long_sweep import PART, interrupted, same_files, sweep_text, write_long_sweep
-from program import FILE, NUMERICAL, SUCCESS, USAGE
+from program import FILE, NAMES, NUMERICAL, SUCCESS, USAGE
 
 GOOD = SLS + "&sweep\n   parameter = 'impact.velocity'\n   start = 1\n   stop = 9\n   count = 17\n/\n"
 
@@ -99,6 +102,37 @@ def test_refused(vcor):
     with h5py.File(vcor.folder / two, "r+") as file:
         file["summary/cor"][3] = 0.5
     vcor.refuses("merge", one, two, three, code=FILE, says=[two, "not finished", "1 of its 6"])
+
+
+def test_every_bit_of_a_row(vcor):
+    """No flip of a single bit of a row passes unseen: each row has another one."""
+    places = {name: 64 for name in NAMES} | {"steps": 32, "status": 32, "check": 32}
+    bits = [(name, bit) for name, count in places.items() for bit in range(count)]
+    sweep = f"&sweep parameter = 'impact.velocity' start = 1 stop = 9 count = {len(bits)} /\n"
+    vcor.write(SLS + sweep)
+    vcor.succeeds("run", "case.nml", "--output", "ref")
+    (path,) = shards(vcor, 1)
+    shard = vcor.folder / path
+    whole = shard.read_bytes()
+    data = bytearray(whole)
+    for row, (name, bit) in enumerate(bits):
+        offset, dtype, _ = column_place(shard, name)
+        assert dtype.itemsize * 8 == places[name]
+        data[offset + row * dtype.itemsize + bit // 8] ^= 1 << bit % 8
+    shard.write_bytes(data)
+    vcor.refuses("merge", path, code=FILE, says=f"{len(bits)} of its {len(bits)} points")
+    # the sum is the one that others know
+    shard.write_bytes(whole)
+    with h5py.File(shard) as file:
+        rows = [file["summary"][name][:] for name in NAMES]
+        check = file["summary/check"][:].view(numpy.uint32)
+    for row in (0, len(bits) - 1):
+        assert zlib.crc32(b"".join(column[row].tobytes() for column in rows)) == check[row]
+    shard.write_bytes(data)
+    part = shard.with_name("case_shard_1_of_1.part.h5")
+    shard.rename(part)
+    vcor.succeeds("run", "case.nml", "--output", "out", "--shard", "1/1", "--resume")
+    assert shard.read_bytes() == whole
 
 
 def test_unfinished_shard(vcor):

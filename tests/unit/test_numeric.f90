@@ -1,10 +1,12 @@
 !> Quadrature, scalar product, linear systems, collocation
 program test_numeric
+   use, intrinsic :: iso_fortran_env, only : int32, int8
    use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : collocation_t, linear, new_collocation, panel_map_t, &
       width
+   use vcor_numeric_crc, only : crc_t, new_crc
    use vcor_numeric_dot, only : dot
    use vcor_numeric_legendre, only : gauss_nodes, legendre, radau_nodes
    use vcor_numeric_linear, only : apply, invert
@@ -42,6 +44,7 @@ program test_numeric
    call test_radau()
    call test_endpoint()
    call test_fourier()
+   call test_crc()
    call test_dot()
    call test_linear()
    call test_collocation()
@@ -49,6 +52,23 @@ program test_numeric
    call finish()
 
 contains
+
+   !> The check value of CRC-32, in one piece and in two of any length
+   subroutine test_crc()
+      integer :: i
+      integer(int8), parameter :: bytes(9) = int([(iachar('0') + i, i=1, 9)], int8)
+      ! 0xCBF43926 as a signed number
+      integer(int32), parameter :: expected = -873187034_int32
+      type(crc_t) :: crc
+      logical :: same
+
+      crc = new_crc()
+      same = .true.
+      do i = 0, 9
+         same = same .and. crc%of(bytes(i + 1:), crc%of(bytes(:i), 0_int32)) == expected
+      end do
+      call check(same, 'CRC-32 of 123456789')
+   end subroutine test_crc
 
    !> Legendre polynomials against their closed forms
    subroutine test_legendre()

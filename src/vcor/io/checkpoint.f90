@@ -28,6 +28,7 @@ module vcor_io_checkpoint
    use vcor_io_table, only : new_table, table_t
    use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
+   use vcor_numeric_crc, only : crc_t, new_crc
    use vcor_study_grid, only : grid_t
    use vcor_study_partition, only : part_t
    use vcor_study_quantity, only : quantities
@@ -45,6 +46,8 @@ module vcor_io_checkpoint
       type(c_ptr), private :: stream = c_null_ptr
       !> Where in the file each column begins [bytes]
       integer(c_int64_t), private :: offsets(columns) = 0_c_int64_t
+      !> Check sums
+      type(crc_t), private :: crc
    contains
       !> Whether there is a file
       procedure :: is_open
@@ -85,14 +88,16 @@ contains
       !> Set if the file cannot be written
       type(error_t), allocatable, intent(out) :: error
 
+      type(crc_t) :: crc
       type(table_t) :: table
       integer :: i, offset
 
+      crc = new_crc()
       call summary%blank_pending()
       call begin_table(table, identity, grid)
       offset = table%column_count
-      call add_column(table, 'check', [(check_of(summary, i), i = 1, size(summary%status))], '1', &
-         'check sum of the row; 0: pending')
+      call add_column(table, 'check', [(check_of(crc, summary, i), i = 1, size(summary%status))], &
+         '1', 'CRC-32 of the numbers of the summary in this row; 0: pending')
       do i = 1, size(quantities)
          call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
             trim(quantities(i)%unit), trim(quantities(i)%meaning))
@@ -100,7 +105,7 @@ contains
       call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
       call move_in_column(table, 'status', summary%status, '1', 'how the contact ended: -1 '// &
          'pending, 0 separated, 1 no_separation, 2 sticks, 3 invalid, 4 failed')
-      call write_hdf5(path, table, error=error, remarks=remarks_of(identity), plain=.true.)
+      call write_hdf5(path, table, error=error, remarks=remarks_of(identity), changing=columns)
       if (.not. allocated(table%fault)) then
          do i = 1, size(quantities)
             call move_alloc(table%columns(offset + 1 + i)%reals, summary%values(i)%at)
@@ -173,6 +178,7 @@ contains
       integer :: i
 
       self%path = path
+      self%crc = new_crc()
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, columns
@@ -230,7 +236,7 @@ contains
          c_loc(summary%status(first)), error)
       if (allocated(error)) return
       do i = 1, size(checks)
-         checks(i) = check_of(summary, first + i - 1)
+         checks(i) = check_of(self%crc, summary, first + i - 1)
       end do
       call write_at(self, self%offsets(check_column), storage_size(1)/8, first, last, &
          c_loc(checks), error)

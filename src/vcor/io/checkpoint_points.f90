@@ -3,19 +3,21 @@
 !> A point is done if its check sum is right. It is written last; after a crash of the machine the
 !> disk may have any part of what was written, in any order, and the sum tells.
 module vcor_io_checkpoint_points
-   use, intrinsic :: iso_c_binding, only : c_int64_t
+   use, intrinsic :: iso_fortran_env, only : int8
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_hdf5_dataset, only : read_numbers
+   use vcor_io_column, only : text_column, text_value
+   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset, read_numbers
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
-   use vcor_study_quantity, only : point_pending, quantities
+   use vcor_numeric_crc, only : crc_t, new_crc
+   use vcor_study_quantity, only : point_pending, quantities, status_code
    use vcor_study_summary, only : summary_t
    implicit none
    private
 
-   public :: read_points, check_of, dataset
+   public :: read_points, read_results, check_of, dataset
    public :: columns, steps_column, status_column, check_column
 
    !> The columns, that is the quantities, steps, status and check
@@ -38,6 +40,7 @@ contains
       !> What it should be about; nothing but this is read without it
       type(identity_t), intent(in), optional :: expected
 
+      type(crc_t) :: crc
       integer, allocatable :: checks(:)
       integer :: i
       logical :: is_ours
@@ -57,25 +60,38 @@ contains
          return
       end if
       allocate (checks(size(summary%status)))
-      call read_columns(path, summary, checks, error)
+      call read_columns(path, summary, error, checks)
       if (allocated(error)) return
+      crc = new_crc()
       do i = 1, size(checks)
-         if (checks(i) == check_of(summary, i)) cycle
+         if (checks(i) == check_of(crc, summary, i)) cycle
          summary%status(i) = point_pending
          summary%steps(i) = 0
       end do
    end subroutine read_points
 
-   !> Read all columns of a file
-   subroutine read_columns(path, summary, checks, error)
+   !> Read the results of a finished sweep, as its file has them
+   subroutine read_results(path, summary, error)
       !> Its path
       character(len=*), intent(in) :: path
       !> Outcomes, with room for all of its points
       type(summary_t), intent(inout) :: summary
-      !> Check sums, shape (points)
-      integer, intent(inout) :: checks(:)
       !> Error of code `error_file` if they cannot be read
       type(error_t), allocatable, intent(out) :: error
+
+      call read_columns(path, summary, error)
+   end subroutine read_results
+
+   !> Read all columns of a file
+   subroutine read_columns(path, summary, error, checks)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> Outcomes, with room for all of its points
+      type(summary_t), intent(inout) :: summary
+      !> Error of code `error_file` if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      !> Check sums, shape (points); a file without them has the status as text
+      integer, intent(inout), optional :: checks(:)
 
       type(reader_t) :: reader
       integer :: i
@@ -88,12 +104,42 @@ contains
       end do
       if (.not. allocated(error)) &
          call read_numbers(reader, dataset(steps_column), summary%steps, error)
-      if (.not. allocated(error)) &
-         call read_numbers(reader, dataset(status_column), summary%status, error)
-      if (.not. allocated(error)) call read_numbers(reader, dataset(check_column), checks, error)
+      if (.not. allocated(error)) then
+         if (present(checks)) then
+            call read_numbers(reader, dataset(status_column), summary%status, error)
+            if (.not. allocated(error)) &
+               call read_numbers(reader, dataset(check_column), checks, error)
+         else
+            call read_status(reader, summary%status, error)
+         end if
+      end if
       call close_hdf5(reader)
       if (allocated(error)) error%code = error_file
    end subroutine read_columns
+
+   !> Read the status of all points from their texts
+   subroutine read_status(reader, status, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Status, shape (points)
+      integer, intent(inout) :: status(:)
+      !> Set if it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(dataset_t) :: found
+      integer :: i
+
+      call read_dataset(reader, dataset(status_column), found, error)
+      if (allocated(error)) return
+      if (found%column%kind /= text_column .or. found%column%length /= size(status)) then
+         call raise(error, error_file, reader%path//": '"//dataset(status_column)//"' is not the " &
+            //'status of the points of this sweep')
+         return
+      end if
+      do i = 1, size(status)
+         status(i) = status_code(text_value(found%column, i))
+      end do
+   end subroutine read_status
 
    !> Path of the dataset of a column
    pure function dataset(column) result(path)
@@ -115,26 +161,28 @@ contains
       path = 'summary/'//path
    end function dataset
 
-   !> Check sum of a point
-   pure function check_of(summary, place) result(check)
+   !> Check sum of a point: CRC-32 of its numbers as the file has them, quantities, steps, status
+   pure function check_of(crc, summary, place) result(check)
+      !> Check sums
+      type(crc_t), intent(in) :: crc
       !> Outcomes
       type(summary_t), intent(in) :: summary
       !> Place of the point
       integer, intent(in) :: place
-      !> The sum; 0 where the point is pending, and nowhere else
+      !> The sum, 1 in place of 0; 0 where the point is pending, and nowhere else
       integer :: check
 
-      integer(c_int64_t) :: sum
+      integer(int8), parameter :: bytes(1) = 0_int8
+      real(wp) :: values(size(quantities))
       integer :: i
 
       check = 0
       if (summary%status(place) == point_pending) return
-      sum = int(summary%steps(place), c_int64_t)
-      sum = ieor(ishftc(sum, 11), int(summary%status(place), c_int64_t))
       do i = 1, size(quantities)
-         sum = ieor(ishftc(sum, 11), transfer(summary%values(i)%at(place), sum))
+         values(i) = summary%values(i)%at(place)
       end do
-      check = int(ibits(ieor(sum, ishft(sum, -31)), 0, 31))
+      check = crc%of([transfer(values, bytes), &
+         transfer([summary%steps(place), summary%status(place)], bytes)], 0)
       if (check == 0) check = 1
    end function check_of
 

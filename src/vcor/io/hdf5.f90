@@ -14,13 +14,16 @@
 !>
 !> The same tables give the same bytes.
 module vcor_io_hdf5
+   use, intrinsic :: iso_c_binding, only : c_int64_t
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
-   use hdf5, only : h5dclose_f, h5gclose_f, h5gcreate_f, hid_t
+   use hdf5, only : h5dclose_f, h5dget_storage_size_f, h5dopen_f, h5gclose_f, h5gcreate_f, hid_t, &
+      & hsize_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_hdf5_column, only : link_name, put_column
    use vcor_io_hdf5_image, only : close_image, note, nothing, open_image, put_attribute, &
       & put_number, write_image, writer_t
-   use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
+   use vcor_io_file, only : commit, discard, output_file_t
+   use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
    use vcor_io_table, only : check_table, table_t
    implicit none
@@ -49,7 +52,8 @@ contains
    !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error, remarks, plain, more, temporary)
+   subroutine write_hdf5(filename, summary, history, error, remarks, changing, more, temporary, &
+         & file)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -60,12 +64,16 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> More that describes the file, shape (n)
       type(remark_t), intent(in), optional :: remarks(:)
-      !> Whether all numbers are to be stored as they are, in one piece: false if it is not given
-      logical, intent(in), optional :: plain
+      !> Number of columns of the summary, the last ones, whose numbers will change where they are
+      !> in the file; if it is given, all columns are stored as they are, in one piece
+      integer, intent(in), optional :: changing
       !> Further tables, each with its name
       type(named_table_t), intent(in), optional :: more(:)
       !> Its name until it is complete, as in `create_file`
       character(len=*), intent(in), optional :: temporary
+      !> The file, complete, to be given its name by `commit`: it gets it at once without this
+      type(output_file_t), intent(out), optional :: file
+      type(output_file_t) :: own
       type(writer_t) :: writer
       type(handler_t) :: handler
       integer :: i
@@ -83,16 +91,59 @@ contains
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         if (present(plain)) writer%is_plain = plain
+         writer%is_plain = present(changing)
          call build(writer, summary, history, remarks, more)
-         call write_image(writer, filename, error, temporary)
+         if (present(changing)) call leave_out(writer, summary, changing)
+         call write_image(writer, own, filename, error, temporary)
          call close_image(writer)
          call end_hdf5(handler)
       end if
 
-      if (allocated(writer%fault) .and. .not. allocated(error)) call raise(error, error_file, &
-         & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
+      if (allocated(writer%fault) .and. .not. allocated(error)) then
+         call discard(own)
+         call raise(error, error_file, &
+            & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
+      end if
+      if (present(file)) then
+         file = own
+      else if (.not. allocated(error)) then
+         call commit(own, error)
+      end if
    end subroutine write_hdf5
+
+   !> Columns of the summary that will change are no part of the seal
+   subroutine leave_out(writer, summary, changing)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> The summary
+      type(table_t), intent(in) :: summary
+      !> Number of these columns
+      integer, intent(in) :: changing
+      integer(hid_t) :: dataset
+      integer(hsize_t) :: length
+      integer(c_int64_t) :: offset
+      integer :: i, place, status
+
+      if (allocated(writer%fault)) return
+      deallocate(writer%left_out)
+      allocate(writer%left_out(2, changing))
+      do i = 1, changing
+         associate (name => summary%columns(summary%column_count - changing + i)%name)
+            call h5dopen_f(writer%file, "summary/"//link_name(name), dataset, status)
+            call note(writer, status, "open '"//name//"'")
+            if (allocated(writer%fault)) return
+            offset = c_get_offset(int(dataset, c_int64_t))
+            call h5dget_storage_size_f(dataset, length, status)
+            call note(writer, min(status, merge(0, -1, offset >= 0)), "find '"//name//"'")
+            ! in ascending order: HDF5 may have them in another one
+            place = 1 + count(writer%left_out(1, :i-1) < offset)
+            writer%left_out(:, place+1:i) = writer%left_out(:, place:i-1)
+            writer%left_out(:, place) = [offset, int(length, c_int64_t)]
+            call h5dclose_f(dataset, status)
+            call note(writer, status, "close '"//name//"'")
+         end associate
+      end do
+   end subroutine leave_out
 
    !> Build the file in memory
    subroutine build(writer, summary, history, remarks, more)

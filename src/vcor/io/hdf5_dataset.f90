@@ -11,6 +11,7 @@ module vcor_io_hdf5_dataset
       & h5tclose_f, h5tget_class_f, hid_t
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_column, only : column_t, integer_column, real_column, text_column
+   use vcor_io_hdf5_library, only : c_get_offset
    use vcor_io_hdf5_reader, only : reader_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths, read_texts
    use vcor_kinds, only : wp
@@ -35,17 +36,6 @@ module vcor_io_hdf5_dataset
       module procedure read_reals
       module procedure read_integers
    end interface read_numbers
-
-   interface
-      !> Where in the file the numbers of a dataset begin that is stored in one piece
-      function c_get_offset(dataset) result(offset) bind(c, name="H5Dget_offset")
-         import :: c_int64_t
-         !> The dataset
-         integer(c_int64_t), intent(in), value :: dataset
-         !> Bytes before it, all bits set if there is none
-         integer(c_int64_t) :: offset
-      end function c_get_offset
-   end interface
 
 contains
 

@@ -6,18 +6,21 @@
 !>
 !> The first failure is kept; what comes after it does nothing.
 module vcor_io_hdf5_image
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, &
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int8_t, &
       & c_int64_t, c_loc, c_null_char, c_null_ptr, c_ptr
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5f_acc_trunc_f, h5f_close_strong_f, &
-      & h5f_scope_global_f, h5fclose_f, h5fcreate_f, h5fflush_f, h5fget_file_image_f, &
+      & h5f_libver_v18_f, h5f_scope_global_f, h5fclose_f, h5fcreate_f, h5fflush_f, &
+      & h5fget_file_image_f, &
       & h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
       & h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcreate_f, &
-      & h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_link_creation_order_f, &
+      & h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_libver_bounds_f, &
+      & h5pset_link_creation_order_f, &
       & h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5t_cset_utf8_f, &
       & h5t_ieee_f64le, h5t_native_double, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, &
       & h5z_filter_deflate_f, h5zfilter_avail_f, hid_t, size_t
    use vcor_error, only : error_t
-   use vcor_io_file, only : write_file
+   use vcor_io_file, only : create_file, output_file_t, put
+   use vcor_io_seal, only : seal_of
    use vcor_kinds, only : wp
    implicit none
    private
@@ -51,6 +54,8 @@ module vcor_io_hdf5_image
       logical :: compresses = .false.
       !> Whether nothing is to be compressed
       logical :: is_plain = .false.
+      !> What the seal of the file leaves out, as in `seal_of`
+      integer(c_int64_t), allocatable :: left_out(:, :)
       !> Type of text
       integer(hid_t) :: text_type = nothing
       !> What failed first; not allocated as long as nothing did
@@ -82,6 +87,7 @@ contains
       integer :: order, status
 
       order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
+      allocate(writer%left_out(2, 0))
 
       call h5pcreate_f(h5p_file_create_f, writer%file_creation, status)
       call note(writer, status, "make a property list")
@@ -106,6 +112,9 @@ contains
       call note(writer, status, "make a property list")
       call h5pset_fapl_core_f(writer%file_access, growth, .false., status)
       call note(writer, status, "keep a file in memory")
+      ! From 1.8 on HDF5 keeps check sums of what makes a file an HDF5 file
+      call h5pset_libver_bounds_f(writer%file_access, h5f_libver_v18_f, h5f_libver_v18_f, status)
+      call note(writer, status, "keep check sums")
       ! What is still open after a failure goes with the file
       call h5pset_fclose_degree_f(writer%file_access, h5f_close_strong_f, status)
       call note(writer, status, "keep a file in memory")
@@ -188,10 +197,13 @@ contains
       call note(writer, status, "close the attribute '"//name//"'")
    end subroutine put_number
 
-   !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory
-   subroutine write_image(writer, filename, error, temporary)
+   !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory; and
+   !> its seal
+   subroutine write_image(writer, file, filename, error, temporary)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
+      !> The file on the disk, complete, to be committed
+      type(output_file_t), intent(out) :: file
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
@@ -222,17 +234,19 @@ contains
          return
       end if
       call c_f_pointer(place, bytes, [length])
-      call write_bytes(length, bytes, writer, filename, error, temporary)
+      call write_bytes(length, bytes, writer, file, filename, error, temporary)
    end subroutine write_image
 
    !> Write bytes as one text
-   subroutine write_bytes(length, bytes, writer, filename, error, temporary)
+   subroutine write_bytes(length, bytes, writer, file, filename, error, temporary)
       !> Number of bytes
       integer(size_t), intent(in) :: length
       !> The bytes
-      character(len=length), intent(in) :: bytes(1)
+      character(len=length), intent(in), target :: bytes(1)
       !> Writer
       type(writer_t), intent(inout) :: writer
+      !> The file on the disk
+      type(output_file_t), intent(inout) :: file
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
@@ -240,11 +254,17 @@ contains
       !> Its name until it is complete, as in `create_file`
       character(len=*), intent(in), optional :: temporary
 
-      if (bytes(1)(:len(signature)) == signature) then
-         call write_file(filename, bytes(1), error, temporary)
-      else
+      integer(c_int8_t), pointer, contiguous :: numbers(:)
+
+      if (bytes(1)(:len(signature)) /= signature) then
          call note(writer, -1, "give the bytes of the file")
+         return
       end if
+      call create_file(file, filename, error, temporary)
+      if (.not. allocated(error)) call put(file, bytes(1), error)
+      if (allocated(error)) return
+      call c_f_pointer(c_loc(bytes), numbers, [length])
+      call put(file, seal_of(numbers, writer%left_out), error)
    end subroutine write_bytes
 
    !> Close whatever is open

@@ -5,7 +5,7 @@ module vcor_io_hdf5_library
    implicit none
    private
 
-   public :: handler_t, begin_hdf5, end_hdf5
+   public :: handler_t, begin_hdf5, end_hdf5, c_get_offset
 
    !> The error stack that H5E functions take by default (H5E_DEFAULT)
    integer(c_int64_t), parameter :: default_stack = 0_c_int64_t
@@ -46,6 +46,15 @@ module vcor_io_hdf5_library
          !> Negative on failure
          integer(c_int) :: status
       end function c_set_handler
+
+      !> Where in the file the numbers of a dataset begin that is stored in one piece
+      function c_get_offset(dataset) result(offset) bind(c, name="H5Dget_offset")
+         import :: c_int64_t
+         !> The dataset
+         integer(c_int64_t), intent(in), value :: dataset
+         !> Bytes before it, all bits set if there is none
+         integer(c_int64_t) :: offset
+      end function c_get_offset
    end interface
 
 contains

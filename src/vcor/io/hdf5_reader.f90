@@ -23,6 +23,7 @@ module vcor_io_hdf5_reader
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths
    use vcor_io_path, only : directory_exists, file_exists
+   use vcor_io_seal, only : check_seal
    use vcor_kinds, only : wp
    use vcor_study_text, only : printable, shortened
    implicit none
@@ -60,7 +61,8 @@ contains
       type(reader_t), intent(out) :: reader
       !> Its name
       character(len=*), intent(in) :: filename
-      !> Error of code `error_input` if it is no HDF5 file, `error_file` if it cannot be read
+      !> Error of code `error_input` if it is no HDF5 file, `error_file` if it is damaged or cannot
+      !> be read
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: fault
       integer :: status
@@ -76,6 +78,9 @@ contains
       else if (.not. file_exists(filename)) then
          call raise(error, error_file, reader%path//": there is no such file")
       end if
+      if (allocated(error)) return
+      ! before HDF5 sees anything of it
+      call check_seal(filename, error)
       if (allocated(error)) return
 
       call begin_hdf5(reader%handler, fault)

@@ -1,7 +1,9 @@
-!> The files of a summary, both at once where there are threads for it
+!> The files of a summary, both at once where there are threads for it. HDF5 gets its name last:
+!> where it is there, all is there
 module vcor_io_summary_files
    use vcor_error, only : error_t
    use vcor_io_csv, only : begin_csv, csv_file_t, end_csv, share_rows
+   use vcor_io_file, only : commit, discard, output_file_t
    use vcor_io_hdf5, only : remark_t, write_hdf5
    use vcor_io_table, only : row_count, table_t
    implicit none
@@ -31,6 +33,7 @@ contains
       !> The same of the HDF5 file
       character(len=*), intent(in), optional :: hdf5_part
       type(csv_file_t) :: file
+      type(output_file_t) :: image
       type(error_t), allocatable :: trouble
       integer :: team
 
@@ -39,15 +42,20 @@ contains
       if (len(csv) > 0) call begin_csv(file, csv, table, error, csv_part)
       if (allocated(error)) return
 !$omp parallel default(none) num_threads(team) &
-!$omp shared(file, csv, hdf5, hdf5_part, table, remarks, error, trouble)
+!$omp shared(file, csv, hdf5, hdf5_part, table, remarks, error, trouble, image)
 !$omp single
       if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks, &
-         temporary=hdf5_part)
+         temporary=hdf5_part, file=image)
 !$omp end single nowait
       if (len(csv) > 0) call share_rows(file, table, 1, row_count(table), error)
 !$omp end parallel
       if (file%is_open) call end_csv(file, error)
       if (.not. allocated(error) .and. allocated(trouble)) call move_alloc(trouble, error)
+      if (allocated(error)) then
+         call discard(image)
+      else if (len(hdf5) > 0) then
+         call commit(image, error)
+      end if
    end subroutine write_summary
 
 end module vcor_io_summary_files

@@ -9,7 +9,8 @@ module vcor_study_quantity
    private
 
    public :: quantity_t, quantities, history_quantities
-   public :: quantity_value, quantity_values, quantity_names, status_label, status_name
+   public :: quantity_value, quantity_values, quantity_names, status_label, status_name, &
+      status_code
    public :: status_t, statuses, point_pending, point_invalid, point_failed, longest_status
 
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
@@ -167,5 +168,20 @@ contains
       label = 'failed'
       if (i <= size(statuses)) label = statuses(i)%name
    end function status_label
+
+   !> Status by its name
+   pure function status_code(name) result(status)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> One of the `contact_*` and `point_*` constants; pending where there is no such name
+      integer :: status
+
+      integer :: i
+
+      status = point_pending
+      do i = 1, size(statuses)
+         if (statuses(i)%name == name) status = statuses(i)%code
+      end do
+   end function status_code
 
 end module vcor_study_quantity

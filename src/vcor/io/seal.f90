@@ -1,0 +1,201 @@
+!> The seal of a file: a check sum over all its bytes, behind its end
+!>
+!> HDF5 trusts what it reads: texts of variable length that are damaged end in its crash, or in a
+!> loop. So nothing of a damaged file may come to it. A file of this program ends with a seal, which
+!> HDF5 does not see, as a file may be longer than HDF5 knows:
+!>
+!>     first byte (from 0) and number of bytes of each part of the file that is left out, ascending
+!>     number of these parts
+!>     CRC-32 of all bytes before it but those
+!>     `vcorseal`
+!>
+!> Numbers are 64-bit integers, little endian. What is left out are the outcomes in the file of a
+!> sweep under way or a shard: each row of them has a check sum of its own. A program that changes
+!> the file through HDF5 cuts the seal off. Such a file, which ends where HDF5 says, is as good as
+!> one that another program has made.
+module vcor_io_seal
+   use, intrinsic :: iso_fortran_env, only : int32, int64, int8
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_numeric_crc, only : crc_t, new_crc
+   use vcor_study_text, only : printable
+   implicit none
+   private
+
+   public :: seal_of, check_seal
+
+   !> How a seal ends
+   character(len=8), parameter :: mark = 'vcorseal'
+   !> Bytes that are read at once
+   integer, parameter :: block_length = 65536
+   !> Bytes of a number, and of the part of a seal that is always there
+   integer, parameter :: word = 8, fixed = 3*word
+   !> One byte
+   integer(int8), parameter :: byte(1) = 0_int8
+
+contains
+
+   !> Seal of a file
+   function seal_of(bytes, left_out) result(seal)
+      !> All bytes of the file
+      integer(int8), intent(in), contiguous :: bytes(:)
+      !> First byte, from 0, and number of bytes of what is left out, ascending, shape (2, n)
+      integer(int64), intent(in) :: left_out(:, :)
+      !> What comes behind it
+      character(len=:), allocatable :: seal
+
+      type(crc_t) :: crc
+      integer(int64) :: numbers(2*size(left_out, 2) + 2), parts(2, size(left_out, 2) + 1)
+      integer(int32) :: sum
+      integer :: i, n
+
+      crc = new_crc()
+      sum = 0
+      parts = rest_of(left_out, size(bytes, kind=int64))
+      do i = 1, size(parts, 2)
+         sum = crc%of(bytes(parts(1, i):parts(2, i)), sum)
+      end do
+      n = size(numbers)
+      numbers = [reshape(left_out, [size(left_out)]), size(left_out, 2, kind=int64), 0_int64]
+      numbers(n) = unsigned(crc%of(transfer(numbers(:n - 1), byte), sum))
+      allocate (character(len=n*word + len(mark)) :: seal)
+      seal = transfer([transfer(numbers, byte), transfer(mark, byte)], seal)
+   end function seal_of
+
+   !> What is not left out of a file
+   pure function rest_of(left_out, length) result(parts)
+      !> What is left out, shape (2, n)
+      integer(int64), intent(in) :: left_out(:, :)
+      !> Bytes of the file
+      integer(int64), intent(in) :: length
+      !> First and last byte, from 1, of each part that is not, shape (2, n + 1)
+      integer(int64) :: parts(2, size(left_out, 2) + 1)
+      integer :: i
+
+      parts = reshape([1_int64, [(left_out(1, i), sum(left_out(:, i)) + 1, i=1, &
+         size(left_out, 2))], length], [2, size(left_out, 2) + 1])
+   end function rest_of
+
+   !> A check sum as a number that is not negative
+   pure function unsigned(sum) result(number)
+      !> The sum
+      integer(int32), intent(in) :: sum
+      !> The number
+      integer(int64) :: number
+
+      number = ibits(int(sum, int64), 0, 32)
+   end function unsigned
+
+   !> See whether a file is as this program has left it; one without a seal passes if it ends where
+   !> HDF5 says
+   subroutine check_seal(path, error)
+      !> Path of the file, which is there
+      character(len=*), intent(in) :: path
+      !> Error of code `error_file` if the file is damaged, unallocated otherwise
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(int64) :: bytes
+      integer :: status, unit
+      logical :: is_sound
+
+      open (newunit=unit, file=trim(path), access='stream', form='unformatted', status='old', &
+         action='read', iostat=status)
+      ! HDF5 says why
+      if (status /= 0) return
+      inquire (unit=unit, size=bytes)
+      if (has_seal(unit, bytes)) then
+         is_sound = is_sealed(unit, bytes)
+      else
+         is_sound = ends_well(unit, bytes)
+      end if
+      close (unit)
+      if (.not. is_sound) call raise(error, error_file, printable(path)//': this file is ' &
+         //'damaged: its check sum is wrong; remove it, and run what has made it once more')
+   end subroutine check_seal
+
+   !> Whether a file ends as one with a seal
+   function has_seal(unit, bytes) result(has)
+      !> The open file
+      integer, intent(in) :: unit
+      !> Its length
+      integer(int64), intent(in) :: bytes
+      !> Whether it does
+      logical :: has
+
+      character(len=len(mark)) :: found
+      integer :: status
+
+      has = .false.
+      if (bytes < fixed) return
+      read (unit, pos=bytes - len(mark) + 1, iostat=status) found
+      if (status == 0) has = found == mark
+   end function has_seal
+
+   !> Whether a seal is that of the file
+   function is_sealed(unit, bytes) result(is_sound)
+      !> The open file
+      integer, intent(in) :: unit
+      !> Its length
+      integer(int64), intent(in) :: bytes
+      !> Whether it is
+      logical :: is_sound
+
+      type(crc_t) :: crc
+      integer(int64), allocatable :: left_out(:, :), parts(:, :)
+      integer(int64) :: count, expected, length, start
+      integer(int8) :: block(block_length)
+      integer(int32) :: sum
+      integer :: i, status
+
+      is_sound = .false.
+      read (unit, pos=bytes - fixed + 1, iostat=status) count, expected
+      if (status /= 0 .or. count < 0 .or. count > (bytes - fixed)/(2*word)) return
+      ! bytes before the seal
+      length = bytes - fixed - 2*word*count
+      allocate (left_out(2, count), stat=status)
+      if (status == 0) allocate (parts(2, count + 1), stat=status)
+      if (status /= 0) return
+      if (count > 0) read (unit, pos=length + 1, iostat=status) left_out
+      if (status /= 0) return
+      if (any(left_out < 0) .or. any(left_out > length)) return
+      parts = rest_of(left_out, length)
+      if (any(parts(2, :) < parts(1, :) - 1)) return
+      crc = new_crc()
+      sum = 0
+      do i = 1, size(parts, 2)
+         do start = parts(1, i), parts(2, i), block_length
+            associate (part => block(:min(int(block_length, int64), parts(2, i) - start + 1)))
+               read (unit, pos=start, iostat=status) part
+               if (status /= 0) return
+               sum = crc%of(part, sum)
+            end associate
+         end do
+      end do
+      sum = crc%of(transfer([reshape(left_out, [size(left_out)]), count], byte), sum)
+      is_sound = expected == unsigned(sum)
+   end function is_sealed
+
+   !> Whether a file ends where HDF5 says, or does not say where it ends in the way of this program
+   function ends_well(unit, bytes) result(is_sound)
+      !> The open file
+      integer, intent(in) :: unit
+      !> Its length
+      integer(int64), intent(in) :: bytes
+      !> Whether it does
+      logical :: is_sound
+
+      ! superblock of HDF5 1.8: 8 bytes that every file begins with, version, sizes of places and
+      ! lengths, flags, then places: where the file begins, of an extension, where it ends
+      integer, parameter :: versions(2) = [2, 3], at_version = 9, at_end = 29
+      integer(int8) :: version
+      integer(int64) :: end_of_file
+      integer :: status
+
+      is_sound = .true.
+      if (bytes < at_end + word) return
+      read (unit, pos=at_version, iostat=status) version
+      if (status /= 0 .or. all(versions /= version)) return
+      read (unit, pos=at_end, iostat=status) end_of_file
+      if (status == 0) is_sound = end_of_file == bytes
+   end function ends_well
+
+end module vcor_io_seal

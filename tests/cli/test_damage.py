@@ -1,0 +1,51 @@
+"""Damaged HDF5 files end with one line, or with the right results."""
+
+import h5py
+import pytest
+from damage import SHARDS, TARGETS, make_files, trials
+from program import FILE, NUMERICAL, SUCCESS, Vcor
+
+
+@pytest.fixture(scope="module")
+def pristine(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pristine")
+    make_files(folder)
+    return folder
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_damage(pristine, seed):
+    found, faults = trials(pristine, 15 * len(TARGETS), seed)
+    assert not faults
+    assert sum(ends["refused"] for ends in found.values()) > 0
+
+
+@pytest.mark.parametrize("name", ["case.h5", "one.h5", "one_material.h5"])
+def test_what_others_do_to_a_file(pristine, tmp_path, name):
+    """HDF5 takes the seal off: a file that a user has added to is drawn as before."""
+    vcor = Vcor(tmp_path)
+    path = tmp_path / name
+    path.write_bytes((pristine / "out" / name).read_bytes())
+    assert path.read_bytes().endswith(b"vcorseal")
+    with h5py.File(path, "r+") as file:
+        file.attrs["remark"] = "looks good"
+    assert b"vcorseal" not in path.read_bytes()
+    words = ["--kind", "map"] if name == "case.h5" else []
+    vcor.succeeds("plot", name, *words, "--output", "figure.svg")
+
+
+def test_damaged_shard_is_finished_again(pristine, tmp_path):
+    """Of a shard that is finished --resume solves the points that are damaged."""
+    vcor = Vcor(tmp_path)
+    (tmp_path / "out").mkdir()
+    for name in ["case.nml", *SHARDS]:
+        (tmp_path / name).write_bytes((pristine / name).read_bytes())
+    with h5py.File(tmp_path / SHARDS[0]) as file:
+        place = file["summary/cor"].id.get_offset()
+    data = bytearray((tmp_path / SHARDS[0]).read_bytes())
+    data[place + 15 * 8 + 6] ^= 2
+    (tmp_path / SHARDS[0]).write_bytes(data)
+    vcor.refuses("merge", *SHARDS, code=FILE, says="--resume")
+    done = vcor("run", "case.nml", "--output", "out", "--shard", "1/2", "--resume")
+    assert done.code in {SUCCESS, NUMERICAL}
+    assert (tmp_path / SHARDS[0]).read_bytes() == (pristine / SHARDS[0]).read_bytes()
