@@ -5,7 +5,7 @@ module vcor_app_run
    use vcor_app_files, only : write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
-   use vcor_app_screen, only : report, short
+   use vcor_app_screen, only : report, short, significant
    use vcor_app_sweep, only : run_sweep
    use vcor, only : contact_lasting, contact_separated, data_file, error_numerical, error_t, &
       identity_of, identity_t, integer_text, new_summary, outcome_t, raise, share_error, &
@@ -64,11 +64,16 @@ contains
       call new_summary(summary, 1, error)
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
+      call summary%put(1, outcome)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
+         ! there is no course that could be written
+         call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
+         if (error%code == error_numerical .and. size(request%names) > 0) &
+            call write_numbers(request, table, trouble)
+         if (allocated(trouble)) call move_alloc(trouble, error)
          return
       end if
-      call summary%put(1, outcome)
       call end_of(job, outcome, worker%trajectory, error)
 
       call warn_of_bands(job, summary)
@@ -79,7 +84,8 @@ contains
       else if (size(request%names) > 0) then
          call write_numbers(request, table, trouble)
       else if (.not. request%quiet) then
-         call write_stdout(report(job%case%source, identity%title, job%method, outcome, &
+         call write_stdout(report(job%case%source, identity%title, &
+            method_of(job, worker%trajectory), outcome, &
             worker%trajectory%state(1, worker%trajectory%last), &
             kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
             //as_line(replaced(previous))), trouble)
@@ -90,6 +96,20 @@ contains
          call remark(replaced(previous))
       end if
    end subroutine run_impact
+
+   !> The method that solved an impact
+   function method_of(job, trajectory) result(method)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Course of its impact
+      type(trajectory_t), intent(in) :: trajectory
+      !> ive or direct
+      character(len=:), allocatable :: method
+
+      method = job%method
+      ! auto hands over where ive fails
+      if (trajectory%stages == 0) method = 'direct'
+   end function method_of
 
    !> What there is to say as a line of the report
    pure function as_line(words) result(text)
@@ -128,6 +148,9 @@ contains
 
       text = ''
       if (outcome%status /= contact_separated) return
+      if (outcome%misses()) call add('the estimated error, ' &
+         //short(max(outcome%cor_error, outcome%cor_sphere_error)) &
+         //', is above the accuracy asked for, '//short(outcome%accuracy))
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
       call job%case%get('sphere', 'radius', radius)
@@ -190,19 +213,34 @@ contains
       !> Error of code `error_numerical`; unallocated where the bodies separated
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: time
+      ! An elastic plate leaves 0.68/lambda^5 of the velocity where lambda > 3. That is below 3e-3
+      ! there, and below 1e-7, which counts as sticking, beyond 23: no longer time helps then
+      real(wp), parameter :: light = 3.0_wp, lightest = 23.0_wp, share = 0.68_wp
+      character(len=:), allocatable :: time, too_light, reason
+      real(wp) :: lambda
 
       if (outcome%status == contact_separated) return
-      time = short(trajectory%state(1, trajectory%last))
+      associate (last => trajectory%state(1, trajectory%last))
+         time = short(last)
+         lambda = job%impact%lasting_inelasticity(last)
+      end associate
+      too_light = 'the plate is too light: with an inelasticity lambda of ' &
+         //trim(adjustl(significant(lambda, 3)))//' in so long a contact it takes up the blow, ' &
+         //'and about 0.68/lambda^5 = '//short(share/max(lambda, light)**5) &
+         //' of the velocity comes back; take a larger plate.half_thickness or a lighter sphere'
       if (outcome%status == contact_lasting) then
+         reason = 'give a longer solver.end_time; with method direct a contact shorter than its ' &
+            //'steps is missed, give a shorter solver.time_step'
+         if (lambda > lightest) reason = too_light
          call raise(error, error_numerical, job%case%source//': the bodies do not separate ' &
-            //'within '//time//' s: give a longer solver.end_time; with method direct a ' &
-            //'contact shorter than its steps is missed, give a shorter solver.time_step')
+            //'within '//time//' s: '//reason)
       else
+         reason = 'the losses in the material leave no rebound'
+         if (.not. job%impact%modulus%rubbery() > 0.0_wp) &
+            reason = 'the material, without equilibrium modulus, does not push it back'
+         if (lambda > light) reason = too_light
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &
-            //time//' s all motion has died out in contact; the plate takes up the blow ' &
-            //'(inelasticity '//short(job%impact%inelasticity())//') or the material, without ' &
-            //'equilibrium modulus, does not push it back')
+            //time//' s all motion has died out in contact; '//reason)
       end if
    end subroutine end_of
 

@@ -33,9 +33,10 @@ contains
       logical :: history
 
       text = heading(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, ' &
-         //job%method//nl &
+         //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
+      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
       call job%case%get('output', 'history', history)
       if (history .and. any(job%writes)) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
@@ -57,10 +58,26 @@ contains
       character(len=:), allocatable :: text
 
       text = heading(job, title)//'  '//integer_text(job%part%count())//' of ' &
-         //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', '//job%method//nl
+         //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', ' &
+         //method_shown(job)//nl
       if (failures%count > 0) text = text//nl//reasons(job, failures)
+      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
       text = text//nl//'  written '//path//nl//nl
    end function shard_report
+
+   !> The method of the points: with auto each has its own
+   function method_shown(job) result(method)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> auto, ive or direct
+      character(len=:), allocatable :: method
+
+      character(len=:), allocatable :: wanted
+
+      call job%case%get('solver', 'method', wanted)
+      method = job%method
+      if (wanted == 'auto' .and. method == 'ive') method = wanted
+   end function method_shown
 
    !> Program, case, title and what is swept
    function heading(job, title) result(text)
@@ -159,6 +176,22 @@ contains
          end associate
       end do
    end function reasons
+
+   !> How many points are less accurate than asked for
+   function inexact(job, failures) result(text)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> What there is to say of the points
+      type(failures_t), intent(in) :: failures
+      !> Lines
+      character(len=:), allocatable :: text
+
+      text = '  note: '//integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
+         //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
+         //'asked for'//nl &
+         //'            first at point '//integer_text(failures%first_inexact)//': ' &
+         //coordinates(job, failures%first_inexact)//nl
+   end function inexact
 
    !> Parameters of a point
    function coordinates(job, point) result(text)

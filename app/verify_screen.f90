@@ -59,8 +59,8 @@ contains
       text = 'vcor '//version//'  '//filename//nl
       if (len_trim(title) > 0) text = text//trim(title)//nl
       text = text//nl//attempts_text(comparison)
-      if (.not. comparison%two_methods) text = text//'  note: the contact modulus is no sum of ' &
-         //'exponentials, so there is no method ive beside direct'//nl
+      if (.not. comparison%two_methods) text = text//'  note: method ive has no result that is ' &
+         //'accurate enough, so direct stands alone'//nl
       if (comparison%separated) then
          text = text//nl//values_text(comparison)//nl//differences_text(comparison)
       else if (.not. allocated(comparison%objection)) then

@@ -43,7 +43,8 @@ module vcor
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_table, only : new_tabulated, tabulated_t
-   use vcor_solver, only : default_accuracy, method_for, new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : default_accuracy, method_for, new_solver, solve_impact, &
+      solver_settings_t, solver_t
    use vcor_study_axes, only : new_grid
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
@@ -96,7 +97,7 @@ module vcor
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: waves_hereditary
    public :: impact_t, new_impact, law_boltzmann, law_receding
-   public :: solver_t, solver_settings_t, new_solver, method_for, default_accuracy
+   public :: solver_t, solver_settings_t, new_solver, solve_impact, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate
    public :: case_t, read_case, read_case_text, override, refuse_unread, read_data, data_file

@@ -3,14 +3,16 @@ module vcor_solver
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_problem, only : impact_t, law_receding
    use vcor_kinds, only : wp
+   use vcor_solver_auto, only : auto_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_marching, only : marching_t, new_marching
    use vcor_solver_product, only : new_product, product_t
+   use vcor_solver_solution, only : solve_impact
    use vcor_solver_type, only : solver_t
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, new_solver, check_settings, method_for
+   public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
    public :: receding_without_second_term, receding_without_papers_scheme, &
       receding_without_ghost, hereditary_without_papers_scheme
@@ -67,7 +69,8 @@ module vcor_solver
 
 contains
 
-   !> The method: `auto` is ive but where a scheme other than product is asked for
+   !> The method: `auto` is ive, which hands over to direct where it fails, but direct where a
+   !> scheme other than product is asked for
    pure function method_for(method, scheme) result(name)
       !> What the user asks for: auto, ive or direct
       character(len=*), intent(in) :: method
@@ -183,26 +186,36 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(auto_t), allocatable :: auto
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
       type(marching_t), allocatable :: marching
       character(len=longest_method) :: method
       real(wp) :: accuracy
 
-      accuracy = settings%accuracy
       call find_method(settings%method, settings%scheme, method)
       select case (method)
       case ('ive')
-         if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
          allocate (ive)
-         call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &
-            settings%ghost)
-         if (.not. allocated(error)) call move_alloc(ive, solver)
+         call new_ive(ive, accuracy_for('ive'), settings%end_time, error, &
+            settings%second_coefficient, settings%ghost)
+         if (allocated(error)) return
+         if (settings%method == 'auto') then
+            allocate (auto)
+            auto%ive = ive
+            ! the time step is that of a method which the user has not asked for
+            call new_product(auto%product, 0.0_wp, accuracy_for('direct'), settings%end_time, &
+               settings%second_coefficient, settings%ghost)
+            call move_alloc(auto, solver)
+         else
+            call move_alloc(ive, solver)
+         end if
       case ('direct')
          select case (settings%scheme)
          case ('product')
-            if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('direct')
             allocate (product)
+            accuracy = accuracy_for('direct')
+            if (settings%time_step > 0.0_wp) accuracy = settings%accuracy
             call new_product(product, settings%time_step, accuracy, settings%end_time, &
                settings%second_coefficient, settings%ghost)
             call move_alloc(product, solver)
@@ -210,7 +223,7 @@ contains
             allocate (marching)
             call new_marching(marching, settings%time_step, settings%end_time, &
                trim(settings%form), trim(settings%quadrature), error, settings%second_coefficient, &
-               settings%ghost)
+               settings%ghost, settings%accuracy)
             if (.not. allocated(error)) call move_alloc(marching, solver)
          case default
             call raise(error, error_input, "unknown scheme '"//trim(settings%scheme) &
@@ -220,6 +233,19 @@ contains
          call raise(error, error_input, "unknown method '"//trim(settings%method) &
             //"'; known: auto, ive, direct")
       end select
+
+   contains
+
+      !> The accuracy asked for, or that of a method
+      pure function accuracy_for(name)
+         !> ive or direct
+         character(len=*), intent(in) :: name
+         !> Accuracy [-]
+         real(wp) :: accuracy_for
+
+         accuracy_for = settings%accuracy
+         if (.not. accuracy_for > 0.0_wp) accuracy_for = default_accuracy(name)
+      end function accuracy_for
    end subroutine new_solver_for_all
 
 end module vcor_solver

@@ -5,7 +5,7 @@ from itertools import product
 
 import h5py
 import pytest
-from cases import SLS, edit
+from cases import SLS, case_text, edit
 from program import FILE, INPUT, NAMES, NUMERICAL, complaint, contents
 
 FLAGS = list(product([True, False], repeat=3))
@@ -239,6 +239,26 @@ def test_velocity_beyond_the_numbers(sls):
     """Its energy would overflow: refused, not taken for a sphere that sticks."""
     done = sls("run", "case.nml", "--set", "impact.velocity=1e200")
     complaint(done, INPUT, "beyond", at="case.nml:8")
+
+
+@pytest.mark.parametrize("waves", ["constant", "relaxing", "frozen", "hereditary"])
+@pytest.mark.parametrize("thickness, status", [(1e-3, None), (3e-4, "no_separation")])
+def test_plate_too_light(sls, waves, thickness, status):
+    """It runs away from the sphere, whatever time it is given."""
+    sets = ["--set", f"plate.waves={waves}", "--set", f"plate.half_thickness={thickness}"]
+    done = sls("run", "case.nml", *sets, "--print", "status")
+    assert done.out.strip() in ({status} if status else {"sticks", "no_separation"})
+    line = complaint(done, NUMERICAL, ["the plate is too light", "lambda", "0.68/lambda^5"])
+    assert "end_time" not in line
+
+
+def test_rebound_from_a_light_plate(vcor):
+    """Where lambda is large, the elastic sphere on Zener's plate keeps 0.68/lambda^5."""
+    vcor.write(case_text("elastic"))
+    for thickness in (3.5e-3, 2.5e-3):
+        numbers = vcor.numbers("case.nml", "--set", f"plate.half_thickness={thickness}")
+        scaled = float(numbers["cor"]) * float(numbers["inelasticity"]) ** 5
+        assert scaled == pytest.approx(0.679, abs=2e-3)
 
 
 @pytest.mark.parametrize("path", ["plate.half_thickness", "rubber.density"])

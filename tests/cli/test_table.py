@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from cases import HEAD, MODELS, edit
-from program import FILE, INPUT
+from program import FILE, INPUT, NUMERICAL, complaint
 
 # The plate is BUTYL as in MODELS["prony"], by its points
 TABLE = HEAD + "   model = 'table'\n   file = 'data.csv'\n/\n"
@@ -382,3 +382,53 @@ def test_ten_thousand_points(table):
     time = np.logspace(-7, 1, 10_000)
     table.write("\n".join(rows((time, modulus(time)))), "data.csv")
     assert cor(table) == pytest.approx(expected, abs=2e-5)
+
+
+def falling(first, n=40):
+    """Data of a modulus that falls as a power of the time, from `first` to 10 s."""
+    time = np.logspace(np.log10(first), 1, n)
+    return "\n".join(rows((time, 1e7 * (time / first) ** -0.3))) + "\n"
+
+
+@pytest.mark.parametrize("first", [1e-3, 1e-2])
+def test_data_that_begin_after_the_contact(table, first):
+    """No sum of exponentials stands for the modulus: auto takes the method that works, which ive is
+    not, and says so nowhere but where it names the method."""
+    table.write(falling(first), "data.csv")
+    direct = ["--set", "solver.method=direct"]
+    auto = table.numbers("case.nml")
+    assert auto == table.numbers("case.nml", *direct)
+    fine = table.numbers("case.nml", *direct, "--set", "solver.accuracy=1e-8")
+    assert abs(float(auto["cor"]) - float(fine["cor"])) < 1e-6
+    assert "\n  direct, " in table.succeeds("run", "case.nml")
+    assert "so direct stands alone" in table.succeeds("verify", "case.nml")
+    done = table("run", "case.nml", "--set", "solver.method=ive", "--print", "cor,cor_error,status")
+    assert (done.code, done.out) == (NUMERICAL, "nan nan failed\n")
+    complaint(done, NUMERICAL, ["method = 'direct'"], at="case.nml")
+
+
+def test_data_that_begin_after_the_contacts_of_a_sweep(table):
+    table.write(TABLE + "&sweep parameter = 'impact.velocity', values = 1, 5 /\n")
+    table.write(falling(1e-3), "data.csv")
+    words = ["run", "case.nml", "--print", "cor,status"]
+    found = table.succeeds(*words)
+    assert found == table.succeeds(*words, "--set", "solver.method=direct")
+    done = table(*words, "--set", "solver.method=ive")
+    assert (done.code, done.out) == (NUMERICAL, "nan failed\n" * 2)
+    assert "2 of 2 points without result" in done.err
+
+
+def test_error_above_the_accuracy(table):
+    """A result that is less accurate than asked for has a note, one that is a hundred times less is
+    none."""
+    ive = ["--set", "solver.method=ive", "--set"]
+    error = float(table.numbers("case.nml", *ive, "solver.accuracy=1e-2")["cor_error"])
+    assert 1e-7 < error < 1e-4
+    note = "above the accuracy asked for"
+    for share, code, notes in [(1.1, 0, 0), (0.9, 0, 1), (0.011, 0, 1), (0.009, NUMERICAL, 0)]:
+        done = table("run", "case.nml", *ive, f"solver.accuracy={share * error}")
+        assert (done.code, done.out.count(note)) == (code, notes)
+    table.write(TABLE + "&sweep parameter = 'impact.velocity', values = 10, 20 /\n")
+    words = ["run", "case.nml", "--output", "other"]
+    out = table.succeeds(*words, *ive, f"solver.accuracy={0.1 * error}")
+    assert f"2 of 2 points have an estimated error {note}" in out

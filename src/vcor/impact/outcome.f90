@@ -1,5 +1,6 @@
 !> Outcome of an impact: the numbers that users ask for
 module vcor_impact_outcome
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : pi
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
@@ -55,6 +56,13 @@ module vcor_impact_outcome
       real(wp) :: cor_error = 0.0_wp
       !> Estimate of the error of `cor_sphere` [-]
       real(wp) :: cor_sphere_error = 0.0_wp
+      !> Accuracy of both that was asked for [-]; 0: none was
+      real(wp) :: accuracy = 0.0_wp
+   contains
+      !> Whether all numbers are finite
+      procedure :: is_finite
+      !> Whether the error is above the accuracy that was asked for
+      procedure :: misses
    end type outcome_t
 
 contains
@@ -104,6 +112,33 @@ contains
       outcome%loss_tangent = aimag(modulus)/real(modulus, wp)
       outcome%cor_error = trajectory%cor_error
       outcome%cor_sphere_error = trajectory%cor_sphere_error
+      outcome%accuracy = trajectory%accuracy
    end function evaluate
+
+   !> Whether all numbers are finite: energies, for one, can leave the range of the numbers
+   pure function is_finite(self)
+      !> The outcome, of a separation
+      class(outcome_t), intent(in) :: self
+      !> Whether they are
+      logical :: is_finite
+
+      is_finite = all(ieee_is_finite([self%cor, self%cor_sphere, self%contact_time, &
+         self%max_indentation, self%time_of_max_indentation, self%max_force, &
+         self%time_of_max_force, self%residual_indentation, self%residual_ratio, &
+         self%hysteresis_energy, self%wave_energy, self%initial_energy, self%final_energy, &
+         self%energy_imbalance, self%min_frequency, self%inelasticity, self%loss_tangent, &
+         self%cor_error, self%cor_sphere_error]))
+   end function is_finite
+
+   !> Whether the estimated error is above the accuracy that was asked for
+   pure function misses(self)
+      !> The outcome, of a separation
+      class(outcome_t), intent(in) :: self
+      !> Whether it is
+      logical :: misses
+
+      misses = self%accuracy > 0.0_wp .and. &
+         max(self%cor_error, self%cor_sphere_error) > self%accuracy
+   end function misses
 
 end module vcor_impact_outcome

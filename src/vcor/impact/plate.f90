@@ -43,6 +43,7 @@ module vcor_impact_plate
       !> Plate parameter alpha(t)
       procedure :: alpha
       procedure :: alpha_at
+      procedure :: alpha_after
       !> d alpha/dt
       procedure :: alpha_rate
       !> Both
@@ -146,6 +147,20 @@ contains
          value = self%initial
       end if
    end subroutine alpha_at
+
+   !> Plate parameter after a time: alpha, or what a plate that remembers the force makes of a
+   !> constant one
+   elemental function alpha_after(self, t) result(value)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Time since first contact [s], t > 0
+      real(wp), intent(in) :: t
+      !> Deflection per impulse [m/(N s)]
+      real(wp) :: value
+
+      value = self%alpha(t)
+      if (self%hereditary()) value = value + self%memory_integral(t)
+   end function alpha_after
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
    elemental function frozen(self)

@@ -70,6 +70,8 @@ module vcor_impact_problem
       procedure :: patience
       !> Zener's parameter lambda
       procedure :: inelasticity
+      !> The same for what plate and kernel are during the contact
+      procedure :: lasting_inelasticity
       !> Kinetic energy of the sphere before the impact
       procedure :: initial_energy
    end type impact_t
@@ -301,6 +303,21 @@ contains
       if (firmness <= huge(1.0_wp)) lambda = self%plate%alpha(0.0_wp)*self%mass &
          *(firmness*sqrt(self%velocity)/self%mass)**0.4_wp
    end function inelasticity
+
+   !> Zener's parameter with alpha after a time and the mean of the kernel up to there: how light
+   !> the plate is for the sphere in a contact that lasts, whether or not the kernel is finite at
+   !> t = 0
+   pure function lasting_inelasticity(self, time) result(lambda)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Time since first contact [s], > 0
+      real(wp), intent(in) :: time
+      !> Parameter [-]
+      real(wp) :: lambda
+
+      lambda = self%plate%alpha_after(time)*self%mass &
+         /self%hertz_time((self%kernel_integral(time) + self%kernel_viscosity())/time)
+   end function lasting_inelasticity
 
    !> Kinetic energy of the sphere before the impact, m v0^2/2
    pure function initial_energy(self) result(energy)

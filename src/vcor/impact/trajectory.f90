@@ -1,5 +1,6 @@
 !> Course of an impact, as every solver returns it
 module vcor_impact_trajectory
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_kinds, only : wp
    implicit none
    private
@@ -64,6 +65,8 @@ module vcor_impact_trajectory
       real(wp) :: cor_error = 0.0_wp
       !> The same of that of the sphere alone [-]
       real(wp) :: cor_sphere_error = 0.0_wp
+      !> Accuracy of both that was asked for [-]; 0: none was, the time step is the user's
+      real(wp) :: accuracy = 0.0_wp
       !> Exponentials that stood for a kernel that is no finite sum of them; 0: it was taken as it
       !> is
       integer :: kernel_terms = 0
@@ -85,6 +88,8 @@ module vcor_impact_trajectory
       procedure :: add_map
       !> Whether all motion has died out
       procedure :: is_stuck
+      !> Whether the error is far above the accuracy that was asked for
+      procedure :: misses_by_far
       !> State at equal steps of time
       procedure :: sample
    end type trajectory_t
@@ -151,6 +156,24 @@ contains
             <= negligible*0.5_wp*mass*first(col_velocity)**2
       end associate
    end function is_stuck
+
+   !> Whether the estimated error is so far above the accuracy that was asked for that the result is
+   !> none
+   pure function misses_by_far(self)
+      !> The trajectory, ended in separation
+      class(trajectory_t), intent(in) :: self
+      !> Whether it is
+      logical :: misses_by_far
+
+      real(wp), parameter :: far = 100.0_wp
+
+      misses_by_far = self%accuracy > 0.0_wp
+      if (.not. misses_by_far) return
+      misses_by_far = .not. (ieee_is_finite(self%cor_error) &
+         .and. ieee_is_finite(self%cor_sphere_error))
+      if (.not. misses_by_far) misses_by_far = &
+         max(self%cor_error, self%cor_sphere_error) > far*self%accuracy
+   end function misses_by_far
 
    !> State at equal steps of time from first contact to the final node: interpolated by the
    !> collocation polynomials, or the nodes themselves where the solver works in equal steps

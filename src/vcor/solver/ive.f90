@@ -70,6 +70,8 @@ module vcor_solver_ive
       private
       !> Wanted accuracy of the coefficient of restitution [-]
       real(wp) :: accuracy = 1.0e-8_wp
+      !> The same as it was asked for, which may be looser than what is worked to [-]
+      real(wp) :: asked = 1.0e-8_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp) :: end_time = 0.0_wp
       !> Go on after the separation
@@ -98,6 +100,7 @@ contains
       logical, intent(in), optional :: ghost
 
       self%accuracy = min(accuracy, loosest)
+      self%asked = accuracy
       self%end_time = end_time
       if (present(ghost)) self%ghost = ghost
       call new_collocator(self%collocator, self%accuracy, error)
@@ -153,6 +156,7 @@ contains
          trajectory%cor_error = trajectory%cor_error + error_of_sums
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
+      trajectory%accuracy = self%asked
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error

@@ -25,6 +25,8 @@ module vcor_solver_marching
       private
       !> Time step [s]; 0: a part of the expected contact time
       real(wp) :: time_step = 0.0_wp
+      !> Accuracy that the result is held against [-]; 0: none
+      real(wp) :: accuracy = 0.0_wp
       !> Scheme but for its step
       type(scheme_t) :: scheme
       !> Go on after the separation
@@ -37,7 +39,7 @@ contains
 
    !> Build the solver
    pure subroutine new_marching(self, time_step, end_time, form, quadrature, error, &
-                                second_coefficient, ghost)
+                                second_coefficient, ghost, accuracy)
       !> The solver
       type(marching_t), intent(out) :: self
       !> Time step [s]; 0: a 3000th of the expected contact time
@@ -54,6 +56,8 @@ contains
       real(wp), intent(in), optional :: second_coefficient
       !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
       logical, intent(in), optional :: ghost
+      !> Accuracy that the result is held against [-]; absent or 0: none
+      real(wp), intent(in), optional :: accuracy
 
       if (form /= 'a' .and. form /= 'b') then
          call raise(error, error_input, "unknown form '"//form//"'; known: a, b")
@@ -70,6 +74,7 @@ contains
       if (quadrature == 'trapezoid') self%scheme%share = 0.5_wp
       if (present(second_coefficient)) self%scheme%second_coefficient = second_coefficient
       if (present(ghost)) self%ghost = ghost
+      if (present(accuracy)) self%accuracy = accuracy
    end subroutine new_marching
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
@@ -224,6 +229,7 @@ contains
       end select
       trajectory%cor_error = estimate(1)
       trajectory%cor_sphere_error = estimate(2)
+      trajectory%accuracy = self%accuracy
 
    contains
 

@@ -43,7 +43,7 @@ module vcor_solver_product
       private
       !> Time step [s]; 0: refined until the accuracy is reached
       real(wp) :: time_step = 0.0_wp
-      !> Wanted accuracy of the coefficient of restitution [-]
+      !> Wanted accuracy of the coefficient of restitution [-]; 0: none, the time step is given
       real(wp) :: accuracy = 1.0e-6_wp
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp) :: end_time = 0.0_wp
@@ -63,7 +63,8 @@ contains
       type(product_t), intent(out) :: self
       !> Time step [s]; 0: refined until the accuracy is reached
       real(wp), intent(in) :: time_step
-      !> Wanted accuracy of the coefficient of restitution, > 0
+      !> Wanted accuracy of the coefficient of restitution, > 0; with a time step it is what the
+      !> result is held against, and may be 0
       real(wp), intent(in) :: accuracy
       !> End of the computation [s]; 0: follows from the contact's time scale
       real(wp), intent(in) :: end_time
@@ -119,11 +120,13 @@ contains
             cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
          end associate
          if (level >= 3) then
+            trajectory%accuracy = self%accuracy
             trajectory%cor_error = error_of_last(cor)
             trajectory%cor_sphere_error = error_of_last(cor_sphere)
             if (self%time_step > 0.0_wp .or. max(trajectory%cor_error, &
                 trajectory%cor_sphere_error) <= self%accuracy) return
             if (2*trajectory%steps > most_steps) then
+               if (.not. trajectory%misses_by_far()) return
                call raise(error, error_numerical, 'the accuracy asked for is out of reach of ' &
                   //'product integration: give a larger solver.accuracy')
                return

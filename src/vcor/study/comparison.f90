@@ -35,14 +35,25 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(solver_settings_t) :: settings
+      character(len=:), allocatable :: method
 
       comparison%two_methods = size(methods_for()) == 2
       call take_settings(case, comparison%two_methods, settings)
       call comparison%attempts(attempt_first)%try(settings, impact, error)
       if (allocated(error)) return
+      call case%get('solver', 'method', method)
+      if (method == 'auto' .and. allocated(comparison%attempts(attempt_first)%failure)) then
+         ! as auto does: direct by itself where ive fails
+         comparison%two_methods = .false.
+         comparison%attempts(attempt_first) = attempt_t()
+         call take_settings(case, comparison%two_methods, settings)
+         call comparison%attempts(attempt_first)%try(settings, impact, error)
+         if (allocated(error)) return
+      end if
       if (comparison%two_methods) then
          settings%accuracy = refined(settings%accuracy)
-         call comparison%attempts(attempt_refined)%try(settings, impact, error)
+         ! a hundredth is more than anybody has asked for
+         call comparison%attempts(attempt_refined)%try(settings, impact, error, lenient=.true.)
          if (allocated(error)) return
       end if
       call halve(comparison%attempts, settings, impact, error)
@@ -125,6 +136,8 @@ contains
 
       direct = settings
       direct%method = 'direct'
+      ! the steps are given
+      direct%accuracy = 0.0_wp
       if (attempts(attempt_first)%separated()) then
          direct%time_step = attempts(attempt_first)%outcome%contact_time/per_contact
       else if (allocated(attempts(attempt_first)%failure)) then

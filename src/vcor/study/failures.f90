@@ -1,4 +1,4 @@
-!> Points without a result, grouped by the reason
+!> Points without a result, grouped by the reason, and those whose result is not what was asked for
 module vcor_study_failures
    use vcor_kinds, only : wp
    implicit none
@@ -27,9 +27,15 @@ module vcor_study_failures
       integer :: reasons = 0
       !> Reasons; those in use are 1 to `reasons`
       type(failure_t) :: reason(most_reasons)
+      !> Number of points with an estimated error above the accuracy asked for
+      integer :: inexact = 0
+      !> First of them
+      integer :: first_inexact = 0
    contains
       !> Note a point without a result
       procedure :: note
+      !> Note a point with an estimated error above the accuracy asked for
+      procedure :: note_inexact
       !> Order the reasons by their first point
       procedure :: sort
       !> All reasons as numbers
@@ -52,6 +58,30 @@ contains
 
       call note_points(self, 1, point, message)
    end subroutine note
+
+   !> Note a point with an estimated error above the accuracy asked for
+   pure subroutine note_inexact(self, point)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+      !> Number of the point
+      integer, intent(in) :: point
+
+      call note_inexact_points(self, 1, point)
+   end subroutine note_inexact
+
+   !> Note points with an estimated error above the accuracy asked for
+   pure subroutine note_inexact_points(self, count, point)
+      !> The reasons
+      class(failures_t), intent(inout) :: self
+      !> Number of points
+      integer, intent(in) :: count
+      !> First of them
+      integer, intent(in) :: point
+
+      if (count == 0) return
+      if (self%inexact == 0 .or. point < self%first_inexact) self%first_inexact = point
+      self%inexact = self%inexact + count
+   end subroutine note_inexact_points
 
    !> Note points without a result, for one reason
    pure subroutine note_points(self, count, point, message)
@@ -81,7 +111,8 @@ contains
       end associate
    end subroutine note_points
 
-   !> All reasons as numbers: their number, then for each count, first point, letters, text
+   !> All reasons as numbers: inexact points, the first of them, number of reasons, then for each
+   !> count, first point, letters, text
    pure function pack_reasons(self) result(numbers)
       !> The reasons
       class(failures_t), intent(in) :: self
@@ -90,7 +121,7 @@ contains
 
       integer :: i
 
-      numbers = [real(self%reasons, wp)]
+      numbers = [real(self%inexact, wp), real(self%first_inexact, wp), real(self%reasons, wp)]
       do i = 1, self%reasons
          associate (reason => self%reason(i))
             numbers = [numbers, real(reason%count, wp), real(reason%first, wp), &
@@ -122,8 +153,9 @@ contains
       character(len=:), allocatable :: message
       integer :: i, at, length
 
-      at = 1
-      do i = 1, nint(numbers(1))
+      call note_inexact_points(self, nint(numbers(1)), nint(numbers(2)))
+      at = 3
+      do i = 1, nint(numbers(3))
          length = nint(numbers(at + 3))
          message = repeat(' ', length)
          message = transfer(numbers(at + 4:), message)

@@ -173,7 +173,7 @@ module vcor_study_keys
       &    positive, models="sls prony power_law cerf mittag_leffler"), &
       !
       & key_t("solver", "method", text_key, &
-      &    "Method; auto: ive, but direct for scheme adams_bashforth", &
+      &    "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
       &    choices="auto ive direct", default="auto"), &
       & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
       &    choices="product adams_bashforth", default="product"), &

@@ -1,10 +1,10 @@
 !> What the choice of the mechanics is worth: one case with every plate model and both contact laws
 module vcor_study_models
    use vcor_error, only : error_t
-   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : trajectory_t
-   use vcor_solver, only : new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_study_build, only : build_impact
    use vcor_study_case, only : case_t
    use vcor_study_describe, only : describe_solver
@@ -113,12 +113,9 @@ contains
       call describe_solver(case, settings)
       call build_impact(case, impact, error)
       if (.not. allocated(error)) call new_solver(solver, settings, impact, error)
-      if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
-      if (allocated(error)) then
-         model%failure = error%message
-      else
-         model%outcome = evaluate(impact, trajectory)
-      end if
+      if (.not. allocated(error)) &
+         call solve_impact(solver, impact, trajectory, model%outcome, error)
+      if (allocated(error)) model%failure = error%message
    end subroutine solve
 
 end module vcor_study_models

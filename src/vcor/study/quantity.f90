@@ -38,7 +38,8 @@ module vcor_study_quantity
    type(status_t), parameter :: statuses(*) = [ &
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
-      'end_time came before the force returned to zero', 'a larger solver.end_time'), &
+      'end_time came before the force returned to zero', 'a larger solver.end_time; a thicker ' &
+      //'plate where the inelasticity is above 20'), &
       status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
       status_t(point_invalid, 'invalid', &

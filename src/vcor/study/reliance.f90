@@ -8,12 +8,12 @@
 module vcor_study_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t
-   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_solver, only : solver_t
+   use vcor_solver, only : solve_impact, solver_t
    use vcor_study_build, only : build_impact, build_material, build_solver
    use vcor_study_case, only : case_t
    use vcor_study_identified, only : put_points, put_solver
@@ -113,8 +113,7 @@ contains
 
       call build_impact(case, impact, error)
       if (.not. allocated(error)) call build_solver(case, impact, solver, error)
-      if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
-      if (.not. allocated(error)) outcome = evaluate(impact, trajectory)
+      if (.not. allocated(error)) call solve_impact(solver, impact, trajectory, outcome, error)
    end subroutine solve_case
 
 end module vcor_study_reliance

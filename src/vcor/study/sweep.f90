@@ -11,12 +11,12 @@
 !> threads begin, or by one at a time.
 module vcor_study_sweep
    use vcor_error, only : error_input, error_internal, error_t, raise
-   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : check_settings, new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_study_aside, only : aside_t
    use vcor_study_axes, only : new_grid
    use vcor_study_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
@@ -164,18 +164,15 @@ contains
       if (allocated(error)) then
          continue
       else if (allocated(self%solver)) then
-         call self%solver%solve(worker%impact, worker%trajectory, error)
+         call solve_impact(self%solver, worker%impact, worker%trajectory, outcome, error)
       else
          call prepare_solver(worker, error)
          if (.not. allocated(error)) &
-            call worker%solver%solve(worker%impact, worker%trajectory, error)
+            call solve_impact(worker%solver, worker%impact, worker%trajectory, outcome, error)
       end if
-      if (.not. allocated(error)) then
-         outcome = evaluate(worker%impact, worker%trajectory)
-      else
-         outcome%status = point_failed
-         if (error%code == error_input) outcome%status = point_invalid
-      end if
+      if (.not. allocated(error)) return
+      outcome%status = point_failed
+      if (error%code == error_input) outcome%status = point_invalid
    end subroutine solve_point
 
    !> Build the impact of a point
@@ -330,9 +327,11 @@ contains
          point = part%point(place)
          call solve_point(self, point, worker, outcome, error)
          call summary%put(place, outcome)
-         if (outcome%status == contact_separated) cycle
+         if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
 !$omp critical (vcor_failures)
-         if (allocated(error)) then
+         if (outcome%status == contact_separated) then
+            call failures%note_inexact(point)
+         else if (allocated(error)) then
             call failures%note(point, error%message)
          else
             call failures%note(point, lacking(outcome%status))

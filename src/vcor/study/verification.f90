@@ -4,11 +4,11 @@
 !> `verification/`. All rows are evaluated and judged in `verify_law`, here and nowhere else.
 module vcor_study_verification
    use vcor_error, only : error_internal, error_t, raise
-   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_study_verification_elastic, only : hertz, zener
    use vcor_study_verification_golden, only : beyond, golden, printed
    use vcor_study_verification_kelvin_voigt, only : exact, pade, series, zener_relation
@@ -126,11 +126,9 @@ contains
       settings%scheme = 'product'
       settings%accuracy = 0.5_wp*accuracy_of(method)
       call new_solver(solver, settings, impact, error)
-      if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
+      if (.not. allocated(error)) call solve_impact(solver, impact, trajectory, outcome, error)
       separated = .not. allocated(error)
-      if (.not. separated) return
-      outcome = evaluate(impact, trajectory)
-      separated = outcome%status == contact_separated
+      if (separated) separated = outcome%status == contact_separated
    end subroutine solve
 
 end module vcor_study_verification

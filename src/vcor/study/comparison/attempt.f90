@@ -5,7 +5,7 @@ module vcor_study_comparison_attempt
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_study_build, only : build_solver
    use vcor_study_case, only : case_t
    implicit none
@@ -45,7 +45,7 @@ module vcor_study_comparison_attempt
 contains
 
    !> Solve with given settings, the method being ive or direct
-   subroutine try(self, settings, impact, error)
+   subroutine try(self, settings, impact, error, lenient)
       !> The attempt
       class(attempt_t), intent(inout) :: self
       !> Settings
@@ -54,14 +54,26 @@ contains
       type(impact_t), intent(in) :: impact
       !> What is no numerical failure; unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Whether an error far above the accuracy is no failure; absent: it is one
+      logical, intent(in), optional :: lenient
 
       class(solver_t), allocatable :: solver
+      type(trajectory_t) :: trajectory
 
       self%label = settings%method
       self%time_step = settings%time_step
       if (.not. self%time_step > 0.0_wp) self%accuracy = settings%accuracy
       call new_solver(solver, settings, impact, error)
-      if (.not. allocated(error)) call solve(self, solver, impact, error)
+      if (allocated(error)) return
+      call solve(self, solver, impact, error)
+      if (.not. (present(lenient) .and. allocated(self%failure))) return
+      call solver%solve(impact, trajectory, error)
+      if (allocated(error)) then
+         deallocate (error)
+      else
+         deallocate (self%failure)
+         self%outcome = evaluate(impact, trajectory)
+      end if
    end subroutine try
 
    !> Solve as the case says
@@ -99,14 +111,12 @@ contains
       type(trajectory_t) :: trajectory
 
       self%made = .true.
-      call solver%solve(impact, trajectory, error)
+      call solve_impact(solver, impact, trajectory, self%outcome, error)
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          self%failure = error%message
          deallocate (error)
-         return
       end if
-      self%outcome = evaluate(impact, trajectory)
    end subroutine solve
 
    !> Errors of cor and cor_sphere that it states
