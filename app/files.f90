@@ -8,7 +8,7 @@ module vcor_app_files
    implicit none
    private
 
-   public :: make_place, write_files, write_numbers, threads_of, rows_path
+   public :: make_place, write_files, write_numbers, threads_of
 
 contains
 
@@ -28,19 +28,8 @@ contains
       call make_directory(directory, error)
    end subroutine make_place
 
-   !> Name of the summary of a sweep as text until it is complete
-   function rows_path(job) result(path)
-      !> The case
-      type(job_t), intent(in) :: job
-      !> Its path
-      character(len=:), allocatable :: path
-
-      path = job%path//'_summary.part.csv'
-   end function rows_path
-
    !> Write the files of a case
-   subroutine write_files(request, job, identity, summary, trajectory, files, error, has_csv, &
-         is_alone)
+   subroutine write_files(request, job, identity, summary, trajectory, files, error, has_csv)
       !> The request
       type(request_t), intent(in) :: request
       !> The case
@@ -57,15 +46,11 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Whether the summary as text is there already; false if it is not given
       logical, intent(in), optional :: has_csv
-      !> Whether no other process is at work on the same files: then they have names, until they are
-      !> complete, that the next run finds where this one is killed; false if it is not given
-      logical, intent(in), optional :: is_alone
 
       type(table_t) :: course
       character(len=:), allocatable :: csv
       type(remark_t) :: remarks(4)
       integer :: i, n
-      logical :: alone
 
       files = ''
       if (.not. any(job%writes)) return
@@ -88,14 +73,7 @@ contains
          if (present(has_csv)) then
             if (has_csv) csv = ''
          end if
-         alone = .false.
-         if (present(is_alone)) alone = is_alone
-         if (alone) then
-            call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), error, &
-               rows_path(job), job%path//'.new.h5')
-         else
-            call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), error)
-         end if
+         call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), error)
       end if
       if (allocated(error)) return
       do i = 1, size(endings)

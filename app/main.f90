@@ -5,6 +5,7 @@ program vcor_main
    use vcor_app_argument, only : argument_t, get_arguments
    use vcor_app_cli, only : parse, request_t
    use vcor_app_driver, only : complain, execute
+   use vcor_app_signals, only : prepare_signals
    use vcor, only : error_t, join_ranks, leave_ranks, share_error
    implicit none
 
@@ -41,6 +42,7 @@ program vcor_main
    ignored = c_mallopt(mmap_threshold, large)
    ignored = c_mallopt(trim_threshold, large)
    call join_ranks()
+   call prepare_signals()
    call get_arguments(words)
    call parse(words, request, error)
    call share_error(error)

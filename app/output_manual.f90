@@ -35,7 +35,10 @@ contains
       call page%item('STEM.h5', 'both, as HDF5.')
       call page%paragraph('`&output` switches parts off (`csv`, `hdf5`, `history`) and has ' &
          //'another name in place of STEM (`stem`). A file appears under its name only when it ' &
-         //'is complete. The same case gives the same bytes, whatever the number of threads.')
+         //'is complete, with the permissions that the umask leaves; until then it is in a ' &
+         //'private folder `.vcor-XXXXXX` beside it. A killed run may leave such a ' &
+         //'folder, which can be removed. The same case gives the same bytes, whatever the ' &
+         //'number of threads.')
 
       call page%heading(1, 'Summary')
       call page%paragraph('The columns, which are also the names for `--print`. A sweep has its ' &

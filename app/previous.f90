@@ -3,8 +3,9 @@ module vcor_app_previous
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
-   use vcor, only : attach, check_same, checkpoint_t, error_file, error_t, identity_t, &
-      plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, write_stdout
+   use vcor, only : attach, check_plain, check_same, checkpoint_t, error_file, error_t, &
+      identity_t, plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, &
+      write_stdout
    implicit none
    private
 
@@ -131,19 +132,21 @@ contains
 
    !> A sweep that begins anew must not take the unfinished points of another one, or of a process
    !> that is at work on them
-   subroutine refuse_unfinished(path, expected, error)
+   subroutine refuse_unfinished(path, expected, file, error)
       !> Path of the unfinished file, which is there
       character(len=*), intent(in) :: path
       !> What the run is about
       type(identity_t), intent(in) :: expected
+      !> The file, locked until it is replaced or removed
+      type(checkpoint_t), intent(inout) :: file
       !> Error of code `error_file`, unallocated if it may be replaced
       type(error_t), allocatable, intent(out) :: error
 
-      type(checkpoint_t) :: file
       type(identity_t) :: found
       logical :: is_ours
 
-      call read_identity(path, found, is_ours, error)
+      call check_plain(path, error)
+      if (.not. allocated(error)) call read_identity(path, found, is_ours, error)
       if (allocated(error)) return
       if (.not. is_ours) then
          call raise(error, error_file, quoted_path(path)//' is not a file of vcor')
@@ -155,7 +158,6 @@ contains
          return
       end if
       call attach(file, path, error)
-      call file%close()
    end subroutine refuse_unfinished
 
    !> One line on stderr that is no error

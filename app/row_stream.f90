@@ -15,8 +15,6 @@ module vcor_app_row_stream
    type :: row_stream_t
       !> Name of the file; unallocated where there is none
       character(len=:), allocatable :: path
-      !> Its name until it is complete
-      character(len=:), allocatable :: temporary
       !> Threads that write
       integer :: threads = 1
       !> The file
@@ -95,7 +93,7 @@ contains
 
       if (self%written == 0) then
          call summary_table(self%table, identity%title, identity%case_text, grid, summary)
-         call begin_csv(self%file, self%path, self%table, error, self%temporary)
+         call begin_csv(self%file, self%path, self%table, error)
          call take_back(self%table, summary)
          if (allocated(error)) return
       end if

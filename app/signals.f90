@@ -1,13 +1,15 @@
-!> Signals that ask the program to end: SIGINT (Ctrl-C) and SIGTERM
+!> Signals: those that ask the program to end, SIGINT (Ctrl-C), SIGTERM and SIGHUP, and the one that
+!> says that a file has become too large, SIGXFSZ
 module vcor_app_signals
-   use, intrinsic :: iso_c_binding, only : c_funloc, c_funptr, c_int, c_null_funptr
+   use, intrinsic :: iso_c_binding, only : c_funloc, c_funptr, c_int, c_intptr_t, c_null_funptr
+   use vcor, only : remove_all_scratch
    implicit none
    private
 
-   public :: catch_signals, release_signals, caught_signal, signal_name
+   public :: prepare_signals, catch_signals, release_signals, caught_signal, signal_name
 
-   !> Numbers of SIGINT and SIGTERM
-   integer(c_int), parameter :: interrupt = 2, terminate = 15
+   !> Numbers of SIGHUP, SIGINT, SIGTERM and SIGXFSZ
+   integer(c_int), parameter :: hang_up = 1, interrupt = 2, terminate = 15, file_size = 25
 
    !> Signal that has come; 0 if there was none
    integer(c_int), volatile :: caught = 0
@@ -23,11 +25,31 @@ module vcor_app_signals
          !> Who did before
          type(c_funptr) :: before
       end function c_signal
+
+      !> Send this process a signal
+      function c_raise(number) result(status) bind(c, name='raise')
+         import :: c_int
+         !> Number of the signal
+         integer(c_int), intent(in), value :: number
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_raise
    end interface
 
 contains
 
-   !> From now on a signal is noted. A second one ends the program at once, as if nobody cared
+   !> For the whole run: a signal that ends the program takes with it what is not complete, and a
+   !> file that becomes too large is an error of writing (EFBIG) like a full disk. SIGXFSZ gets a
+   !> handler which does nothing, not SIG_IGN, which gnuplot would inherit
+   subroutine prepare_signals()
+      type(c_funptr) :: ignored
+
+      ignored = c_signal(file_size, c_funloc(go_on))
+      call release_signals()
+   end subroutine prepare_signals
+
+   !> From now on SIGINT or SIGTERM is noted. A second one ends the program at once, as if nobody
+   !> cared
    subroutine catch_signals()
       type(c_funptr) :: ignored
 
@@ -38,11 +60,22 @@ contains
 
    !> From now on a signal ends the program
    subroutine release_signals()
-      type(c_funptr) :: ignored
-
-      ignored = c_signal(interrupt, c_null_funptr)
-      ignored = c_signal(terminate, c_null_funptr)
+      call end_by(hang_up)
+      call end_by(interrupt)
+      call end_by(terminate)
    end subroutine release_signals
+
+   !> Let a signal end the program, unless who called it has the signal ignored (nohup)
+   subroutine end_by(number)
+      !> Number of the signal
+      integer(c_int), intent(in), value :: number
+
+      integer(c_intptr_t), parameter :: ignoring = 1_c_intptr_t
+      type(c_funptr) :: before, ignored
+
+      before = c_signal(number, c_funloc(clean_up))
+      if (transfer(before, ignoring) == ignoring) ignored = c_signal(number, before)
+   end subroutine end_by
 
    !> Signal that has come
    function caught_signal() result(number)
@@ -71,8 +104,30 @@ contains
       type(c_funptr) :: ignored
 
       caught = number
-      ignored = c_signal(interrupt, c_null_funptr)
-      ignored = c_signal(terminate, c_null_funptr)
+      ignored = c_signal(interrupt, c_funloc(clean_up))
+      ignored = c_signal(terminate, c_funloc(clean_up))
    end subroutine handle
+
+   !> Remove what is not complete, and end as the signal does; does nothing that a handler may not
+   subroutine clean_up(number) bind(c)
+      !> Its number
+      integer(c_int), intent(in), value :: number
+
+      type(c_funptr) :: ignored
+      integer(c_int) :: status
+
+      call remove_all_scratch()
+      ignored = c_signal(number, c_null_funptr)
+      ! it is held back until this handler returns
+      status = c_raise(number)
+   end subroutine clean_up
+
+   !> Do nothing about a signal
+   subroutine go_on(number) bind(c)
+      !> Its number
+      integer(c_int), intent(in), value :: number
+
+      if (number /= file_size) return
+   end subroutine go_on
 
 end module vcor_app_signals

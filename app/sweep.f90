@@ -4,17 +4,17 @@
 module vcor_app_sweep
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : make_place, rows_path, threads_of, write_files, write_numbers
+   use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
    use vcor_app_job, only : endings, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
       replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
-   use vcor, only : create_checkpoint, differs, error_input, error_numerical, error_t, &
-      failures_t, identity_of, identity_t, integer_text, move_file, new_summary, number_of, &
-      open_checkpoint, plain_file_exists, point_pending, quoted_path, raise, rank_count, &
-      read_points, read_results, remove_file, share_error, &
+   use vcor, only : anything_at, create_checkpoint, differs, error_input, error_numerical, &
+      error_t, failures_t, identity_of, identity_t, integer_text, move_file, new_summary, &
+      number_of, open_checkpoint, point_pending, quoted_path, raise, rank_count, &
+      read_points, read_results, share_error, &
       share_flag, solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, &
       trajectory_t, write_stdout
    implicit none
@@ -67,6 +67,7 @@ contains
          if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
             stopped, error)
          call watch%file%close()
+         call watch%old%close()
          call watch%rows%abandon()
       end if
       call share_error(error)
@@ -94,7 +95,7 @@ contains
 
       is_finished = .false.
       is_unfinished = .false.
-      if (watch%keeps) is_unfinished = plain_file_exists(watch%path)
+      if (watch%keeps) is_unfinished = anything_at(watch%path)
       call look_back(job, watch%identity, previous)
       call new_summary(summary, job%part%count(), error)
       if (allocated(error)) return
@@ -111,7 +112,7 @@ contains
          ! the text is missing: all points are there
          call read_results(previous%path, summary, error)
       else if (is_unfinished) then
-         call refuse_unfinished(watch%path, watch%identity, error)
+         call refuse_unfinished(watch%path, watch%identity, watch%old, error)
          if (.not. allocated(error)) call remark(quoted_path(watch%path) &
             //' is given up, the sweep begins anew (--resume would go on with it)')
       else if (watch%keeps) then
@@ -124,7 +125,6 @@ contains
       watch%grid = job%sweep%grid
       if (rank_count() > 1 .and. job%writes(1)) then
          watch%rows%path = job%path//trim(endings(1))
-         watch%rows%temporary = rows_path(job)
       end if
       watch%rows%threads = threads_of(request)
       watch%start = clock()
@@ -178,7 +178,8 @@ contains
 
       is_shard = request%shards > 0
       if (watch%keeps .and. .not. watch%file%is_open() .and. (is_shard .or. stopped /= 0)) then
-         call create_checkpoint(watch%file, watch%path, watch%identity, watch%grid, summary, error)
+         call create_checkpoint(watch%file, watch%path, watch%identity, watch%grid, summary, &
+            error, watch%old)
          if (allocated(error)) return
       end if
       if (stopped /= 0) then
@@ -227,15 +228,11 @@ contains
          if (allocated(error)) return
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
          call write_files(request, job, identity, table, none, files, error, &
-            has_csv=allocated(watch%rows%path), is_alone=watch%file%is_open())
+            has_csv=allocated(watch%rows%path))
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
-         if (watch%keeps) then
-            call remove_file(watch%path)
-            ! left by ranks that were killed, perhaps
-            call remove_file(rows_path(job))
-         end if
+         call watch%old%remove()
          if (size(request%names) > 0) then
             call write_numbers(request, table, error)
          else if (.not. request%quiet) then

@@ -34,6 +34,8 @@ module vcor_app_watch
       type(grid_t) :: grid
       !> The file, open once there is one
       type(checkpoint_t) :: file
+      !> What a run before has left of the same sweep, locked until the file takes its place
+      type(checkpoint_t) :: old
       !> Rows that are written while other ranks work
       type(row_stream_t) :: rows
       !> Points that are done
@@ -75,7 +77,8 @@ contains
       if (self%file%is_open()) then
          call self%file%put(first, last, summary, error)
       else if (self%keeps .and. now - self%start > time_without_file) then
-         call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, error)
+         call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, &
+            error, self%old)
       end if
       if (allocated(error)) return
       call self%rows%advance(self%identity, self%grid, summary, error)

@@ -18,20 +18,20 @@ module vcor
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : move_file, remove_file, stderr_is_terminal, write_file, write_stdout, &
-      write_terminal
+   use vcor_io_file, only : move_file, stderr_is_terminal, write_file, write_stdout, write_terminal
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_io_hdf5, only : named_table_t, remark_t, write_hdf5
    use vcor_io_identity, only : check_same, identity_of, identity_t, number_of, read_csv_identity, &
       read_identity, remarks_of
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_io_number, only : integer_text, real_text
-   use vcor_io_path, only : directory_exists, file_exists, join_path, make_directory, &
-      plain_file_exists, quoted_path, same_file
+   use vcor_io_path, only : anything_at, check_plain, directory_exists, file_exists, join_path, &
+      make_directory, plain_file_exists, quoted_path, same_file
    use vcor_io_real, only : read_real
    use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_sample_file, only : read_samples, reading_t, standard_input
+   use vcor_io_scratch, only : remove_all_scratch
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
@@ -132,7 +132,8 @@ module vcor
    public :: read_result, usual_kind, build_figure, draw
    public :: write_stdout, write_file, make_directory, join_path, split_path, same_file
    public :: file_exists, directory_exists, plain_file_exists, quoted_path
-   public :: move_file, remove_file, stderr_is_terminal, write_terminal
+   public :: anything_at, check_plain, move_file, remove_all_scratch
+   public :: stderr_is_terminal, write_terminal
    public :: control_in, name_flaw
    public :: real_text, integer_text, printable, nearest_name, suggestion, read_real
    public :: material_names

@@ -72,7 +72,7 @@ def test_directory_in_the_way(run, tmp_path):
     assert done.returncode == 4
     assert "sls.h5" in one_line(done)
     assert (tmp_path / "sls.h5").is_dir()
-    assert not list(tmp_path.glob("*.tmp"))
+    assert not list(tmp_path.glob(".vcor-*"))
 
 
 def test_file_instead_of_the_folder(run, tmp_path):
@@ -125,4 +125,4 @@ def test_disk_that_ends_within_a_file(vcor, tmp_path):
     assert done.returncode == 4
     assert "No space left on device" in one_line(done)
     assert done.stdout.endswith("old\n")
-    assert ".tmp" not in done.stdout
+    assert ".vcor-" not in done.stdout

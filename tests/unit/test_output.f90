@@ -600,20 +600,17 @@ contains
       call check(.not. file_exists(path), what//": no file")
    end subroutine check_fault
 
-   !> Check how many temporary files there are
+   !> Check how many private folders there are
    subroutine check_temporaries(expected, what)
       !> How many there should be
       integer, intent(in) :: expected
       !> When
       character(len=*), intent(in) :: what
-      integer :: count, i
+      integer :: code
 
-      count = 0
-      do i = 1, 9
-         if (file_exists(join_path(folder, "vcor-"//integer_text(int(c_getpid()))//"-"// &
-            & integer_text(i)//".tmp"))) count = count + 1
-      end do
-      call check(count == expected, "number of temporary files "//what)
+      call execute_command_line("test $(ls -A "//quoted_path(folder)//" | grep -c '^[.]vcor-') = " &
+         & //integer_text(expected), exitstat=code)
+      call check(code == 0, "number of private folders "//what)
    end subroutine check_temporaries
 
    !> All bytes of a file

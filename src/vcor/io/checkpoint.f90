@@ -9,6 +9,10 @@
 !> never changes again. Outcomes are written to their places by the system's `pwrite`, which is why
 !> neither SIGKILL nor a crash leaves a file that HDF5 cannot open, and why a chunk costs its own
 !> length only. The room is taken at the beginning: a disk that is too small is noticed then.
+!>
+!> The file is made in a private folder and locked before it gets its name, which it takes from no
+!> other file. So of two processes that begin the same sweep one has it, and the lock goes with the
+!> process, however that ends. Links and pipes of that name are refused, not followed.
 module vcor_io_checkpoint
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
       c_ptr, c_size_t
@@ -21,10 +25,12 @@ module vcor_io_checkpoint
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
    use vcor_io_identity, only : identity_t, remarks_of
    use vcor_io_number, only : integer_text
-   use vcor_io_path, only : quoted_path
-   use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_lockf, c_pwrite, &
-      c_text, errno_interrupted, errno_locked, last_errno, lock_alone, system_reason
+   use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
+   use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
+      c_text, errno_exists, errno_interrupted, errno_locked, file_at, last_errno, lock_alone, &
+      open_file, same_file_id, system_reason
    use vcor_io_results, only : unit_of
+   use vcor_io_scratch, only : make_scratch, remember, remove_scratch
    use vcor_io_table, only : new_table, table_t
    use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
@@ -74,10 +80,10 @@ contains
    end function is_open
 
    !> Begin a file, with what is done so far
-   subroutine create_checkpoint(self, path, identity, grid, summary, error)
+   subroutine create_checkpoint(self, path, identity, grid, summary, error, old)
       !> The file
       type(checkpoint_t), intent(inout) :: self
-      !> Its path; replaced if it is there
+      !> Its path; nothing but `old` may be there
       character(len=*), intent(in) :: path
       !> What it is about
       type(identity_t), intent(in) :: identity
@@ -85,14 +91,21 @@ contains
       type(grid_t), intent(in) :: grid
       !> Outcomes of all places of the part; they move to a table and back
       type(summary_t), intent(inout) :: summary
-      !> Set if the file cannot be written
+      !> Set if the file cannot be written, or another process has begun it
       type(error_t), allocatable, intent(out) :: error
+      !> File that it replaces, closed afterwards; there is none if it is not open or not given
+      type(checkpoint_t), intent(inout), optional :: old
 
       type(crc_t) :: crc
       type(table_t) :: table
+      character(len=:), allocatable :: folder, temporary
       integer :: i, offset
 
       crc = new_crc()
+      call make_scratch(folder, path, error)
+      if (allocated(error)) return
+      temporary = join_path(folder, 'part.h5')
+      call remember(temporary)
       call summary%blank_pending()
       call begin_table(table, identity, grid)
       offset = table%column_count
@@ -105,7 +118,7 @@ contains
       call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
       call move_in_column(table, 'status', summary%status, '1', 'how the contact ended: -1 '// &
          'pending, 0 separated, 1 no_separation, 2 sticks, 3 invalid, 4 failed')
-      call write_hdf5(path, table, error=error, remarks=remarks_of(identity), changing=columns)
+      call write_hdf5(temporary, table, error=error, remarks=remarks_of(identity), changing=columns)
       if (.not. allocated(table%fault)) then
          do i = 1, size(quantities)
             call move_alloc(table%columns(offset + 1 + i)%reals, summary%values(i)%at)
@@ -113,8 +126,59 @@ contains
          call move_alloc(table%columns(offset + 2 + size(quantities))%integers, summary%steps)
          call move_alloc(table%columns(offset + 3 + size(quantities))%integers, summary%status)
       end if
-      if (.not. allocated(error)) call attach(self, path, error)
+      if (.not. allocated(error)) call attach(self, temporary, error)
+      if (.not. allocated(error)) call name_file(self, path, error, old)
+      if (allocated(error)) then
+         call self%remove()
+         ! nobody knows the other name
+         i = index(error%message, temporary)
+         if (i > 0) error%message = error%message(:i - 1)//path &
+            //error%message(i + len(temporary):)
+      end if
+      call remove_scratch(temporary)
+      call remove_scratch(folder)
    end subroutine create_checkpoint
+
+   !> Give a file its name
+   subroutine name_file(self, path, error, old)
+      !> The file
+      type(checkpoint_t), intent(inout) :: self
+      !> Its name; nothing but `old` may have it
+      character(len=*), intent(in) :: path
+      !> Set if it cannot have the name
+      type(error_t), allocatable, intent(out) :: error
+      !> File that it replaces, closed afterwards
+      type(checkpoint_t), intent(inout), optional :: old
+
+      logical :: replaces, taken
+
+      replaces = .false.
+      if (present(old)) replaces = old%is_open()
+      if (replaces) then
+         call move_file(self%path, path, error)
+         call old%close()
+      else if (c_link(c_text(self%path), c_text(path)) /= 0) then
+         taken = last_errno() == errno_exists
+         if (.not. taken) taken = anything_at(path)
+         if (taken) then
+            call raise(error, error_file, in_use(path))
+         else
+            ! there are file systems without links
+            call move_file(self%path, path, error)
+         end if
+      end if
+      if (.not. allocated(error)) self%path = path
+   end subroutine name_file
+
+   !> What there is to say where another process is at work
+   pure function in_use(path) result(text)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> One line
+      character(len=:), allocatable :: text
+
+      text = quoted_path(path)//' is in use: another vcor is at work on this sweep'
+   end function in_use
 
    !> Table of the points of a part
    subroutine begin_table(table, identity, grid)
@@ -160,7 +224,8 @@ contains
 
       type(identity_t) :: found
 
-      call read_points(path, found, summary, error, identity)
+      call check_plain(path, error)
+      if (.not. allocated(error)) call read_points(path, found, summary, error, identity)
       if (.not. allocated(error)) call attach(self, path, error)
    end subroutine open_checkpoint
 
@@ -179,7 +244,8 @@ contains
 
       self%path = path
       self%crc = new_crc()
-      call open_hdf5(reader, path, error)
+      call check_plain(path, error)
+      if (.not. allocated(error)) call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, columns
          call find_place(reader, dataset(i), self%offsets(i), error)
@@ -201,11 +267,14 @@ contains
       ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
       ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
       ! goes without
-      if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) == 0) return
-      if (last_errno() /= errno_locked) return
-      call self%close()
-      call raise(error, error_file, quoted_path(path)//' is in use: another vcor is at work on '// &
-         'this sweep')
+      if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) /= 0) then
+         reason = last_errno()
+         if (reason == errno_locked) call raise(error, error_file, in_use(path))
+      end if
+      ! no link, and no file that has been replaced or removed since
+      if (.not. same_file_id(file_at(path), open_file(c_fileno(self%stream)))) &
+         call raise(error, error_file, in_use(path))
+      if (allocated(error)) call self%close()
    end subroutine attach
 
    !> Keep outcomes
@@ -305,7 +374,7 @@ contains
       self%stream = c_null_ptr
    end subroutine close_checkpoint
 
-   !> Close the file and give it another name
+   !> Close the file, complete, and give it another name
    subroutine close_as(self, path, error)
       !> The file
       class(checkpoint_t), intent(inout) :: self
@@ -314,11 +383,19 @@ contains
       !> Set if that failed
       type(error_t), allocatable, intent(out) :: error
 
+      integer(c_int) :: reason, status
+
+      status = c_fsync(c_fileno(self%stream))
+      reason = last_errno()
       call self%close()
-      call move_file(self%path, path, error)
+      if (status == 0) then
+         call move_file(self%path, path, error)
+      else
+         call raise_system(error, 'cannot write '//quoted_path(path), reason)
+      end if
    end subroutine close_as
 
-   !> Close the file and remove it
+   !> Close the file and remove it; none is fine
    subroutine remove(self)
       !> The file
       class(checkpoint_t), intent(inout) :: self
@@ -326,9 +403,10 @@ contains
       integer(c_int) :: ignored
 
       if (.not. self%is_open()) return
+      ! while it is locked: nobody else may take it for theirs
+      call remove_file(self%path)
       ignored = c_fclose(self%stream)
       self%stream = c_null_ptr
-      call remove_file(self%path)
    end subroutine remove
 
 end module vcor_io_checkpoint

@@ -77,7 +77,7 @@ contains
    end subroutine write_csv
 
    !> Begin a file: what describes the table. Nothing is seen under its name before its end
-   subroutine begin_csv(file, filename, table, error, temporary)
+   subroutine begin_csv(file, filename, table, error)
       !> The file
       type(csv_file_t), intent(out) :: file
       !> Its name; replaced if it is there
@@ -86,15 +86,13 @@ contains
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until its end, for a file that grows for long
-      character(len=*), intent(in), optional :: temporary
       type(writer_t), allocatable :: writer
 
       call check_table(table, error)
       if (allocated(error)) return
       ! Not on the stack, for the sake of its buffer
       allocate(writer)
-      call create_file(writer%file, filename, error, temporary)
+      call create_file(writer%file, filename, error)
       if (allocated(error)) return
       call put_head(writer, table, error)
       if (allocated(error)) return

@@ -1,17 +1,16 @@
 !> From a figure to its file: script and data are written, gnuplot draws
 !>
-!> All is made in a folder of its own beside the file, `vcor-PROCESS.tmp`, and renamed when it is
+!> All is made in a private folder beside the file (`vcor_io_scratch`), and renamed when it is
 !> complete, so that no half figure is ever seen. Gnuplot runs without the settings of the user,
 !> which would make a figure look different from machine to machine.
 module vcor_io_drawing
-   use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : create_file, discard, output_file_t, write_file
+   use vcor_io_file, only : check_target, write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_path, only : file_exists, for_shell, join_path, make_directory, quoted_path
-   use vcor_io_posix, only : c_getpid, c_remove, c_rename, c_text, last_errno, system_reason
-   use vcor_study_text, only : integer_text
+   use vcor_io_posix, only : c_rename, c_text, last_errno, system_reason
+   use vcor_io_scratch, only : make_scratch, remember, remove_scratch
    implicit none
    private
 
@@ -35,18 +34,18 @@ contains
       !> Error of code `error_file`
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: directory, folder, name
-      integer(c_int) :: ignored
       logical :: done, installed
 
       call split_path(path, directory, name)
       call make_directory(directory, error)
-      if (.not. allocated(error)) call probe(path//"."//format, error)
-      if (.not. allocated(error)) call probe(path//".gp", error)
-      if (.not. allocated(error)) call probe(path//".dat", error)
+      if (.not. allocated(error)) call check_target(path//"."//format, error)
+      if (.not. allocated(error)) call check_target(path//".gp", error)
+      if (.not. allocated(error)) call check_target(path//".dat", error)
+      if (.not. allocated(error)) call make_scratch(folder, path//"."//format, error)
       if (allocated(error)) return
-      folder = join_path(directory, "vcor-"//integer_text(int(c_getpid()))//".tmp")
-      call make_directory(folder, error)
-      if (allocated(error)) return
+      call remember(join_path(folder, name//"."//format))
+      call remember(join_path(folder, name//".dat"))
+      call remember(join_path(folder, name//".gp"))
 
       call write_file(join_path(folder, name//".gp"), script_text(figure, name, format), error)
       if (.not. allocated(error)) &
@@ -70,10 +69,10 @@ contains
          end if
       end if
 
-      ignored = c_remove(c_text(join_path(folder, name//"."//format)))
-      ignored = c_remove(c_text(join_path(folder, name//".dat")))
-      ignored = c_remove(c_text(join_path(folder, name//".gp")))
-      ignored = c_remove(c_text(folder))
+      call remove_scratch(join_path(folder, name//"."//format))
+      call remove_scratch(join_path(folder, name//".dat"))
+      call remove_scratch(join_path(folder, name//".gp"))
+      call remove_scratch(folder)
 
    contains
 
@@ -89,18 +88,6 @@ contains
             & //": "//system_reason(last_errno()))
       end subroutine take_over
    end subroutine draw
-
-   !> Refuse a name under which no file can be written; nothing is left of the try
-   subroutine probe(path, error)
-      !> Name of the file
-      character(len=*), intent(in) :: path
-      !> Set if there can be no such file
-      type(error_t), allocatable, intent(out) :: error
-      type(output_file_t) :: file
-
-      call create_file(file, path, error)
-      if (.not. allocated(error)) call discard(file)
-   end subroutine probe
 
    !> Whether gnuplot is in the PATH
    function has_gnuplot() result(has)

@@ -1,8 +1,8 @@
 !> Files that are there as a whole or not at all, and the standard output
 !>
-!> A file is written under a temporary name in its own directory, `vcor-PROCESS-COUNT.tmp`, with
-!> every status checked, closed, and renamed only then. If anything fails the temporary file is
-!> removed and what was there under the real name is untouched.
+!> A file is written in a private folder (`vcor_io_scratch`) in its own directory, with every status
+!> checked, gets the permissions that the user's umask leaves, is closed, and renamed only then. If
+!> anything fails it is removed and what was there under the real name is untouched.
 !>
 !>  - An interrupted process leaves nothing under the real name. There is no `fsync`: it takes 2 to
 !>    10 ms per file, as long as an impact with all the rest, and only a power failure within
@@ -18,14 +18,17 @@ module vcor_io_file
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_path, only : check_name, directory_exists, file_exists, quoted_path, raise_system
-   use vcor_io_posix, only : c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_isatty, c_remove, &
-      & c_rename, c_text, c_write, errno_exists, errno_interrupted, is_regular, last_errno, &
-      & standard_error, standard_output
+   use vcor_io_posix, only : c_close, c_fchmod, c_fclose, c_fdopen, c_fflush, c_fileno, c_fwrite, &
+      & c_isatty, c_rename, c_text, c_umask, c_unlink, c_write, all_permissions, &
+      & errno_interrupted, file_permissions, is_regular, last_errno, standard_error, &
+      & standard_output
+   use vcor_io_scratch, only : forget, make_scratch, make_scratch_file, remove_scratch
    implicit none
    private
 
    public :: output_file_t, create_file, put, commit, discard
-   public :: write_file, write_stdout, write_terminal, stderr_is_terminal, move_file, remove_file
+   public :: check_target, write_file, write_stdout, write_terminal, stderr_is_terminal
+   public :: move_file, remove_file
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
    !>
@@ -36,72 +39,53 @@ module vcor_io_file
       type(c_ptr) :: stream = c_null_ptr
       !> The real name
       character(len=:), allocatable :: path
-      !> The name until `commit`
+      !> The private folder that it is in until `commit`
+      character(len=:), allocatable :: folder
+      !> Its name there
       character(len=:), allocatable :: temporary
    end type output_file_t
-
-   !> Temporary names that are tried before giving up; each try that fails met a file of that name,
-   !> left by a process that was killed
-   integer, parameter :: most_temporaries = 1000
 
 contains
 
    !> Begin a file: nothing is seen under its real name before `commit`
-   subroutine create_file(file, path, error, temporary)
+   subroutine create_file(file, path, error)
       !> The open file
       type(output_file_t), intent(out) :: file
       !> Its real name; the directory must be there
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until `commit`, in the same folder, for what grows for so long that it may well be
-      !> left behind: what has that name is replaced. Without it a name is found that nothing has
-      character(len=*), intent(in), optional :: temporary
 
       ! One thread at a time: the length of a text that a function returns is static
 !$omp critical (vcor_file)
-      call begin(file, path, error, temporary)
+      call begin(file, path, error)
 !$omp end critical (vcor_file)
    end subroutine create_file
 
    !> Begin a file
-   subroutine begin(file, path, error, given)
+   subroutine begin(file, path, error)
       !> The open file
       type(output_file_t), intent(inout) :: file
       !> Its real name
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until `commit`, if that is given
-      character(len=*), intent(in), optional :: given
-      character(len=:), allocatable :: temporary
-      integer(c_int) :: reason
-      integer :: count
+      integer(c_int) :: descriptor, ignored, reason
 
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
-      if (present(given)) then
-         file%stream = c_fopen(c_text(given), c_text("wb"))
+      call make_scratch(file%folder, file%path, error)
+      if (allocated(error)) return
+      call make_scratch_file(file%folder, file%temporary, descriptor)
+      reason = last_errno()
+      if (descriptor >= 0) then
+         file%stream = c_fdopen(descriptor, c_text("wb"))
          reason = last_errno()
-         if (c_associated(file%stream)) then
-            file%temporary = given
-         else
-            call raise_system(error, "cannot write "//quoted_path(given), reason)
-         end if
-         return
+         if (c_associated(file%stream)) return
+         ignored = c_close(descriptor)
       end if
-
-      do count = 1, most_temporaries
-         temporary = temporary_path(file%path, count)
-         file%stream = c_fopen(c_text(temporary), c_text("wbx"))
-         reason = last_errno()
-         if (c_associated(file%stream)) then
-            file%temporary = temporary
-            return
-         end if
-         if (reason /= errno_exists) exit
-      end do
+      call discard(file)
       call raise_system(error, "cannot write "//quoted_path(path), reason)
    end subroutine begin
 
@@ -139,6 +123,10 @@ contains
       status = c_fflush(file%stream)
       reason = last_errno()
       if (status == 0) then
+         status = c_fchmod(c_fileno(file%stream), permissions())
+         reason = last_errno()
+      end if
+      if (status == 0) then
          status = c_fclose(file%stream)
          reason = last_errno()
          file%stream = c_null_ptr
@@ -151,8 +139,24 @@ contains
          call fail(file, reason, error)
          return
       end if
+      call forget(file%temporary)
       deallocate(file%temporary)
+      call discard(file)
    end subroutine commit
+
+   !> Permissions of a new file
+   function permissions() result(mode)
+      !> Those that the user's umask leaves
+      integer(c_int) :: mode
+      integer(c_int) :: ignored, mask
+
+      ! It can only be asked for by setting it: nothing is let through meanwhile
+!$omp critical (vcor_umask)
+      mask = c_umask(all_permissions)
+      ignored = c_umask(mask)
+!$omp end critical (vcor_umask)
+      mode = iand(file_permissions, not(mask))
+   end function permissions
 
    !> Give a file up: the temporary file goes, what has the real name stays
    !>
@@ -165,24 +169,26 @@ contains
       if (c_associated(file%stream)) ignored = c_fclose(file%stream)
       file%stream = c_null_ptr
       if (allocated(file%temporary)) then
-         ignored = c_remove(c_text(file%temporary))
+         call remove_scratch(file%temporary)
          deallocate(file%temporary)
+      end if
+      if (allocated(file%folder)) then
+         call remove_scratch(file%folder)
+         deallocate(file%folder)
       end if
    end subroutine discard
 
    !> Write a whole file at once
-   subroutine write_file(path, text, error, temporary)
+   subroutine write_file(path, text, error)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: path
       !> What to write, byte by byte: nothing is added
       character(len=*), intent(in) :: text
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until it is complete, as in `create_file`
-      character(len=*), intent(in), optional :: temporary
       type(output_file_t) :: file
 
-      call create_file(file, path, error, temporary)
+      call create_file(file, path, error)
       if (allocated(error)) return
       call put(file, text, error)
       if (allocated(error)) return
@@ -260,25 +266,8 @@ contains
       character(len=*), intent(in) :: path
       integer(c_int) :: ignored
 
-      ignored = c_remove(c_text(path))
+      ignored = c_unlink(c_text(path))
    end subroutine remove_file
-
-   !> A name for the time of writing
-   !>
-   !> It is in the directory of the file, so that renaming stays within one file system, and does
-   !> not hold the real name, since a longer one might be too long for the file system.
-   function temporary_path(path, count) result(temporary)
-      !> The real name
-      character(len=*), intent(in) :: path
-      !> Number of the try
-      integer, intent(in) :: count
-      !> The temporary name
-      character(len=:), allocatable :: temporary
-      character(len=48) :: name
-
-      write(name, "('vcor-', i0, '-', i0, '.tmp')") c_getpid(), count
-      temporary = path(:index(path, "/", back=.true.))//trim(name)
-   end function temporary_path
 
    !> Check that a file may have that name
    subroutine check_target(path, error)

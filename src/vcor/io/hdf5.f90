@@ -52,8 +52,7 @@ contains
    !> Write the summary and, if there are, the history and further tables to a file
    !>
    !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error, remarks, changing, more, temporary, &
-         & file)
+   subroutine write_hdf5(filename, summary, history, error, remarks, changing, more, file)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> A row per impact; its version, title and case describe the file
@@ -69,8 +68,6 @@ contains
       integer, intent(in), optional :: changing
       !> Further tables, each with its name
       type(named_table_t), intent(in), optional :: more(:)
-      !> Its name until it is complete, as in `create_file`
-      character(len=*), intent(in), optional :: temporary
       !> The file, complete, to be given its name by `commit`: it gets it at once without this
       type(output_file_t), intent(out), optional :: file
       type(output_file_t) :: own
@@ -94,7 +91,7 @@ contains
          writer%is_plain = present(changing)
          call build(writer, summary, history, remarks, more)
          if (present(changing)) call leave_out(writer, summary, changing)
-         call write_image(writer, own, filename, error, temporary)
+         call write_image(writer, own, filename, error)
          call close_image(writer)
          call end_hdf5(handler)
       end if

@@ -199,7 +199,7 @@ contains
 
    !> Write the bytes of the file, from where HDF5 has them: a copy would double the memory; and
    !> its seal
-   subroutine write_image(writer, file, filename, error, temporary)
+   subroutine write_image(writer, file, filename, error)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> The file on the disk, complete, to be committed
@@ -208,8 +208,6 @@ contains
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until it is complete, as in `create_file`
-      character(len=*), intent(in), optional :: temporary
       character(len=1, kind=c_char), pointer :: bytes(:)
       type(c_ptr) :: handle
       type(c_ptr), pointer :: place
@@ -234,11 +232,11 @@ contains
          return
       end if
       call c_f_pointer(place, bytes, [length])
-      call write_bytes(length, bytes, writer, file, filename, error, temporary)
+      call write_bytes(length, bytes, writer, file, filename, error)
    end subroutine write_image
 
    !> Write bytes as one text
-   subroutine write_bytes(length, bytes, writer, file, filename, error, temporary)
+   subroutine write_bytes(length, bytes, writer, file, filename, error)
       !> Number of bytes
       integer(size_t), intent(in) :: length
       !> The bytes
@@ -251,8 +249,6 @@ contains
       character(len=*), intent(in) :: filename
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Its name until it is complete, as in `create_file`
-      character(len=*), intent(in), optional :: temporary
 
       integer(c_int8_t), pointer, contiguous :: numbers(:)
 
@@ -260,7 +256,7 @@ contains
          call note(writer, -1, "give the bytes of the file")
          return
       end if
-      call create_file(file, filename, error, temporary)
+      call create_file(file, filename, error)
       if (.not. allocated(error)) call put(file, bytes(1), error)
       if (allocated(error)) return
       call c_f_pointer(c_loc(bytes), numbers, [length])

@@ -5,8 +5,9 @@
 module vcor_io_path
    use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, &
-      & is_regular, last_errno, resolved_path, system_reason
+   use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, file_at, &
+      & file_id_t, is_regular, last_errno, nothing_there, resolved_path, something_else, &
+      & system_reason
    use vcor_study_name, only : name_flaw
    use vcor_study_text, only : printable
    implicit none
@@ -14,7 +15,7 @@ module vcor_io_path
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
    public :: join_path, same_file, quoted_path, for_shell
-   public :: check_name, raise_system
+   public :: anything_at, check_name, check_plain, raise_system
 
 contains
 
@@ -40,6 +41,31 @@ contains
       exists = file_exists(path)
       if (exists) exists = is_regular(trim(path))
    end function plain_file_exists
+
+   !> Whether there is anything of that name, be it a link that leads nowhere
+   function anything_at(path) result(exists)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> True if there is
+      logical :: exists
+      type(file_id_t) :: id
+
+      id = file_at(trim(path))
+      exists = id%kind /= nothing_there
+   end function anything_at
+
+   !> Check that what has a name is a file itself, or nothing
+   subroutine check_plain(path, error)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> Set if it is a link, whatever that leads to, a pipe, a folder or a device
+      type(error_t), allocatable, intent(out) :: error
+      type(file_id_t) :: id
+
+      id = file_at(trim(path))
+      if (id%kind == something_else) call raise(error, error_file, quoted_path(path)// &
+         & " is a link, a folder, a pipe or a device, expected a file or nothing")
+   end subroutine check_plain
 
    !> Whether there is a directory of that name; a link counts as what it points at
    function directory_exists(path) result(exists)

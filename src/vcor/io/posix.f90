@@ -1,4 +1,4 @@
-!> The system calls behind files: thin interfaces to C and POSIX, used by `vcor_io_file` alone
+!> The system calls behind files: thin interfaces to C and POSIX, used by `vcor_io` alone
 !>
 !> Fortran's own units hide what matters here: gfortran writes its buffer when a unit is closed and
 !> reports no error if the disk is full then, it has no rename, no directories and no exclusive
@@ -11,12 +11,13 @@ module vcor_io_posix
    implicit none
    private
 
-   public :: c_access, c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_mkdir, c_remove, &
-      & c_rename, c_write
+   public :: c_access, c_fclose, c_fflush, c_fopen, c_fwrite, c_getpid, c_mkdir, c_rename, c_write
    public :: c_fileno, c_fsync, c_isatty, c_lockf, c_pwrite
+   public :: c_close, c_fchmod, c_fdopen, c_link, c_mkdtemp, c_mkstemp, c_rmdir, c_umask, c_unlink
    public :: c_text, is_regular, last_errno, resolved_path, system_reason
+   public :: file_id_t, file_at, open_file, same_file_id, nothing_there, plain_file, something_else
    public :: access_exists, all_permissions, errno_exists, errno_interrupted, errno_locked, &
-      & lock_alone, standard_error, standard_output
+      & file_permissions, lock_alone, standard_error, standard_output
 
    !> Mode of `c_access`: does something of that name exist (F_OK)
    integer(c_int), parameter :: access_exists = 0
@@ -30,10 +31,23 @@ module vcor_io_posix
    integer(c_int), parameter :: standard_error = 2
    !> `errno`: there is something of that name (EEXIST)
    integer(c_int), parameter :: errno_exists = 17
+   !> Permissions rw-rw-rw-, of which the user's umask takes its part away
+   integer(c_int), parameter :: file_permissions = int(o'666', c_int)
    !> Permissions rwxrwxrwx, of which the user's umask takes its part away
    integer(c_int), parameter :: all_permissions = int(o'777', c_int)
    !> File descriptor of the standard output
    integer(c_int), parameter :: standard_output = 1
+
+   !> What there is at a path: nothing, a file, or something else: a link, a pipe, a folder
+   integer, parameter :: nothing_there = 0, plain_file = 1, something_else = 2
+
+   !> A file whatever its names: what there is, its device and its number on it
+   type :: file_id_t
+      !> `nothing_there`, `plain_file` or `something_else`
+      integer :: kind = nothing_there
+      !> Device and number, as the system keeps them
+      integer(c_int16_t) :: bits(8) = 0_c_int16_t
+   end type file_id_t
 
    interface
       !> Open a stream
@@ -159,14 +173,92 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_rename
 
-      !> Remove a file
-      function c_remove(path) result(status) bind(c, name="remove")
+      !> Remove a file, not a folder; a handler of signals may call it
+      function c_unlink(path) result(status) bind(c, name="unlink")
          import :: c_char, c_int
          !> Path, ends with NUL
          character(kind=c_char), intent(in) :: path(*)
          !> 0 on success
          integer(c_int) :: status
-      end function c_remove
+      end function c_unlink
+
+      !> Remove an empty folder; a handler of signals may call it
+      function c_rmdir(path) result(status) bind(c, name="rmdir")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: path(*)
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_rmdir
+
+      !> Give a file one more name; fails where there is anything of that name
+      function c_link(old, new) result(status) bind(c, name="link")
+         import :: c_char, c_int
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: old(*)
+         !> Path, ends with NUL
+         character(kind=c_char), intent(in) :: new(*)
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_link
+
+      !> Make a folder of a name that nothing has, for the user alone
+      function c_mkdtemp(template) result(place) bind(c, name="mkdtemp")
+         import :: c_char, c_ptr
+         !> Path that ends with XXXXXX and NUL; the name on return
+         character(kind=c_char), intent(inout) :: template(*)
+         !> Null if it failed
+         type(c_ptr) :: place
+      end function c_mkdtemp
+
+      !> Create and open a file of a name that nothing has, for the user alone
+      function c_mkstemp(template) result(descriptor) bind(c, name="mkstemp")
+         import :: c_char, c_int
+         !> Path that ends with XXXXXX and NUL; the name on return
+         character(kind=c_char), intent(inout) :: template(*)
+         !> File descriptor, -1 if it failed
+         integer(c_int) :: descriptor
+      end function c_mkstemp
+
+      !> A stream for a file that is open
+      function c_fdopen(descriptor, mode) result(stream) bind(c, name="fdopen")
+         import :: c_char, c_int, c_ptr
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> Mode as in C, ends with NUL
+         character(kind=c_char), intent(in) :: mode(*)
+         !> Stream, null if it failed
+         type(c_ptr) :: stream
+      end function c_fdopen
+
+      !> Close a file descriptor
+      function c_close(descriptor) result(status) bind(c, name="close")
+         import :: c_int
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_close
+
+      !> Set the permissions of an open file
+      function c_fchmod(descriptor, mode) result(status) bind(c, name="fchmod")
+         import :: c_int
+         !> File descriptor
+         integer(c_int), intent(in), value :: descriptor
+         !> Permissions
+         integer(c_int), intent(in), value :: mode
+         !> 0 on success
+         integer(c_int) :: status
+      end function c_fchmod
+
+      !> Set the permissions that new files do not get
+      function c_umask(mask) result(before) bind(c, name="umask")
+         import :: c_int
+         !> The permissions
+         integer(c_int), intent(in), value :: mask
+         !> Those before
+         integer(c_int) :: before
+      end function c_umask
 
       !> Make a directory
       function c_mkdir(path, mode) result(status) bind(c, name="mkdir")
@@ -282,6 +374,64 @@ contains
       status = c_statx(current_directory, c_text(path), 0_c_int, type_of_file, properties)
       if (status == 0) is_regular = iand(int(properties(15)), type_bits) == regular
    end function is_regular
+
+   !> What there is at a path, links not followed
+   function file_at(path) result(id)
+      !> Path to look at
+      character(len=*), intent(in) :: path
+      !> The file
+      type(file_id_t) :: id
+      ! AT_FDCWD and AT_SYMLINK_NOFOLLOW of C
+      integer(c_int), parameter :: current_directory = -100, no_follow = int(z'100', c_int)
+
+      id = file_of(current_directory, path, no_follow)
+   end function file_at
+
+   !> The file behind a descriptor
+   function open_file(descriptor) result(id)
+      !> File descriptor
+      integer(c_int), intent(in) :: descriptor
+      !> The file
+      type(file_id_t) :: id
+      ! AT_EMPTY_PATH of C
+      integer(c_int), parameter :: empty_path = int(z'1000', c_int)
+
+      id = file_of(descriptor, "", empty_path)
+   end function open_file
+
+   !> Ask the system for a file
+   function file_of(directory, path, flags) result(id)
+      !> Where a relative path begins
+      integer(c_int), intent(in) :: directory
+      !> Path
+      character(len=*), intent(in) :: path
+      !> Flags
+      integer(c_int), intent(in) :: flags
+      !> The file
+      type(file_id_t) :: id
+      ! STATX_TYPE and STATX_INO, S_IFMT and S_IFREG of C; the number is 8 bytes from byte 32 on,
+      ! the device 8 bytes from byte 136 on
+      integer(c_int), parameter :: type_and_number = int(z'101', c_int)
+      integer, parameter :: type_bits = int(o'170000'), regular = int(o'100000')
+      integer(c_int16_t) :: properties(128)
+
+      properties = 0_c_int16_t
+      if (c_statx(directory, c_text(path), flags, type_and_number, properties) /= 0) return
+      id%kind = merge(plain_file, something_else, iand(int(properties(15)), type_bits) == regular)
+      id%bits = [properties(17:20), properties(69:72)]
+   end function file_of
+
+   !> Whether two files are one, and there is one
+   pure function same_file_id(one, other) result(same)
+      !> A file
+      type(file_id_t), intent(in) :: one
+      !> Another file
+      type(file_id_t), intent(in) :: other
+      !> Whether both are the same
+      logical :: same
+
+      same = one%kind /= nothing_there .and. all(one%bits == other%bits)
+   end function same_file_id
 
    !> Value of `errno`: to be asked for right after the call that failed
    function last_errno() result(number)

@@ -15,7 +15,7 @@ contains
 
    !> Write a summary: HDF5 by one thread, as the library wants it, CSV by the others and, as soon
    !> as HDF5 is done, by that one too
-   subroutine write_summary(csv, hdf5, table, remarks, threads, error, csv_part, hdf5_part)
+   subroutine write_summary(csv, hdf5, table, remarks, threads, error)
       !> Name of the CSV file; empty: none
       character(len=*), intent(in) :: csv
       !> Name of the HDF5 file; empty: none
@@ -28,10 +28,6 @@ contains
       integer, intent(in) :: threads
       !> What went wrong first; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Name of the CSV file until it is complete, as in `create_file`
-      character(len=*), intent(in), optional :: csv_part
-      !> The same of the HDF5 file
-      character(len=*), intent(in), optional :: hdf5_part
       type(csv_file_t) :: file
       type(output_file_t) :: image
       type(error_t), allocatable :: trouble
@@ -39,13 +35,12 @@ contains
 
       ! no more than there are files and rows
       team = max(1, min(threads, 1 + row_count(table)))
-      if (len(csv) > 0) call begin_csv(file, csv, table, error, csv_part)
+      if (len(csv) > 0) call begin_csv(file, csv, table, error)
       if (allocated(error)) return
 !$omp parallel default(none) num_threads(team) &
-!$omp shared(file, csv, hdf5, hdf5_part, table, remarks, error, trouble, image)
+!$omp shared(file, csv, hdf5, table, remarks, error, trouble, image)
 !$omp single
-      if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks, &
-         temporary=hdf5_part, file=image)
+      if (len(hdf5) > 0) call write_hdf5(hdf5, table, error=trouble, remarks=remarks, file=image)
 !$omp end single nowait
       if (len(csv) > 0) call share_rows(file, table, 1, row_count(table), error)
 !$omp end parallel

@@ -1,0 +1,235 @@
+"""Files on their way: private, complete or not there, and nobody else's are touched."""
+
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import time
+
+import pytest
+from cases import SLS
+from long_sweep import PART, begin, same_files, wait_for, write_long_sweep
+from program import FILE, NUMERICAL, SUCCESS, complaint, contents, program
+
+SWEEP = SLS + "&sweep\n parameter = 'impact.velocity', start = 1, stop = 50, count = 40\n/\n"
+
+
+def scratch(folder):
+    """Private folders that are there."""
+    return list(folder.rglob(".vcor-*"))
+
+
+def plant(path, kind, victim):
+    """Something of that name that is no file."""
+    path.parent.mkdir(exist_ok=True)
+    if kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "folder":
+        path.mkdir()
+    elif kind == "link that leads nowhere":
+        path.symlink_to("nowhere")
+    else:
+        victim.write_text("precious")
+        path.symlink_to(victim)
+
+
+KINDS = ["link", "link that leads nowhere", "pipe", "folder"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_planted_unfinished_file(vcor, kind):
+    """What stands under the one name that a run looks for is refused at once, not followed."""
+    vcor.write(SWEEP)
+    plant(vcor.folder / "out" / PART, kind, vcor.folder / "victim")
+    for more in ([], ["--resume"]):
+        words = ["run", "case.nml", "--output", "out", *more]
+        vcor.refuses(*words, code=FILE, says=[f"out/{PART}", "expected a file or nothing"])
+    assert not (vcor.folder / "out" / "nowhere").exists()
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_planted_old_names(vcor, kind):
+    """Names that a file had on its way once mean nothing."""
+    vcor.write(SWEEP)
+    for name in ("case.new.h5", "case_summary.part.csv", ".vcor-XXXXXX"):
+        plant(vcor.folder / "out" / name, kind, vcor.folder / "victim")
+    vcor.succeeds("run", "case.nml", "--output", "out", "--quiet")
+    vcor.succeeds("plot", "out/case.h5", "--output", "out/figure.svg", "--script")
+    assert kind != "link" or (vcor.folder / "victim").read_text() == "precious"
+    assert not (vcor.folder / "out" / "nowhere").exists()
+    assert len(scratch(vcor.folder)) == 1
+
+
+def test_planted_results(vcor):
+    """A link under a real name gives way to the file; what it leads to stays."""
+    vcor.write(SLS)
+    names = ["case.h5", "case.csv", "case_summary.csv", "figure.svg", "figure.gp", "figure.dat"]
+    for name in names:
+        plant(vcor.folder / "out" / name, "link", vcor.folder / "victim")
+    assert vcor("run", "case.nml", "--output", "out", "--quiet").code == SUCCESS
+    vcor.succeeds("plot", "out/case.h5", "--output", "out/figure.svg", "--script")
+    assert (vcor.folder / "victim").read_text() == "precious"
+    assert not any((vcor.folder / "out" / name).is_symlink() for name in names)
+
+
+@pytest.mark.parametrize("mask, mode", [(0o022, 0o644), (0o027, 0o640), (0o077, 0o600), (0, 0o666)])
+def test_permissions(vcor, mask, mode):
+    """Files have the permissions that the user's umask leaves."""
+    vcor.write(SLS)
+    (vcor.folder / "sweep.nml").write_text(SWEEP)
+    vcor.write("t,E\n1,5\n2,4\n3,3\n4,2.5\n", "data.csv")
+    before = set(vcor.folder.iterdir())
+    vcor.succeeds("run", "case.nml", "sweep.nml", "--quiet", umask=mask)
+    vcor.succeeds("material", "case.nml", "--quiet", umask=mask)
+    vcor.succeeds("plot", "case.h5", "--script", umask=mask)
+    vcor("fit", "data.csv", "--model", "sls", "--output", "fit.nml", umask=mask)
+    for part in "12":
+        vcor.succeeds("run", "sweep.nml", "--shard", f"{part}/2", "--quiet", umask=mask)
+    made = set(vcor.folder.iterdir()) - before
+    assert len(made) == 15
+    assert {path.name: path.stat().st_mode & 0o777 for path in made} == {
+        path.name: mode for path in made
+    }
+
+
+def fake_gnuplot(vcor, commands):
+    """A gnuplot that does something else beside its script, $folder."""
+    (vcor.folder / "bin").mkdir()
+    path = vcor.folder / "bin" / "gnuplot"
+    path.write_text(f'#!/bin/sh\nfolder=$(dirname "$2")\n{commands}\n')
+    path.chmod(0o755)
+    return {"PATH": f"{path.parent}:{os.environ['PATH']}"}
+
+
+def test_private_folder(vcor):
+    """Nobody else can read what is not complete, or write where it is."""
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--quiet")
+    environment = fake_gnuplot(vcor, 'stat -c "%a %F" "$folder" > seen; basename "$folder" >> seen')
+    vcor("plot", "case.h5", "--output", "out/x.svg", env=environment, umask=0)
+    mode, name = (vcor.folder / "seen").read_text().splitlines()
+    assert mode == "700 directory"
+    assert name.startswith(".vcor-") and len(name) == 12
+    assert scratch(vcor.folder) == []
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_signal_removes_the_folder(vcor, number):
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--quiet")
+    # SIGINT does not count while vcor waits for a shell, as with system() of C
+    wait = "touch begun; exec sleep 100" if number != signal.SIGINT else "exit 1"
+    environment = fake_gnuplot(vcor, wait)
+    process = subprocess.Popen(
+        [program(), "plot", "case.h5", "--output", "out/"],
+        cwd=vcor.folder,
+        env=environment,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    if number != signal.SIGINT:
+        while not (vcor.folder / "begun").exists():
+            assert process.poll() is None
+            time.sleep(0.01)
+        process.send_signal(number)
+        assert process.wait() == -number
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert scratch(vcor.folder) == []
+
+
+def test_killed(vcor):
+    """What a killed run leaves is in nobody's way."""
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--quiet")
+    environment = fake_gnuplot(vcor, "kill -KILL $(ps -o ppid= -p $PPID)")
+    vcor("plot", "case.h5", env=environment)
+    assert len(scratch(vcor.folder)) <= 1
+    vcor.succeeds("plot", "case.h5")
+
+
+# A file that becomes too large
+
+
+def limited(kind, value):
+    """To be called before the program begins."""
+
+    def limit():
+        resource.setrlimit(kind, (value, value))
+
+    return limit
+
+
+@pytest.mark.parametrize("only", ["csv", "hdf5"])
+@pytest.mark.parametrize("text, size", [(SLS, 1024), (SLS, 40_000), (SWEEP, 2048)])
+def test_file_too_large(vcor, only, text, size):
+    """One line as for a full disk, and the old files are there."""
+    other = {"csv": "hdf5", "hdf5": "csv"}[only]
+    vcor.write(text.replace("&output\n", f"&output\n   {other} = .false.\n"))
+    for name in ("case.h5", "case.csv", "case_summary.csv"):
+        (vcor.folder / name).write_text("old")
+    before = contents(vcor.folder)
+    done = vcor("run", "case.nml", "--quiet", preexec_fn=limited(resource.RLIMIT_FSIZE, size))
+    complaint(done, FILE, ["cannot write './case", "File too large"])
+    after = contents(vcor.folder)
+    assert set(after) == set(before)
+    assert any(after[path] == before[path] for path in before if path.suffix != ".nml")
+
+
+def test_other_files_too_large(vcor):
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--quiet")
+    limit = limited(resource.RLIMIT_FSIZE, 1024)
+    before = contents(vcor.folder)
+    for words in (["material", "case.nml", "--quiet"], ["plot", "case.h5"], ["check", "case.nml"]):
+        with open(vcor.folder / "screen", "w") as screen:
+            done = vcor(*words, preexec_fn=limit, stdout=screen)
+        complaint(done, FILE, "cannot")
+        (vcor.folder / "screen").unlink()
+    assert set(contents(vcor.folder)) == set(before)
+
+
+def test_unfinished_file_too_large(vcor):
+    write_long_sweep(vcor, 1.0)
+    done = vcor(
+        "run", "case.nml", "--output", "out", preexec_fn=limited(resource.RLIMIT_FSIZE, 100_000)
+    )
+    complaint(done, FILE, [f"out/{PART}", "File too large"])
+    assert list((vcor.folder / "out").iterdir()) == []
+
+
+# Two at once
+
+
+def test_two_at_once(vcor):
+    """Of two runs of one sweep one has it, and says the other; the results are whole."""
+    write_long_sweep(vcor, 1.0)
+    for more in ([], ["--resume"]):
+        shutil.rmtree(vcor.folder / "out", ignore_errors=True)
+        both = [begin(vcor, "--quiet", *more) for _ in range(2)]
+        said = [process.communicate()[1] for process in both]
+        codes = [process.returncode for process in both]
+        assert sorted(codes) == sorted([FILE, NUMERICAL]), said
+        line = said[codes.index(FILE)]
+        assert line.count("\n") == 1 and line.startswith("vcor: error: ") and "in use" in line
+        assert sorted(path.name for path in (vcor.folder / "out").iterdir()) == [
+            "case.h5",
+            "case_summary.csv",
+        ]
+
+
+def test_begun_anew_in_use(vcor):
+    """Unfinished points that one run is about to replace are not another's."""
+    write_long_sweep(vcor, 1.0)
+    process = begin(vcor)
+    wait_for(vcor.folder / "out" / PART, process)
+    process.kill()
+    process.communicate()
+    both = [begin(vcor, "--quiet") for _ in range(2)]
+    said = [process.communicate()[1] for process in both]
+    codes = [process.returncode for process in both]
+    assert sorted(codes) == sorted([FILE, NUMERICAL]), said
+    assert "in use" in said[codes.index(FILE)]
+    vcor("run", "case.nml", "--output", "ref", "--quiet")
+    same_files(vcor.folder / "out", vcor.folder / "ref")
