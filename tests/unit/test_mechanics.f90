@@ -1,12 +1,12 @@
 !> Exact hereditary mechanics: receding contact, hereditary plate, bodies in series
 program test_mechanics
-   use vcor_error, only : error_t
+   use vcor_error, only : error_numerical, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
       waves_relaxing
    use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding
-   use vcor_impact_trajectory, only : contact_separated
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -15,6 +15,7 @@ program test_mechanics
    use vcor_material_type, only : material_t
    use vcor_solver_ive, only : ive_t
    use vcor_solver_product, only : product_t
+   use vcor_solver_type, only : solver_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : make_ive, make_product, random_t, rigid_on_plate, run, success
    implicit none
@@ -35,6 +36,7 @@ program test_mechanics
    call test_reduced_dimension()
    call test_reversible()
    call test_tight_accuracy()
+   call test_growing_again()
    call test_fractional()
    call test_nearly_fluid()
    call test_series()
@@ -257,6 +259,68 @@ contains
          end do
       end do
    end subroutine test_tight_accuracy
+
+   !> A plate so light that the contact grows again, by up to 1.4e-3 of the time for 4.2 mm, has no
+   !> result at any accuracy; somewhat heavier ones have
+   subroutine test_growing_again()
+      real(wp), parameter :: light(5) = [2.5e-3_wp, 3.0e-3_wp, 3.5e-3_wp, 4.0e-3_wp, 4.2e-3_wp]
+      real(wp), parameter :: heavier(2) = [4.4e-3_wp, 6.0e-3_wp]
+      real(wp), parameter :: poisson_ratio = 0.45_wp, density = 1100.0_wp, velocity = 5.0_wp
+      type(ive_t) :: fast
+      type(product_t) :: product
+      type(prony_t) :: rubber
+      type(impact_t) :: impact
+      type(error_t), allocatable :: error
+      integer :: i, digits
+
+      call make_rubber(rubber)
+      rubber%poisson_ratio = poisson_ratio
+      rubber%density = density
+      call rigid_on_plate(rubber, waves_relaxing, velocity, impact)
+      impact%law = law_receding
+      call make_product(0.0_wp, 1.0e-4_wp, product)
+      do i = 1, size(light)
+         call new_plate(impact%plate, rubber, light(i), waves_relaxing, error)
+         call success(error, "a light plate is built")
+         do digits = 4, 11
+            call make_ive(10.0_wp**(-digits), fast)
+            call check(is_growing(fast, impact), "a contact that grows again: ive says so")
+         end do
+         call check(is_growing(product, impact), "a contact that grows again: direct says so")
+      end do
+      do i = 1, size(heavier)
+         call new_plate(impact%plate, rubber, heavier(i), waves_relaxing, error)
+         call success(error, "a plate is built")
+         do digits = 4, 11
+            call make_ive(10.0_wp**(-digits), fast)
+            call check(.not. is_growing(fast, impact), "a contact that does not grow again: ive")
+         end do
+         call check(.not. is_growing(product, impact), &
+            "a contact that does not grow again: direct")
+      end do
+   end subroutine test_growing_again
+
+   !> Whether a solver says that the contact grows again; otherwise it has a result
+   function is_growing(solver, impact)
+      !> The solver
+      class(solver_t), intent(in) :: solver
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Whether it says so
+      logical :: is_growing
+
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+
+      call solver%solve(impact, trajectory, error)
+      is_growing = allocated(error)
+      if (is_growing) then
+         call check(error%code == error_numerical .and. index(error%message, "grows again") > 0, &
+            "the contact is refused because it grows again")
+      else
+         call check(trajectory%status == contact_separated, "the contact ends")
+      end if
+   end function is_growing
 
    !> The fractional kernels by both methods, product integration extrapolated
    subroutine test_fractional()

@@ -62,8 +62,6 @@ contains
       ! reduce it by half: handed down by the panels before, or rounding in stiff internal variables
       real(wp), parameter :: tolerable = 4.0_wp, tolerable_end = 100.0_wp
       integer, parameter :: enough_closings = 5
-      ! panels in which t1 grows, each half of the one before, that make it a fact
-      integer, parameter :: enough_growths = 5
       ! what Newton's method may leave, over that in the indentation of a companion
       real(wp), parameter :: share_of_tolerance = 3.0_wp
       ! relative error of the contact time that is rounding
@@ -77,15 +75,13 @@ contains
       real(wp), parameter :: aim = 0.3_wp
       ! a panel over its start that is rounding: it has been cut and cut again
       real(wp), parameter :: shortest = 1.0e-14_wp
-      ! growth of t1 that is rounding, over the time of the approach, and its rate
-      real(wp), parameter :: noticeable = 1.0e-6_wp, growing = 1.0e-3_wp
       ! error of a sum of exponentials with which nothing is certain that is as small
       real(wp), parameter :: unreliable = 1.0e-6_wp
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_length
       real(wp) :: refused_end, end_found, error_now, error_sum, impulse_error, sphere_sum
       real(wp) :: alpha_rate, tolerance
-      integer :: trial, n, kind, closings, growths
+      integer :: trial, n, kind, closings
       logical :: ends, last, halved, inherited
 
       n = collocator%rule%stages
@@ -94,7 +90,6 @@ contains
       refused_length = huge(1.0_wp)
       refused_end = huge(1.0_wp)
       closings = 0
-      growths = 0
       end_found = 0.0_wp
       kind = linear
       if (modes%contact%error > 0.0_wp .or. modes%contact%viscosity > 0.0_wp) kind = 0
@@ -181,15 +176,7 @@ contains
          end if
          refused = huge(1.0_wp)
          refused_length = huge(1.0_wp)
-         if (any(panel%t1(1:n) - panel%t1(0:n - 1) > noticeable*approach%end &
-             + growing*(panel%time(1:n) - panel%time(0:n - 1)))) then
-            ! a shorter panel knows more of what is inside
-            growths = growths + 1
-            if (growths <= enough_growths) then
-               length = 0.5_wp*taken
-               end_length = min(end_length, length)
-               cycle
-            end if
+         if (is_growing()) then
             ! it may be the error of the kernel that makes it grow
             if (modes%contact%error > unreliable) exit
             call raise(error, error_numerical, "the contact grows again before it has ended, " &
@@ -197,7 +184,6 @@ contains
             return
          end if
 
-         growths = 0
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
          sphere_sum = sphere_sum + companion_share*impulse_error/(impact%mass*impact%velocity)
@@ -321,6 +307,35 @@ contains
                /pace**2
          end associate
       end subroutine end_rates
+
+      !> Whether t1 rises somewhere in the panel. It does where its slope is positive in the
+      !> solution and in its companion, by more than the two differ anywhere in the panel
+      pure function is_growing() result(grows)
+         !> Whether it does
+         logical :: grows
+
+         real(wp), parameter :: roughly = 1.0e-3_wp
+         real(wp), dimension(0:width) :: slope, bend, other
+         real(wp) :: same(width), theta, doubt
+         integer :: j, points
+
+         slope = collocator%rule%slopes(panel%t1)
+         other = collocator%coarse%slopes(companion%t1)
+         same = collocator%to_coarse(:, 0)*slope(0) + apply(collocator%to_coarse(:, 1:), slope(1:))
+         ! at the end of the contact time stands still in the map, and t1 with it
+         points = merge(n - 2, n - 1, ends)
+         doubt = maxval(abs(same(1:points) - other(1:points)))
+         grows = any(min(same(1:points), other(1:points)) > doubt)
+         ! and where the slope is largest between them
+         j = maxloc(slope(0:n), 1) - 1
+         if (grows .or. j == 0 .or. j == n) return
+         bend = collocator%rule%slopes(slope)
+         if (bend(j) < 0.0_wp) j = j - 1
+         theta = collocator%rule%crossing(bend, collocator%rule%point(j), &
+            collocator%rule%point(j + 1), roughly)
+         grows = min(collocator%rule%interpolate(slope, theta), &
+            collocator%coarse%interpolate(other, theta)) > doubt
+      end function is_growing
 
       !> Where the condition is zero in a panel, as a share of its time
       function where_zero(panel) result(share)
