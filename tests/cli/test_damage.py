@@ -1,5 +1,7 @@
 """Damaged HDF5 files end with one line, or with the right results."""
 
+import os
+
 import h5py
 import pytest
 from damage import SHARDS, TARGETS, make_files, trials
@@ -32,6 +34,13 @@ def test_what_others_do_to_a_file(pristine, tmp_path, name):
     assert b"vcorseal" not in path.read_bytes()
     words = ["--kind", "map"] if name == "case.h5" else []
     vcor.succeeds("plot", name, *words, "--output", "figure.svg")
+
+
+@pytest.mark.parametrize("command", ["plot", "merge"])
+def test_pipe(vcor, command):
+    """Nobody is waited for."""
+    os.mkfifo(vcor.folder / "case.h5")
+    vcor.refuses(command, "case.h5", code=FILE, says="expected a file of results")
 
 
 def test_damaged_shard_is_finished_again(pristine, tmp_path):

@@ -22,7 +22,7 @@ module vcor_io_hdf5_reader
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths
-   use vcor_io_path, only : directory_exists, file_exists
+   use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
    use vcor_kinds, only : wp
    use vcor_study_text, only : printable, shortened
@@ -77,6 +77,10 @@ contains
             & //"results")
       else if (.not. file_exists(filename)) then
          call raise(error, error_file, reader%path//": there is no such file")
+      else if (.not. plain_file_exists(filename)) then
+         ! a pipe would keep a reader waiting
+         call raise(error, error_file, reader%path//": found a device or a pipe, expected a file " &
+            & //"of results")
       end if
       if (allocated(error)) return
       ! before HDF5 sees anything of it
