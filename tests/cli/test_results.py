@@ -235,6 +235,67 @@ def test_sticks_by_the_default_method(vcor):
             sticks(vcor, "auto")
 
 
+FLUID = """\
+&impact velocity = 1.0 /
+&sphere radius = 0.01, material = 'steel', mass = 0.03 /
+&plate material = 'fluid', waves = 'none' /
+&material name = 'steel', model = 'rigid' /
+&material
+   name = 'fluid', model = 'prony', density = 1100, poisson_ratio = 0.5
+   equilibrium_modulus = 1e-3, moduli = 1e6, rates = 1e4
+/
+"""
+# Restitution by direct at 1e-6, which converges to an error of 1e-12: rate, equilibrium modulus
+SOFT_SPRINGS = {
+    ("1e4", "1e-6"): 9.45e-11,
+    ("1e4", "1e-3"): 9.4494e-8,
+    ("1e5", "1e-6"): 4.386e-9,
+    ("1e6", "1e-9"): 2.04e-10,
+    ("1e6", "1"): 0.130716,
+}
+
+
+@pytest.mark.parametrize("rate, modulus", SOFT_SPRINGS)
+def test_equilibrium_modulus_of_next_to_nothing(vcor, rate, modulus):
+    """However soft a spring is, in the end it pushes the sphere off: at any accuracy."""
+    vcor.write(FLUID)
+    for method, accuracies in {
+        "ive": ("1e-5", "1e-6", "1e-7", "1e-8", "1e-9", "1e-10", "1e-11"),
+        "direct": ("1e-4", "1e-6"),
+    }.items():
+        for accuracy in accuracies:
+            changes = {
+                "fluid.rates": rate,
+                "fluid.equilibrium_modulus": modulus,
+                "solver.method": method,
+                "solver.accuracy": accuracy,
+            }
+            words = [word for key in changes for word in ("--set", f"{key}={changes[key]}")]
+            numbers = vcor.numbers("case.nml", *words)
+            assert numbers["status"] == "separated"
+            expected = SOFT_SPRINGS[rate, modulus]
+            error = abs(float(numbers["cor"]) - expected)
+            assert error <= 3 * float(numbers["cor_error"]) + 1e-3 * expected + 1e-12
+            assert float(numbers["cor_error"]) <= max(1.0e-6, float(accuracy))
+
+
+def test_reason_to_stick(vcor):
+    """It names what is so: no equilibrium modulus, losses in spite of one, a plate that gives way."""
+    plate = "half_thickness = 1e-3, waves = 'constant'"
+    reasons = {
+        ("0", "waves = 'none'"): "without equilibrium modulus",
+        ("1e-20", "waves = 'none'"): "the losses in the material leave no rebound",
+        ("1e8", plate): "the plate is too light",
+    }
+    for (modulus, plate), reason in reasons.items():
+        vcor.write(
+            FLUID.replace("waves = 'none'", plate).replace("_modulus = 1e-3", f"_modulus = {modulus}")
+        )
+        for method in ("ive", "direct"):
+            done = vcor("run", "case.nml", "--set", f"solver.method={method}", "--print", "status")
+            complaint(done, NUMERICAL, ["sticks", reason], "case.nml")
+
+
 def test_velocity_beyond_the_numbers(sls):
     """Its energy would overflow: refused, not taken for a sphere that sticks."""
     done = sls("run", "case.nml", "--set", "impact.velocity=1e200")

@@ -8,8 +8,8 @@ program test_impact
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
    use vcor_impact_problem, only : hertz_contact_time, impact_t, new_impact
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate_velocity, &
-      col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, contact_separated, &
-      trajectory_t
+      col_sphere, col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, &
+      contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -569,25 +569,54 @@ contains
          "without any change")
    end subroutine test_sample
 
-   !> What moves is not stuck, whatever its force; what stands still is, if nothing pushes it
+   !> What moves is not stuck, whatever its force; what stands still is, if nothing pushes it: a
+   !> fluid in any case, a solid where the plate has gone with the sphere and the dent is gone
    subroutine test_stuck()
-      real(wp), parameter :: mass = 2.0_wp
+      real(wp), parameter :: mass = 2.0_wp, dent = 0.1_wp
       type(trajectory_t) :: trajectory
+      type(impact_t) :: fluid, solid
+
+      call build_fluid(0.0_wp, mass, fluid)
+      call build_fluid(1.0e-3_wp, mass, solid)
+      call check(.not. fluid%springs_back(), "a fluid has no spring")
+      call check(solid%springs_back(), "a soft spring is one")
+      call build_fluid(1.0e-20_wp, mass, solid)
+      call check(.not. solid%springs_back(), "unless rounding hides it")
+      call build_fluid(1.0e-3_wp, mass, solid)
 
       call trajectory%reserve(1)
       trajectory%state = 0.0_wp
       trajectory%last = 1
       trajectory%state(col_velocity, 0) = 1.0_wp
-      trajectory%state(col_indentation, 1) = 0.1_wp
-      call check(trajectory%is_stuck(mass), "at rest without force")
+      trajectory%state(col_indentation, 1) = dent
+      trajectory%state(col_sphere, 1) = dent
+      call check(trajectory%is_stuck(fluid), "at rest without force")
+      call check(.not. trajectory%is_stuck(solid), "a spring will push")
       trajectory%state(col_force, 1) = -1.0e-12_wp
-      call check(trajectory%is_stuck(mass), "rounding of a force pushes nothing")
+      call check(trajectory%is_stuck(fluid), "rounding of a force pushes nothing")
       trajectory%state(col_force, 1) = 1.0_wp
-      call check(.not. trajectory%is_stuck(mass), "a force pushes")
+      call check(.not. trajectory%is_stuck(fluid), "a force pushes")
       trajectory%state(col_force, 1) = -10.0_wp
       trajectory%state(col_velocity, 1) = -0.3_wp
-      call check(.not. trajectory%is_stuck(mass), "motion is no less for a force that pulls")
+      call check(.not. trajectory%is_stuck(fluid), "motion is no less for a force that pulls")
+      trajectory%state(:, 1) = 0.0_wp
+      trajectory%state(col_sphere, 1) = dent
+      call check(trajectory%is_stuck(solid), "in a plate that goes with the sphere")
    end subroutine test_stuck
+
+   !> A sphere on a Maxwell fluid beside a spring
+   subroutine build_fluid(equilibrium, mass, impact)
+      real(wp), intent(in) :: equilibrium
+      real(wp), intent(in) :: mass
+      type(impact_t), intent(out) :: impact
+
+      type(prony_t) :: material
+      type(error_t), allocatable :: error
+
+      call new_prony(material, equilibrium, [1.0e6_wp], [1.0e4_wp], 0.0_wp, error)
+      call success(error, "a fluid")
+      call rigid_on_plate(material, waves_none, 1.0_wp, impact, mass=mass)
+   end subroutine build_fluid
 
    !> A trajectory made by hand: F = F0 sin(pi t/t0), so that all integrals are known
    subroutine test_outcome()

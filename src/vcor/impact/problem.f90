@@ -68,6 +68,8 @@ module vcor_impact_problem
       procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
       procedure :: patience
+      !> Whether it has an equilibrium modulus to push the bodies apart
+      procedure :: springs_back
       !> Zener's parameter lambda
       procedure :: inelasticity
       !> The same for what plate and kernel are during the contact
@@ -287,6 +289,23 @@ contains
       if (firmness > 0.0_wp) time = max(time, self%hertz_time(firmness))
       time = 1000.0_wp*time
    end function patience
+
+   !> Whether the contact has an equilibrium modulus that pushes the bodies apart once all else has
+   !> relaxed. The restitution that it gives to a fluid is about its ratio to the mean modulus over
+   !> the contact: below the rounding of the velocities it is none
+   pure function springs_back(self)
+      !> The impact
+      class(impact_t), intent(in) :: self
+      !> Whether it has
+      logical :: springs_back
+
+      real(wp), parameter :: rounding = 1.0e-13_wp
+      real(wp) :: time
+
+      time = self%time_scale()
+      springs_back = self%hertz_factor*self%modulus%rubbery()*time &
+         > rounding*(self%kernel_integral(time) + self%kernel_viscosity())
+   end function springs_back
 
    !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
    !> that is infinite at t = 0, the limit of k(0) going there

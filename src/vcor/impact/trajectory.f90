@@ -1,6 +1,7 @@
 !> Course of an impact, as every solver returns it
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -137,23 +138,29 @@ contains
       self%map(:, self%steps + 1) = map
    end subroutine add_map
 
-   !> Whether all motion has died out in contact at the last node: what energy is left cannot make a
-   !> rebound that deserves the name
-   pure function is_stuck(self, mass)
+   !> Whether all motion has died out in contact at the last node, for good: what energy is left
+   !> cannot make a rebound that deserves the name. A contact with an equilibrium modulus is at rest
+   !> for a moment at its largest indentation, however soft it is; it sticks only where a plate has
+   !> taken up the blow and the dent is gone
+   pure function is_stuck(self, impact)
       !> The trajectory
       class(trajectory_t), intent(in) :: self
-      !> Mass of the sphere [kg]
-      real(wp), intent(in) :: mass
+      !> The impact
+      type(impact_t), intent(in) :: impact
       !> Whether the sphere sticks
       logical :: is_stuck
 
       ! a rebound with all of it had a coefficient of restitution of 1e-7
       real(wp), parameter :: negligible = 1.0e-14_wp
+      ! indentation over the way of the sphere that is no dent
+      real(wp), parameter :: no_dent = 1.0e-3_wp
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))
-         is_stuck = 0.5_wp*mass*(now(col_velocity)**2 + now(col_sphere_velocity)**2) &
+         is_stuck = 0.5_wp*impact%mass*(now(col_velocity)**2 + now(col_sphere_velocity)**2) &
             + max(0.0_wp, now(col_force)*now(col_indentation)) &
-            <= negligible*0.5_wp*mass*first(col_velocity)**2
+            <= negligible*0.5_wp*impact%mass*first(col_velocity)**2
+         if (is_stuck .and. abs(now(col_indentation)) > no_dent*abs(now(col_sphere))) &
+            is_stuck = .not. impact%springs_back()
       end associate
    end function is_stuck
 

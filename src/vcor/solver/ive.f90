@@ -392,18 +392,18 @@ contains
                step%map_scale(), modes%contact, panel, velocity, &
                trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
          end if
-         if (ends) then
+         if (trajectory%status == contact_separated) then
+            if (panel%time(n) >= end_time) return
+         else if (trajectory%is_stuck(impact)) then
+            trajectory%status = contact_sticking
+            return
+         else if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) return
             ahead = 0
             end_time = 2.0_wp*recorded%time(n)
             if (self%end_time > 0.0_wp) end_time = self%end_time
-         end if
-         if (trajectory%status == contact_separated) then
             if (panel%time(n) >= end_time) return
-         else if (trajectory%is_stuck(impact%mass)) then
-            trajectory%status = contact_sticking
-            return
          else if (last) then
             return
          end if

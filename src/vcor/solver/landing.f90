@@ -292,7 +292,7 @@ contains
 
       ! what rounding may add per panel, mostly through the eigenvectors of the integration matrices
       real(wp), parameter :: rounding = 5.0e-13_wp
-      real(wp) :: impulse_error, time_error, alpha_rate, fall, least, share
+      real(wp) :: impulse_error, time_error, alpha_rate, fall, moved, plate, least, share
 
       associate (n => rule%stages)
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
@@ -302,11 +302,17 @@ contains
          fall = slope_at_end(rule, panel, panel%force)
          time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
-         ! the end is moved to its zero along straight lines
-         least = rounding*real(panels, wp) + (panel%force(n)/(fall*panel%time(n)))**2
+         ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
+         ! of the velocity of the plate
+         moved = panel%force(n)/fall
+         plate = impact%velocity*panel%time(n) - panel%second_impulse(n)/impact%mass &
+            - panel%indentation(n)
+         least = rounding*real(panels, wp) &
+            + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
          share = merge(1.0_wp, share_of_difference(panels), branches)/impact%velocity
          cor_sphere_error = least + share*impulse_error/impact%mass
-         cor_error = cor_sphere_error + share*(impulse_error*alpha_rate &
+         cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
+            *(moved/panel%time(n))**2 + share*(impulse_error*alpha_rate &
             + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + abs(panel%drift(n) - coarse%drift(n - 1)))

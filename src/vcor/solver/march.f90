@@ -274,7 +274,7 @@ contains
             end if
          end if
          if (t + dt > end_time*(1.0_wp + 1.0e-9_wp)) exit
-         if (trajectory%is_stuck(impact%mass)) then
+         if (trajectory%is_stuck(impact)) then
             trajectory%status = contact_sticking
             exit
          end if

@@ -187,7 +187,7 @@ contains
       real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, whole_impulse
       real(wp) :: end_time, node(columns)
       integer :: n, room
-      logical :: frozen, two_terms, receding
+      logical :: frozen, two_terms, receding, ends
 
       viscosity = impact%kernel_viscosity()
       frozen = impact%plate%frozen()
@@ -311,25 +311,24 @@ contains
          trajectory%last = n
          trajectory%steps = n
          ! while the indentation grows the force is positive: what is not is rounding
+         ends = force <= 0.0_wp .and. speed < 0.0_wp
          if (contact%shrinks) then
-            if (contact%t1(3) <= 0.0_wp) then
-               trajectory%state(:, n) = end_of_receding_contact(impact, contact%t1, trajectory, n)
-               trajectory%status = contact_separated
-               exit
-            end if
-         else if (force <= 0.0_wp .and. speed < 0.0_wp) then
+            ends = contact%t1(3) <= 0.0_wp
+            if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, contact%t1, &
+               trajectory, n)
+         else if (ends) then
             trajectory%state(:, n) = end_of_contact(impact, stiffness, trajectory, n)
+         end if
+         if (trajectory%is_stuck(impact)) then
+            trajectory%status = contact_sticking
+            exit
+         else if (ends) then
             trajectory%status = contact_separated
             if (.not. self%ghost) exit
             trajectory%final = n + 1
             trajectory%state(:, n + 1) = node
             if (.not. self%end_time > 0.0_wp) end_time = 2.0_wp*t
-            cycle
-         end if
-         if (t + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
-            exit
-         else if (trajectory%is_stuck(impact%mass)) then
-            trajectory%status = contact_sticking
+         else if (t + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
             exit
          end if
       end do

@@ -189,13 +189,13 @@ contains
          sphere_sum = sphere_sum + companion_share*impulse_error/(impact%mass*impact%velocity)
          call record(collocator%rule, impact, panel%panel_t, trajectory)
          trajectory%last = trajectory%final
-         if (ends) then
+         if (trajectory%is_stuck(impact)) then
+            trajectory%status = contact_sticking
+            return
+         else if (ends) then
             trajectory%status = contact_separated
             trajectory%cor_error = error_sum + rounding*real(trajectory%steps, wp)
             trajectory%cor_sphere_error = sphere_sum + rounding*real(trajectory%steps, wp)
-            return
-         else if (trajectory%is_stuck(impact%mass)) then
-            trajectory%status = contact_sticking
             return
          else if (last) then
             return
