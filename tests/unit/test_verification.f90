@@ -330,6 +330,9 @@ contains
 
    !> What is wrong is found
    subroutine test_objections()
+      ! the last value is right, and each difference eight times the one before
+      real(wp), parameter :: growing(3) = 1.0e-4_wp*[-9.0_wp, -8.0_wp, 0.0_wp]
+      real(wp), parameter :: jumping(3) = 1.0e-4_wp*[-0.5_wp, -2.0_wp, -0.1_wp]
       type(comparison_t) :: good, bad
       integer :: i
 
@@ -350,6 +353,33 @@ contains
       end do
       call judge_numbers(bad)
       call objects(bad, "do not agree on max_force", "a force that differs")
+
+      bad = good
+      do i = 1, size(attempt_halved)
+         associate (outcome => bad%attempts(attempt_halved(i))%outcome)
+            outcome%max_force = (1.0_wp + growing(i))*outcome%max_force
+         end associate
+      end do
+      call judge_numbers(bad)
+      call objects(bad, "direct does not converge to a max_force", "differences that grow")
+
+      ! the first value right by chance, the errors of the others falling
+      bad = good
+      do i = 1, size(attempt_halved)
+         associate (outcome => bad%attempts(attempt_halved(i))%outcome)
+            outcome%max_force = (1.0_wp + jumping(i))*outcome%max_force
+         end associate
+      end do
+      call judge_numbers(bad)
+      call check(.not. allocated(bad%objection), "values that jump as maxima on a grid do are fine")
+
+      bad = good
+      associate (outcome => bad%attempts(attempt_first)%outcome)
+         outcome%cor = outcome%cor + 0.5_wp*bad%attempts(attempt_first)%accuracy
+         outcome%cor_error = 0.5e-3_wp*bad%attempts(attempt_first)%accuracy
+      end associate
+      call judge_numbers(bad)
+      call objects(bad, "ive is farther from", "an estimate a thousand times too small")
 
       bad = good
       associate (outcome => bad%attempts(attempt_refined)%outcome)

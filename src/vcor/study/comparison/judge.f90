@@ -107,9 +107,8 @@ contains
       self%digits = min(most_digits, max(0, floor(-log10(maxval(uncertainty)))))
    end subroutine tabulate
 
-   !> Whether each attempt is as far from the best cor and cor_sphere as it says, or else within the
-   !> accuracy that the case asks for. Not the case's own scheme: how far that is off is shown, and
-   !> the choice of the case
+   !> Whether each attempt is as far from the best cor and cor_sphere as it says, however good it
+   !> is. Not the case's own scheme: how far that is off is shown, and the choice of the case
    pure subroutine judge_errors(self)
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
@@ -120,8 +119,7 @@ contains
       do i = attempt_first, attempt_count
          associate (this => self%attempts(i))
             if (.not. this%made) cycle
-            fine = is_honest(this, error_of_best(self)) &
-               .or. within(this%seen, self%attempts(attempt_first)%accuracy)
+            fine = is_honest(this, error_of_best(self))
             do j = 1, size(fine)
                if (.not. fine(j)) call object(self, trim(this%label)//' is farther from the best ' &
                   //trim(compared_names(j))//' than three times the error it states')
@@ -234,8 +232,9 @@ contains
    end function allowed_change
 
    !> Whether three values get closer to each other, or are close enough. Where they do not, the
-   !> error that is estimated from them is large and would allow anything. The first two may be
-   !> closer than they should by chance
+   !> error that is estimated from them is large and would allow anything. Where the first one is
+   !> right by chance and errors halve at least, the last difference is up to one and a half times
+   !> the first: maxima on a grid jump like that
    pure function settles(value, close_enough)
       !> Values with steps halved from one to the next
       real(wp), intent(in) :: value(3)
@@ -244,7 +243,7 @@ contains
       !> Whether they do
       logical :: settles
 
-      real(wp), parameter :: chance = 8.0_wp
+      real(wp), parameter :: chance = 1.5_wp
 
       settles = all(ieee_is_finite(value))
       if (settles) settles = within(value(3) - value(2), &
