@@ -97,3 +97,23 @@ def test_unknown_words(vcor):
     text, line = edit(f"&contact\n/\n{SLS}", "contact", "law", "'recedeing'")
     vcor.write(text)
     vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="receding")
+
+
+@pytest.mark.parametrize("exponent", [0.95, 0.98, 0.995])
+def test_hereditary_plate_next_to_a_maxwell_element(vcor, exponent):
+    """The spectrum of its memory has features as narrow as 1 - exponent, and is resolved."""
+    vcor.write(f"""
+        &impact velocity = 5 /
+        &sphere radius = 0.01, material = 'steel' /
+        &plate material = 'rubber', half_thickness = 0.02, waves = 'hereditary' /
+        &material name = 'steel', model = 'rigid', density = 7800 /
+        &material
+           name = 'rubber', model = 'mittag_leffler', density = 1100, poisson_ratio = 0.45
+           equilibrium_modulus = 1e6, relaxing_modulus = 2e7, exponent = {exponent}, time = 1e-5
+        /
+    """)
+    ive = vcor.numbers("case.nml")
+    direct = vcor.numbers("case.nml", "--set", "solver.method=direct")
+    assert float(ive["cor_error"]) <= 1e-8
+    difference = abs(float(ive["cor"]) - float(direct["cor"]))
+    assert difference <= 3 * (float(ive["cor_error"]) + float(direct["cor_error"]))

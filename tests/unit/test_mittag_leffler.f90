@@ -6,6 +6,7 @@ program test_mittag_leffler
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
+   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_prony, only : new_sls, prony_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
@@ -33,6 +34,7 @@ program test_mittag_leffler
    call test_cerf()
    call test_sls()
    call test_nearly_sls()
+   call test_narrow_peak()
    call test_extremes()
    call test_refusals()
    call finish()
@@ -196,6 +198,35 @@ contains
             "and its integral")
       end do
    end subroutine test_nearly_sls
+
+   !> As a sum of exponentials too: the peak of the spectrum is as narrow as 1 - a, and is met
+   subroutine test_narrow_peak()
+      real(wp), parameter :: below(5) = [1.0e-2_wp, 1.0e-6_wp, 1.0e-9_wp, 1.0e-12_wp, &
+         epsilon(1.0_wp)]
+      real(wp), parameter :: tau = 1.0e-3_wp, window(3) = [1.0e-4_wp, 1.0e-3_wp, 1.0e-2_wp]
+      real(wp), parameter :: part(3) = [0.1_wp, 0.5_wp, 1.0_wp]
+      real(wp), parameter :: accuracy = 1.0e-12_wp, wanted = 1.0e-11_wp
+      class(material_t), allocatable :: material
+      type(exponential_sum_t) :: terms
+      real(wp) :: time
+      integer :: i, j, k
+
+      do i = 1, size(below)
+         call build(1.0_wp - below(i), tau, material)
+         if (.not. allocated(material)) cycle
+         do j = 1, size(window)
+            call material%exponentials(window(j), accuracy, terms)
+            do k = 1, size(part)
+               time = part(k)*window(j)
+               call check_relative(terms%integral(time), material%integral(time), wanted, &
+                  "the integral of the sum")
+               call check_relative(terms%equilibrium + sum(terms%moduli*exp(-terms%rates*time)), &
+                  material%relaxation(time), wanted, "the sum")
+            end do
+            call check(terms%error <= wanted, "and it knows that it is good")
+         end do
+      end do
+   end subroutine test_narrow_peak
 
    !> A material by the factory: 1 MPa of 4 MPa are left
    subroutine build(exponent, tau, material)

@@ -158,7 +158,8 @@ contains
       !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
-      integer, parameter :: most_refinements = 5
+      ! the rule for gaps gets as many digits more with each, the other one a step so much shorter
+      integer, parameter :: most_for_gaps = 5, most_for_spectra = 18
       ! what the numerical inversion leaves
       real(wp), parameter :: rounding = 3.0e-12_wp
       ! the square root has a strip of its own, narrower than that of the material, and what is slow
@@ -171,7 +172,7 @@ contains
       integer :: refinement
 
       terms%error = huge(1.0_wp)
-      do refinement = 0, most_refinements
+      do refinement = 0, merge(most_for_gaps, most_for_spectra, self%material%discrete)
          if (self%material%discrete) then
             call sum_over_gaps(self, self%gaps, window, &
                max(accuracy, rounding)**(refinement + 1), now)

@@ -32,6 +32,7 @@ module vcor_material_mittag_leffler
       procedure :: rate
       procedure :: integral
       procedure :: complex_modulus
+      procedure :: spectrum
       procedure :: glassy
       procedure :: rubbery
       procedure :: exponentials
@@ -128,6 +129,30 @@ contains
 
       value = t*(self%equilibrium + self%relaxing*self%rule%mean(self%power(t)))
    end function integral
+
+   !> Relaxation spectrum (E_1/(4 pi)) sin(phi)/(sinh(a x/2)^2 + sin(phi/2)^2), phi = pi (1 - a), at
+   !> the rate exp(x)/tau: for a near 1 a peak about as narrow as 1 - a, of which a rate keeps too
+   !> few digits
+   elemental function spectrum(self, rate, beyond_peak) result(density)
+      !> The material
+      class(mittag_leffler_t), intent(in) :: self
+      !> Rate [1/s], > 0
+      real(wp), intent(in) :: rate
+      !> x
+      real(wp), intent(in) :: beyond_peak
+      !> Spectrum per logarithm of the rate [Pa]
+      real(wp) :: density
+
+      ! where sinh would overflow there is nothing left
+      real(wp), parameter :: far = 600.0_wp
+      real(wp) :: phi
+
+      associate (not_needed => rate)
+      end associate
+      phi = pi*(1.0_wp - self%exponent)
+      density = 0.25_wp*self%relaxing/pi*sin(phi) &
+         /(sinh(0.5_wp*self%exponent*min(abs(beyond_peak), far))**2 + sin(0.5_wp*phi)**2)
+   end function spectrum
 
    !> Complex modulus E_0 + E_1 p/(1 + p) with p = (s tau)^a = q exp(i phi)
    !>

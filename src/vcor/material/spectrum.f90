@@ -79,7 +79,7 @@ contains
       ! what the last node adds to the dashpot, over the dashpot and the accuracy
       real(wp), parameter :: negligible = 1.0e-3_wp
       real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
-      real(wp) :: ratio, run_low, run_high
+      real(wp) :: ratio, run_low, run_high, beyond_peak
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
@@ -119,13 +119,15 @@ contains
          y = real(j, wp)*h - run_low + run_high
          slope = 1.0_wp + run_low + run_high
          if (abs(y) > farthest) cycle
+         beyond_peak = y - y_p
          if (c > 0.0_wp) then
-            w = spread_over_peak((y - y_p)/d, c/d)
-            y = y_p + d*sinh(w)
+            w = spread_over_peak(beyond_peak/d, c/d)
+            beyond_peak = d*sinh(w)
+            y = y_p + beyond_peak
             slope = slope*d*cosh(w)/(d*cosh(w) + c)
          end if
          rate = exp(y + shift)
-         modulus = h*slope/pi*aimag(material%complex_modulus(cmplx(-rate, 0.0_wp, wp)))
+         modulus = h*slope*material%spectrum(rate, beyond_peak)
          if (rate*window < constant) then
             terms%equilibrium = terms%equilibrium + modulus
          else if (rate*window > 1.0_wp/constant) then

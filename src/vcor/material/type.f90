@@ -1,6 +1,7 @@
 !> What a solver may ask of a linear viscoelastic material
 module vcor_material_type
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -36,6 +37,8 @@ module vcor_material_type
       procedure(of_time_i), deferred :: integral
       !> Complex modulus s L{E}(s)
       procedure(complex_modulus_i), deferred :: complex_modulus
+      !> Relaxation spectrum
+      procedure :: spectrum
       !> Glassy modulus E(0), infinite for a singular kernel
       procedure(limit_i), deferred :: glassy
       !> Rubbery modulus E(infinity)
@@ -109,6 +112,24 @@ contains
 
       value = self%relaxation(t)
    end subroutine relaxation_at
+
+   !> Relaxation spectrum l H(l) of E(t) = E_0 + int H(l) exp(-l t) dl: Im Q(-l + i0)/pi with the
+   !> complex modulus Q. A model with a narrow peak takes the distance from it, which it cannot know
+   !> from the rate to all digits
+   elemental function spectrum(self, rate, beyond_peak) result(density)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> Rate l [1/s], > 0
+      real(wp), intent(in) :: rate
+      !> ln of the rate over that of the peak of the spectrum, if it has a narrow one
+      real(wp), intent(in) :: beyond_peak
+      !> Spectrum per ln(l) [Pa]
+      real(wp) :: density
+
+      associate (not_needed => beyond_peak)
+      end associate
+      density = aimag(self%complex_modulus(cmplx(-rate, 0.0_wp, wp)))/pi
+   end function spectrum
 
    !> Factor from E to the plane-strain modulus: E' = E/(1 - nu^2), Eq. (1)
    elemental function plane_strain_factor(self) result(factor)
