@@ -52,9 +52,55 @@ module vcor_material
    contains
       !> Set a number by its name
       procedure :: set
+      !> Whether another one has the same modulus
+      procedure :: deforms_as
    end type material_data_t
 
 contains
+
+   !> Whether two descriptions are of one and the same modulus, whatever their names and densities
+   pure function deforms_as(self, other) result(is_same)
+      !> The description
+      class(material_data_t), intent(in) :: self
+      !> The other one
+      type(material_data_t), intent(in) :: other
+      !> Whether they are
+      logical :: is_same
+
+      is_same = self%model == other%model
+      if (.not. is_same) return
+      is_same = is_equal(numbers(self), numbers(other)) .and. is_equal(self%moduli, other%moduli) &
+         .and. is_equal(self%rates, other%rates) .and. is_equal(self%times, other%times)
+
+   contains
+
+      !> The numbers of a description that are part of its modulus
+      pure function numbers(data)
+         !> The description
+         type(material_data_t), intent(in) :: data
+         !> Numbers
+         real(wp) :: numbers(11)
+
+         numbers = [data%poisson_ratio, data%modulus, data%glassy_modulus, data%alpha, data%beta, &
+            data%equilibrium_modulus, data%viscosity, data%coefficient, data%exponent, &
+            data%relaxing_modulus, data%time]
+      end function numbers
+
+      !> Whether two lists are equal, or both not there
+      pure function is_equal(one, another)
+         !> A list
+         real(wp), intent(in), optional :: one(:)
+         !> Another one
+         real(wp), intent(in), optional :: another(:)
+         !> Whether they are
+         logical :: is_equal
+
+         is_equal = present(one) .eqv. present(another)
+         if (.not. (is_equal .and. present(one))) return
+         is_equal = size(one) == size(another)
+         if (is_equal) is_equal = .not. any(abs(one - another) > 0.0_wp)
+      end function is_equal
+   end function deforms_as
 
    !> Set a number by its name, that of the component
    pure subroutine set(self, name, value, is_taken)

@@ -74,7 +74,7 @@ contains
       class(material_t), intent(in) :: sphere
       !> Material of the plate
       class(material_t), intent(in) :: plate
-      !> Whether both are one and the same material
+      !> Whether both have one and the same modulus
       logical, intent(in) :: same
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error

@@ -233,7 +233,7 @@ contains
       ! first step in x over the square root of the expected contact time, where the kernel relaxes
       ! within a step and where it does not, at accuracy 1e-8, and its power of the accuracy: with
       ! `three_panels`, which serves where nothing is halved, three make an impact, with the longest
-      ! one two
+      ! one two. A sum of both signs may fall faster than a relaxation, and needs more
       real(wp), parameter :: short_step = 0.25_wp, long_step = 0.34_wp, longest_step = 0.48_wp
       real(wp), parameter :: three_panels = 0.35_wp
       real(wp), parameter :: fast = 3.0_wp
@@ -257,13 +257,13 @@ contains
       real(wp) :: excess, refused, growth, largest_growth, force_error, velocity, fall
       real(wp) :: end_found, inner, largest_inner, share_left, approach_error
       integer :: trial, n, ahead
-      logical :: ends, last, inherited, shallow, branches, recedes, turns
+      logical :: ends, last, inherited, shallow, branches, recedes, turns, signed
 
       n = self%collocator%rule%stages
       ! the noise of moduli of both signs is not to be resolved
       accuracy = self%accuracy
-      if (any(modes%contact%moduli < 0.0_wp)) &
-         accuracy = max(accuracy, sensitivity*modes%contact%error)
+      signed = any(modes%contact%moduli < 0.0_wp)
+      if (signed) accuracy = max(accuracy, sensitivity*modes%contact%error)
       complete = .true.
       end_time = patience
       allocate (start%lag(size(modes%contact%rates)), start%p(size(modes%plate%rates)))
@@ -274,7 +274,7 @@ contains
       largest_inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth
-         if (levels(accuracy) == 0 .and. .not. recedes) step%reach = three_panels
+         if (levels(accuracy) == 0 .and. .not. (recedes .or. signed)) step%reach = three_panels
       else if (recedes) then
          step%reach = receding_reach*long_step*(accuracy/usual)**short_growth
       else

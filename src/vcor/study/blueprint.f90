@@ -324,7 +324,7 @@ contains
       call build_materials(self, error, cause)
       if (allocated(error)) return
       call new_contact_modulus(impact%modulus, self%sphere%material, self%plate%material, &
-         self%sphere%item == self%plate%item, error, self%pair)
+         self%sphere%data%deforms_as(self%plate%data), error, self%pair)
       if (allocated(error)) then
          cause = place_t('plate', 'material')
          return
