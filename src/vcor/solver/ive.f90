@@ -31,7 +31,7 @@ module vcor_solver_ive
    use vcor_solver_rebound, only : follow_rebound
    use vcor_solver_rebound_equations, only : rebound_start_t
    use vcor_solver_rebound_panel, only : turn_round
-   use vcor_solver_recording, only : append, begin
+   use vcor_solver_recording, only : append, begin, forerunner_t
    use vcor_solver_step, only : step_t, step_to
    use vcor_solver_type, only : solver_t
    implicit none
@@ -252,10 +252,11 @@ contains
       type(panel_t) :: panel, previous, coarse, recorded
       type(approach_t) :: stretches
       type(rebound_start_t) :: rebound
+      type(forerunner_t) :: before
       real(wp) :: inverse(width, width)
       real(wp) :: accuracy, end_time, largest_force, peak_tolerance, force_tolerance, time_tolerance
       real(wp) :: excess, refused, growth, largest_growth, force_error, velocity, fall
-      real(wp) :: end_found, inner, largest_inner, share_left, approach_error
+      real(wp) :: end_found, inner, largest_inner, share_left, approach_error, doubt
       integer :: trial, n, ahead
       logical :: ends, last, inherited, shallow, branches, recedes, turns, signed
 
@@ -334,8 +335,9 @@ contains
             /(impact%velocity*time_scale))/(panel_share*accuracy)
          if (impact%plate%drifts()) excess = excess + growth_of(panel%drift, coarse%drift) &
             /(impact%velocity*panel_share*accuracy)
-         force_error = max(0.0_wp, min(growth_of(panel%force, coarse%force), &
-            abs(panel%force(n) - coarse%force(n - 1))) - rounding*largest_force)
+         doubt = abs(panel%force(n) - coarse%force(n - 1))
+         force_error = max(0.0_wp, min(growth_of(panel%force, coarse%force), doubt) &
+            - rounding*largest_force)
          if (ends) then
             ! next to u = s^1.5 = 0 both solutions err in the same direction
             shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
@@ -383,7 +385,11 @@ contains
                call end_at_zero(self%collocator%rule, impact, recorded)
             end if
          end if
-         call append(self%collocator, impact, modes, start, recorded, accuracy, trajectory)
+         call append(self%collocator, impact, modes, start, recorded, doubt, before, accuracy, &
+            trajectory)
+         before%panel = panel
+         before%start = start
+         before%doubt = doubt
          complete = .not. panel%time(n) > window
          if (.not. complete) return
          if (recedes) then

@@ -6,14 +6,26 @@ module vcor_solver_recording
       contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_collocation, only : collocation_t, width
-   use vcor_solver_collocator, only : collocator_t, guess, improve, plate_velocity
+   use vcor_solver_collocator, only : advance, collocator_t, guess, improve, plate_velocity, &
+      solve_step
    use vcor_solver_modes, only : modes_t, start_t
    use vcor_solver_panel, only : panel_t
    use vcor_solver_step, only : step_t, step_to
    implicit none
    private
 
+   public :: forerunner_t
    public :: begin, append, record
+
+   !> The panel before the one that is recorded
+   type :: forerunner_t
+      !> The panel; without stages if there is none
+      type(panel_t) :: panel
+      !> State at its start
+      type(start_t) :: start
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp) :: doubt = 0.0_wp
+   end type forerunner_t
 
 contains
 
@@ -39,7 +51,7 @@ contains
    end subroutine begin
 
    !> Add a panel to the trajectory
-   subroutine append(self, impact, modes, start, panel, accuracy, trajectory)
+   subroutine append(self, impact, modes, start, panel, doubt, before, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -50,6 +62,10 @@ contains
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp), intent(in) :: doubt
+      !> The panel before it
+      type(forerunner_t), intent(in) :: before
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
       !> The trajectory
@@ -58,7 +74,7 @@ contains
       call record(self%rule, impact, panel, trajectory)
       if (trajectory%status == contact_separated) return
       trajectory%last = trajectory%final
-      call find_peaks(self, impact, modes, start, panel, accuracy, trajectory)
+      call find_peaks(self, impact, modes, start, panel, doubt, before, accuracy, trajectory)
    end subroutine append
 
    !> Add the nodes of a panel to the trajectory
@@ -99,7 +115,7 @@ contains
    end subroutine record
 
    !> Largest indentation and force so far
-   subroutine find_peaks(self, impact, modes, start, panel, accuracy, trajectory)
+   subroutine find_peaks(self, impact, modes, start, panel, doubt, before, accuracy, trajectory)
       !> The collocation
       type(collocator_t), intent(in) :: self
       !> The impact
@@ -110,6 +126,10 @@ contains
       type(start_t), intent(in) :: start
       !> The panel
       type(panel_t), intent(in) :: panel
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp), intent(in) :: doubt
+      !> The panel before it
+      type(forerunner_t), intent(in) :: before
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
       !> The trajectory, the panel added
@@ -151,12 +171,94 @@ contains
             peak = value(j)
             peak_time = panel%time(j)
          end if
-         ! where the values rose up to the start of the panel, the start is no maximum
-         if (peak > largest .or. value(0) >= largest) then
-            largest = peak
-            time = peak_time
-         end if
+         if (.not. (peak > largest .or. value(0) >= largest)) return
+         ! where it rises up to the end of the panel, the end is none yet
+         if (.not. of_indentation .and. peak_time < panel%time(n)) &
+            call refine_force(peak, peak_time)
+         largest = peak
+         time = peak_time
       end subroutine look_for_peak
+
+      !> Largest force anew with the panel halved that decides it, where it is not accurate enough.
+      !> The force of modes that settle at once follows the rate of u, and that is the derivative of
+      !> a polynomial: the impulse hardly feels its error but the force does, next to the start of a
+      !> panel still that of the panel before. And a panel in t that begins next to the branch point
+      !> at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
+      subroutine refine_force(peak, time)
+         !> Largest force [N]
+         real(wp), intent(inout) :: peak
+         !> Its time [s]
+         real(wp), intent(in) :: time
+
+         ! the solution is better than its companion by these factors, measured over 180 impacts: at
+         ! the start of a panel the force is that of a whole panel, at the maximum that of a part
+         real(wp), parameter :: better = 3.0_wp, better_inside = 12.0_wp
+         ! share of a panel in which the force may be that of the panel before
+         real(wp), parameter :: next_to_start = 0.1_wp
+         type(start_t) :: now
+         type(panel_t) :: last
+         real(wp) :: root, branch
+         logical :: early
+
+         early = before%panel%stages > 0 .and. before%doubt > better*accuracy*peak &
+            .and. time - start%time < next_to_start*(panel%time(n) - start%time)
+         if (early) then
+            now = before%start
+            last = before%panel
+            call solve_halves(start%time, now, last)
+            if (last%converged .and. time > start%time) &
+               call solve_to(step_to(now%time, time - now%time), now, last)
+         else
+            root = sqrt(start%time/time)
+            branch = 0.0_wp
+            if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
+            if (max(doubt/(better_inside*peak), branch) <= accuracy) return
+            now = start
+            last = panel
+            call solve_halves(time, now, last)
+         end if
+         if (last%converged) peak = last%force(n)
+      end subroutine refine_force
+
+      !> Go on to a time by two panels: halves in x from first contact, otherwise in time
+      subroutine solve_halves(time, now, last)
+         !> The time [s]
+         real(wp), intent(in) :: time
+         !> State at the start, on return that at the end
+         type(start_t), intent(inout) :: now
+         !> A panel next to the start, on return that at the end; not converged on failure
+         type(panel_t), intent(inout) :: last
+
+         type(step_t) :: step
+
+         step = step_to(now%time, merge(0.5_wp, 0.25_wp, now%time > 0.0_wp)*(time - now%time))
+         call solve_to(step, now, last)
+         if (.not. last%converged) return
+         if (step%index == 0) then
+            step%index = 1
+         else
+            step = step_to(now%time, time - now%time)
+         end if
+         call solve_to(step, now, last)
+      end subroutine solve_halves
+
+      !> Go on by one panel
+      subroutine solve_to(step, now, last)
+         !> The step
+         type(step_t), intent(in) :: step
+         !> State at its start, on return that at its end
+         type(start_t), intent(inout) :: now
+         !> A panel next to it, on return its own; not converged on failure
+         type(panel_t), intent(inout) :: last
+
+         type(panel_t) :: next
+         real(wp) :: inverse(width, width)
+
+         call guess(self%rule, impact, last, now, step, next)
+         call solve_step(self, step, impact, modes, now, next, inverse)
+         if (next%converged) call advance(self%rule, step, modes, next, now)
+         last = next
+      end subroutine solve_to
 
       !> Maximum inside the panel, by improving the panel up to there: the polynomials of the panel
       !> are less accurate inside of it than at its end
