@@ -285,6 +285,9 @@ contains
       step%reach = step%reach*sqrt(hertz_contact_time*time_scale)
       step%length = step%reach
       if (modes%contact%error > 0.0_wp) step%length = step%reach*0.5_wp**levels(accuracy)
+      ! alpha' of a frozen plate is infinite at first contact, and enters by a quadrature
+      if (modes%contact%error > 0.0_wp .and. impact%plate%frozen()) &
+         step%length = 0.5_wp*step%length
       call begin(self%collocator%rule, impact, trajectory)
       largest_force = 0.0_wp
       largest_growth = 0.0_wp

@@ -309,7 +309,9 @@ contains
             - panel%indentation(n)
          least = rounding*real(panels, wp) &
             + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
-         share = merge(1.0_wp, share_of_difference(panels), branches)/impact%velocity
+         ! where alpha' of a frozen plate is infinite at first contact, neither solution is better
+         share = merge(1.0_wp, share_of_difference(panels), branches .or. impact%plate%frozen()) &
+            /impact%velocity
          cor_sphere_error = least + share*impulse_error/impact%mass
          cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
             *(moved/panel%time(n))**2 + share*(impulse_error*alpha_rate &

@@ -79,8 +79,8 @@ contains
       real(wp), parameter :: unreliable = 1.0e-6_wp
       type(rebound_panel_t) :: panel, companion, previous
       real(wp) :: length, end_length, taken, rest, rate, bend, excess, refused, refused_length
-      real(wp) :: refused_end, end_found, error_now, error_sum, impulse_error, sphere_sum
-      real(wp) :: alpha_rate, tolerance
+      real(wp) :: refused_end, end_found, error_now, error_sum, impulse_error
+      real(wp) :: sphere_now, sphere_sum, alpha_rate, tolerance
       integer :: trial, n, kind, closings
       logical :: ends, last, halved, inherited
 
@@ -145,9 +145,10 @@ contains
 
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          impulse_error = abs(panel%impulse(n) - companion%impulse(n - 1))
-         error_now = companion_share*(impulse_error*(1.0_wp/impact%mass + alpha_rate) &
-            + abs(panel%drift(n) - companion%drift(n - 1)) &
+         sphere_now = companion_share*(impulse_error/impact%mass &
             + abs(panel%indentation(n) - companion%indentation(n - 1))/start%t1)/impact%velocity
+         error_now = sphere_now + companion_share*(impulse_error*alpha_rate &
+            + abs(panel%drift(n) - companion%drift(n - 1)))/impact%velocity
          ! the companion ends a little earlier or later, which changes the velocity of the plate
          if (ends) error_now = error_now + abs((panel%condition(n) - companion%condition(n - 1)) &
             /start%condition*taken)*(alpha_rate*panel%impulse(n)/panel%time(n) &
@@ -186,7 +187,7 @@ contains
 
          if (ends) panel%force(n) = 0.0_wp
          error_sum = error_sum + error_now
-         sphere_sum = sphere_sum + companion_share*impulse_error/(impact%mass*impact%velocity)
+         sphere_sum = sphere_sum + sphere_now
          call record(collocator%rule, impact, panel%panel_t, trajectory)
          trajectory%last = trajectory%final
          if (trajectory%is_stuck(impact)) then
