@@ -16,6 +16,7 @@
 !> being what limits it. The history sum makes N^2/2 multiplications and additions in all, on
 !> contiguous arrays.
 module vcor_solver_product
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz, hertz_contact_time, impact_t, law_receding
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
@@ -23,6 +24,7 @@ module vcor_solver_product
       contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_dot, only : dot
+   use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_history, only : history_rule
    use vcor_solver_plate_sums, only : plate_sums_t
    use vcor_solver_receding, only : receding_t
@@ -93,7 +95,7 @@ contains
 
       integer, parameter :: first_steps = 64
       real(wp), parameter :: least_part = 32.0_wp
-      real(wp) :: dt, cor(3), cor_sphere(3)
+      real(wp) :: dt, cor(3), cor_sphere(3), depth(3), force(3)
       integer :: level
 
       if (self%time_step > 0.0_wp) then
@@ -119,12 +121,19 @@ contains
             cor = [cor(2:3), -final(col_velocity)/impact%velocity]
             cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
          end associate
+         depth = [depth(2:3), trajectory%max_indentation]
+         force = [force(2:3), trajectory%max_force]
          if (level >= 3) then
             trajectory%accuracy = self%accuracy
             trajectory%cor_error = error_of_last(cor)
             trajectory%cor_sphere_error = error_of_last(cor_sphere)
-            if (self%time_step > 0.0_wp .or. max(trajectory%cor_error, &
-                trajectory%cor_sphere_error) <= self%accuracy) return
+            if (self%time_step > 0.0_wp) return
+            if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= self%accuracy) then
+               ! the steps were not chosen for the maxima
+               trajectory%max_indentation = extrapolated(depth)
+               trajectory%max_force = extrapolated(force)
+               return
+            end if
             if (2*trajectory%steps > most_steps) then
                if (.not. trajectory%misses_by_far()) return
                call raise(error, error_numerical, 'the accuracy asked for is out of reach of ' &
@@ -135,6 +144,23 @@ contains
          dt = 0.5_wp*dt
       end do
    end subroutine solve
+
+   !> Limit of three values with steps 4 dt, 2 dt and dt, the last one where they show no order that
+   !> the method has
+   pure function extrapolated(value)
+      !> Values
+      real(wp), intent(in) :: value(3)
+      !> Their limit
+      real(wp) :: extrapolated
+
+      real(wp), parameter :: least_order = 1.5_wp
+      type(richardson_t) :: found
+
+      extrapolated = value(3)
+      found = richardson(value)
+      if (.not. ieee_is_finite(found%order)) return
+      if (found%order >= least_order) extrapolated = found%limit
+   end function extrapolated
 
    !> Error of the last of three values with steps 4 dt, 2 dt and dt, by Richardson's extrapolation
    !> with the order that the three show, at most two and at least one. Where the last two agree by
@@ -172,6 +198,8 @@ contains
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
       ! Adams and Moulton's rule is stable up to 6 for a decay rate times the step
       real(wp), parameter :: stiff = 2.0_wp
+      ! steps next to t = 0 on which the rate of the drift is no parabola
+      integer, parameter :: near_start = 16
       ! weights(room - i) = W_i: reversed, so that the history sum runs forward through both arrays
       real(wp), allocatable :: weights(:), moments(:), du(:)
       type(second_term_t) :: second
@@ -183,7 +211,7 @@ contains
       real(wp), dimension(3) :: impulse, second_impulse, push, drift, lag
       ! s and s' at the node without its force, and what they lose per force
       real(wp), dimension(2) :: indentation, velocity
-      real(wp) :: rule(3), weight, t, s, u, last_u, speed, last_speed, force, dashpot, held
+      real(wp) :: rule(3), drift_rule(3), drift_power, weight, t, s, u, last_u, speed, last_speed, force, dashpot, held
       real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, whole_impulse
       real(wp) :: end_time, node(columns)
       integer :: n, room
@@ -202,6 +230,8 @@ contains
       trajectory%state(col_velocity, 0) = impact%velocity
       trajectory%state(col_sphere_velocity, 0) = impact%velocity
 
+      drift_power = 0.0_wp
+      if (frozen) drift_power = power_of_drift(impact, dt)
       s = 0.0_wp
       u = 0.0_wp
       speed = impact%velocity
@@ -227,6 +257,8 @@ contains
          if (n == 1 .or. 1.5_wp*sqrt(abs(s))*dt*((alpha + dt*memory%newest)*stiffness &
              + viscosity/impact%mass) > stiff) rule = dt*trapezoid
          weight = rule(1)
+         drift_rule = rule
+         if (frozen .and. n <= near_start) drift_rule = dt*power_rule(n, drift_power)
 
          ! what is known before this node's force
          call memory%sum_up(n)
@@ -234,7 +266,7 @@ contains
          second_impulse(1) = so_far(second_impulse)
          if (frozen) then
             push(1) = so_far(push)
-            drift(1) = so_far(drift)
+            drift(1) = drift(1) + drift_rule(2)*drift(2) + drift_rule(3)*drift(3)
             lag(1) = so_far(lag)
          end if
 
@@ -287,7 +319,7 @@ contains
          call contact%accept(n, s)
          if (frozen) then
             call take(push, alpha*force, weight*alpha*force)
-            call take(drift, alpha_rate*force, weight*alpha_rate*force)
+            call take(drift, alpha_rate*force, drift_rule(1)*alpha_rate*force)
             call take(lag, drift(1), weight*drift(1))
          end if
          if (.not. contact%shrinks) force = force + 1.5_wp*viscosity*sqrt(abs(s))*speed
@@ -373,8 +405,8 @@ contains
          if (frozen) then
             indentation(1) = indentation(1) - (push(1) - lag(1) - weight*drift(1))
             velocity(1) = velocity(1) + drift(1)
-            indentation(2) = weight*(weight/impact%mass + alpha - weight*alpha_rate)
-            velocity(2) = weight/impact%mass + alpha - weight*alpha_rate
+            indentation(2) = weight*(weight/impact%mass + alpha - drift_rule(1)*alpha_rate)
+            velocity(2) = weight/impact%mass + alpha - drift_rule(1)*alpha_rate
          else
             indentation(1) = indentation(1) - alpha*i - memory%deflection - memory%newest*j
             velocity(1) = velocity(1) - rate*i - memory%velocity
@@ -393,6 +425,59 @@ contains
          value = integral(1) + rule(2)*integral(2) + rule(3)*integral(3)
       end function so_far
    end subroutine march
+
+   !> Power of t with which the rate of a frozen plate's drift, alpha' F, begins: alpha' is infinite
+   !> at first contact for a continuous spectrum, and F = int k u' goes with t^(1/2) int k
+   pure function power_of_drift(impact, dt) result(power)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Power, of the first two steps
+      real(wp) :: power
+
+      real(wp) :: ratio
+
+      ratio = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt) &
+         *impact%plate%alpha_rate(2.0_wp*dt)/max(impact%plate%alpha_rate(dt), tiny(1.0_wp))
+      power = 0.5_wp + log(max(ratio, 0.5_wp))/log(2.0_wp)
+   end function power_of_drift
+
+   !> Rule for the integral over step n, from its end, its start and the node before, that is exact
+   !> for t^power times a parabola, on the first two steps times what can be told from fewer nodes
+   pure function power_rule(n, power) result(rule)
+      !> Step
+      integer, intent(in) :: n
+      !> Power, > -1
+      real(wp), intent(in) :: power
+      !> The rule, over the step
+      real(wp) :: rule(3)
+
+      real(wp) :: moment(0:2), x
+      integer :: k
+
+      ! of (t - n)^k t^power
+      x = real(n, wp)
+      do k = 0, 2
+         moment(k) = (x**(power + real(k + 1, wp)) - (x - 1.0_wp)**(power + real(k + 1, wp))) &
+            /(power + real(k + 1, wp))
+      end do
+      moment(2) = moment(2) - 2.0_wp*x*moment(1) + x*x*moment(0)
+      moment(1) = moment(1) - x*moment(0)
+      rule = 0.0_wp
+      select case (n)
+      case (1)
+         rule(1) = moment(0)
+      case (2)
+         rule(1:2) = [moment(0) + moment(1), -moment(1)]
+      case default
+         rule = [moment(0) + 1.5_wp*moment(1) + 0.5_wp*moment(2), -2.0_wp*moment(1) - moment(2), &
+            0.5_wp*(moment(1) + moment(2))]
+         rule(3) = rule(3)/(x - 2.0_wp)**power
+      end select
+      rule(1) = rule(1)/x**power
+      if (n > 1) rule(2) = rule(2)/(x - 1.0_wp)**power
+   end function power_rule
 
    !> Complete an integral by the share of this node
    pure subroutine take(integral, integrand, share)
