@@ -301,7 +301,7 @@ contains
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
       ! between the two solutions; the one that counts is better by an order
-      time_tolerance = max(3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.2_wp), 1.0e-9_wp)
+      time_tolerance = max(accuracy, 1.0e-9_wp)
 
       do trial = 1, most_trials
          last = start%time + step%duration() >= end_time

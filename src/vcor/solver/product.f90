@@ -12,7 +12,8 @@
 !> rule of third order, or by the trapezoidal rule where the plate or a dashpot makes a step stiff,
 !> which keeps the method stable for any step; a dashpot's impulse is viscosity*u exactly. What is
 !> left per step is one equation s + c s^1.5 + d s^3 = r, d = 0 without the second term of the
-!> Volterra series. The error falls with dt^2.5, the start u ~ t^1.5
+!> Volterra series. The drift of a frozen plate, the integral of alpha' F, begins with the power of
+!> time that kernel and plate give it: no parabola. The error falls with dt^2.5, the start u ~ t^1.5
 !> being what limits it. The history sum makes N^2/2 multiplications and additions in all, on
 !> contiguous arrays.
 module vcor_solver_product
@@ -211,7 +212,8 @@ contains
       real(wp), dimension(3) :: impulse, second_impulse, push, drift, lag
       ! s and s' at the node without its force, and what they lose per force
       real(wp), dimension(2) :: indentation, velocity
-      real(wp) :: rule(3), drift_rule(3), drift_power, weight, t, s, u, last_u, speed, last_speed, force, dashpot, held
+      real(wp) :: drift_rule(3), drift_power
+      real(wp) :: rule(3), weight, t, s, u, last_u, speed, last_speed, force, dashpot, held
       real(wp) :: viscosity, stiffness, alpha, alpha_rate, known, linear, quadratic, whole_impulse
       real(wp) :: end_time, node(columns)
       integer :: n, room
