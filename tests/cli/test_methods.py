@@ -15,12 +15,7 @@ CASES = [
     PAPER / "elastic.nml",
     ROOT / "examples" / "granular_pair.nml",
     ROOT / "examples" / "polyurea_ball_in_seat.nml",
-    pytest.param(
-        ROOT / "examples" / "steel_on_glass.nml",
-        marks=pytest.mark.xfail(
-            strict=True, reason="direct is 5.8e-8 off and says 1e-8: cor_error is too small"
-        ),
-    ),
+    ROOT / "examples" / "steel_on_glass.nml",
 ]
 
 

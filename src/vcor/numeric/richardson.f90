@@ -20,9 +20,9 @@ module vcor_numeric_richardson
 contains
 
    !> Extrapolate. Orders outside of `lowest` and `highest` are chance: the limit is then taken with
-   !> the nearer of the two. The error is taken with an order between one and two, and not below
-   !> what the larger steps say, as the last two values may agree by chance. Values that are not
-   !> finite tell nothing: NaN
+   !> the nearer of the two. The error is taken with an order between one and two, one where they
+   !> show none, and not below what the larger steps say, as the last two may agree by chance.
+   !> Values that are not finite tell nothing: NaN
    pure function richardson(value) result(found)
       !> Values with steps h, h/2 and h/4
       real(wp), intent(in) :: value(3)
@@ -43,11 +43,10 @@ contains
       found%order = ieee_value(found%order, ieee_quiet_nan)
       found%limit = value(3)
       found%error = max(abs(second), abs(first)/best_ratio)
-      if (.not. found%error > 0.0_wp) return
-      ratio = min(max(abs(first)/found%error, 2.0_wp), 4.0_wp)
-      found%error = found%error/(ratio - 1.0_wp)
       ! differences of different signs, or one of them none at all, are no convergence
       if (.not. min(first, second) > 0.0_wp .and. .not. max(first, second) < 0.0_wp) return
+      ratio = min(max(abs(first)/found%error, 2.0_wp), 4.0_wp)
+      found%error = found%error/(ratio - 1.0_wp)
       found%order = log(first/second)/log(2.0_wp)
       order = min(max(found%order, lowest), highest)
       found%limit = value(3) + second/(2.0_wp**order - 1.0_wp)

@@ -97,6 +97,7 @@ contains
       integer, parameter :: first_steps = 64
       real(wp), parameter :: least_part = 32.0_wp
       real(wp) :: dt, cor(3), cor_sphere(3), depth(3), force(3)
+      type(richardson_t) :: found
       integer :: level
 
       if (self%time_step > 0.0_wp) then
@@ -126,8 +127,10 @@ contains
          force = [force(2:3), trajectory%max_force]
          if (level >= 3) then
             trajectory%accuracy = self%accuracy
-            trajectory%cor_error = error_of_last(cor)
-            trajectory%cor_sphere_error = error_of_last(cor_sphere)
+            found = richardson(cor)
+            trajectory%cor_error = found%error
+            found = richardson(cor_sphere)
+            trajectory%cor_sphere_error = found%error
             if (self%time_step > 0.0_wp) return
             if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= self%accuracy) then
                ! the steps were not chosen for the maxima
@@ -162,24 +165,6 @@ contains
       if (.not. ieee_is_finite(found%order)) return
       if (found%order >= least_order) extrapolated = found%limit
    end function extrapolated
-
-   !> Error of the last of three values with steps 4 dt, 2 dt and dt, by Richardson's extrapolation
-   !> with the order that the three show, at most two and at least one. Where the last two agree by
-   !> chance, the first two tell
-   pure function error_of_last(value) result(error)
-      !> Values
-      real(wp), intent(in) :: value(3)
-      !> Estimate
-      real(wp) :: error
-
-      real(wp), parameter :: best_ratio = 8.0_wp
-      real(wp) :: ratio
-
-      error = max(abs(value(3) - value(2)), abs(value(2) - value(1))/best_ratio)
-      ratio = 2.0_wp
-      if (error > 0.0_wp) ratio = abs(value(2) - value(1))/error
-      error = error/(min(max(ratio, 2.0_wp), 4.0_wp) - 1.0_wp)
-   end function error_of_last
 
    !> One run with a given step
    subroutine march(self, impact, dt, trajectory, error)
