@@ -2,6 +2,7 @@
 !>
 !> The first rank alone reads and writes files and talks to the user.
 module vcor_app_sweep
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
@@ -11,12 +12,11 @@ module vcor_app_sweep
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
-   use vcor, only : anything_at, create_checkpoint, differs, error_input, error_numerical, &
-      error_t, failures_t, identity_of, identity_t, integer_text, move_file, new_summary, &
-      number_of, open_checkpoint, point_pending, quoted_path, raise, rank_count, &
-      read_points, read_results, share_error, &
-      share_flag, solve_part, stderr_is_terminal, summary_t, summary_table, table_t, this_rank, &
-      trajectory_t, write_stdout
+   use vcor, only : anything_at, create_checkpoint, differs, error_file, error_input, &
+      error_numerical, error_t, failures_t, identity_of, identity_t, integer_text, move_file, &
+      new_summary, number_of, open_checkpoint, point_pending, quoted_path, raise, rank_count, &
+      read_points, read_results, share_error, share_flag, solve_part, stderr_is_terminal, &
+      summary_t, summary_table, table_t, this_rank, trajectory_t, write_stdout
    implicit none
    private
 
@@ -97,6 +97,8 @@ contains
       is_unfinished = .false.
       if (watch%keeps) is_unfinished = anything_at(watch%path)
       call look_back(job, watch%identity, previous)
+      call need_memory(job, threads_of(request), error)
+      if (allocated(error)) return
       call new_summary(summary, job%part%count(), error)
       if (allocated(error)) return
       if (.not. is_unfinished) then
@@ -130,6 +132,30 @@ contains
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
+
+   !> Say at the beginning, and how much, if there is not enough memory for a sweep
+   subroutine need_memory(job, threads, error)
+      !> The case
+      type(job_t), intent(in) :: job
+      !> Threads
+      integer, intent(in) :: threads
+      !> Error of code `error_file`, unallocated where there is enough
+      type(error_t), allocatable, intent(out) :: error
+
+      ! Outcomes are kept once as numbers and once as a file in memory, 320 bytes to a point as
+      ! measured; a thread has a stack of 8 MB and what it works with
+      integer(int64), parameter :: bytes_per_point = 400_int64, bytes_per_thread = 12000000_int64, &
+         megabyte = 1000000_int64
+      character, allocatable :: room(:)
+      integer(int64) :: bytes
+      integer :: status
+
+      bytes = bytes_per_point*int(job%part%count(), int64) + bytes_per_thread*int(threads, int64)
+      allocate (room(bytes), stat=status)
+      if (status /= 0) call raise(error, error_file, job%case%source//': there is not enough ' &
+         //'memory for '//integer_text(job%part%count())//' points by '//integer_text(threads) &
+         //' thread(s), expected about '//integer_text(int(bytes/megabyte) + 1)//' MB')
+   end subroutine need_memory
 
    !> A shard may be finished and have points that are damaged: these are solved again
    subroutine look_into_shard(previous, watch, summary, is_unfinished, error)

@@ -233,3 +233,18 @@ def test_begun_anew_in_use(vcor):
     assert "in use" in said[codes.index(FILE)]
     vcor("run", "case.nml", "--output", "ref", "--quiet")
     same_files(vcor.folder / "out", vcor.folder / "ref")
+
+
+# Too little memory
+
+
+@pytest.mark.parametrize("megabytes", [150, 400])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_too_little_memory(vcor, megabytes, threads):
+    """It is said before the first point is solved, and how much there should be."""
+    vcor.write(SWEEP.replace("count = 40", "count = 5000000"))
+    words = ["run", "case.nml", "--output", "out", "--threads", threads]
+    limit = limited(resource.RLIMIT_AS, megabytes * 2**20)
+    done = vcor(*words, preexec_fn=limit)
+    complaint(done, FILE, ["not enough memory", "5000000 points", "MB"])
+    assert not (vcor.folder / "out").exists()

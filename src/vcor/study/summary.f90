@@ -1,7 +1,7 @@
 !> Outcomes of many impacts, column by column, each in the place of its point
 module vcor_study_summary
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
-   use vcor_error, only : error_internal, error_t, raise
+   use vcor_error, only : error_file, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_kinds, only : wp
    use vcor_study_quantity, only : point_pending, quantities, quantity_values
@@ -51,7 +51,7 @@ contains
       type(summary_t), intent(out) :: self
       !> Number of points
       integer, intent(in) :: points
-      !> Error of code `error_internal` if there is not enough memory, unallocated on success
+      !> Error of code `error_file` if there is not enough memory, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> Places before the first one; 0 if it is not given
       integer, intent(in), optional :: before
@@ -64,7 +64,7 @@ contains
       do i = 1, size(quantities)
          if (status == 0) allocate (self%values(i)%at(points), stat=status)
       end do
-      if (status /= 0) call raise(error, error_internal, 'there is not enough memory for the ' &
+      if (status /= 0) call raise(error, error_file, 'there is not enough memory for the ' &
          //'outcomes of '//integer_text(points)//' impacts')
       if (allocated(error)) return
       self%steps = 0
