@@ -3,7 +3,7 @@
 program test_impacts
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_problem, only : impact_t
+   use vcor_impact_problem, only : impact_t, law_receding
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : read_case_text
    use vcor_io_data_file, only : read_data
@@ -32,41 +32,24 @@ program test_impacts
    real(wp), parameter :: honest_share = 3.0_wp
    !> ... and rounding does not explain it
    real(wp), parameter :: rounding = 1.0e-12_wp
-   !> The contact time is promised within ten times the accuracy down to 1e-9, as are maxima and
-   !> energies down to 1e-7, docs/accuracy.md
-   real(wp), parameter :: share = 10.0_wp, best_time = 1.0e-9_wp, best_other = 1.0e-7_wp
+   !> Error of each column over the accuracy asked for, at most, as docs/accuracy.md has it for ive
+   real(wp), parameter :: ive_share(9) = [1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 1.0_wp, 3.0_wp, 2.0_wp, &
+      2.0_wp, 1.0_wp]
+   !> The same for direct
+   real(wp), parameter :: direct_share(9) = [1.0_wp, 1.0_wp, 10.0_wp, 10.0_wp, 10.0_wp, 10.0_wp, &
+      10.0_wp, 10.0_wp, 1.0_wp]
+   !> The contact time is promised down to this
+   real(wp), parameter :: best_time = 1.0e-9_wp
 
-   !> Checks that are known to fail, by the beginning of their names. The end of contact is flat, so
-   !> that its time and the indentation left miss what docs/accuracy.md says of them (9, 169, 191,
-   !> 263; 27, 33, 36, 40, 43 of random.txt). The largest force of a dashpot (55, 27). Estimates on
-   !> frozen plates that are a third too small (117; 6, 25, 26). A contact time of the reference
-   !> itself (371). A pair whose modulus is fitted (103). cor_sphere next to its accuracy (43)
-   character(len=*), parameter :: known(*) = [character(len=70) :: &
-      "practical.txt 9, ive 1.0E-08: residual_indentation", &
-      "practical.txt 9, ive 1.0E-10: contact_time", &
-      "practical.txt 55, ive 1.0E-08: max_force", &
-      "practical.txt 103, ive", &
-      "practical.txt 117, ive 1.0E-08: cor_sphere_error", &
-      "practical.txt 169, ive 1.0E-10: contact_time", &
-      "practical.txt 191, ive 1.0E-08: contact_time", &
-      "practical.txt 191, ive 1.0E-08: residual_indentation", &
-      "practical.txt 263, direct 1.0E-06: contact_time", &
-      "practical.txt 263, direct 1.0E-06: residual_indentation", &
-      "practical.txt 371, ive 1.0E-10: contact_time", &
-      "random.txt 6, ive 1.0E-06: cor_sphere_error", &
+   !> Checks that are known to fail, by the beginning of their names: on a frozen plate the estimate
+   !> is a quarter too small (25); a plate that relaxes within a hundredth of the contact (59); the
+   !> largest force of receding contact: hereditary plate at 1e-10 (17), direct on a power law (27)
+   character(len=*), parameter :: known(*) = [character(len=50) :: &
+      "random.txt 17, ive 1.0E-10: max_force", &
       "random.txt 25, ive 1.0E-06: cor_sphere_error", &
-      "random.txt 25, ive 1.0E-08: cor_sphere_error", &
-      "random.txt 26, ive 1.0E-06: cor_sphere_error", &
-      "random.txt 27, ive 1.0E-08: contact_time", &
-      "random.txt 27, ive 1.0E-10: contact_time", &
       "random.txt 27, direct 1.0E-06: max_force", &
-      "random.txt 33, ive 1.0E-08: contact_time", &
-      "random.txt 33, ive 1.0E-08: residual_indentation", &
-      "random.txt 36, ive 1.0E-08: contact_time", &
-      "random.txt 36, ive 1.0E-08: residual_indentation", &
-      "random.txt 40, ive", &
-      "random.txt 43, ive 1.0E-10: contact_time", &
-      "random.txt 43, direct 1.0E-06: cor_sphere"]
+      "random.txt 59, ive 1.0E-08: hysteresis_energy", &
+      "random.txt 59, ive 1.0E-08: wave_energy"]
 
    !> One impact
    type :: row_t
@@ -218,7 +201,10 @@ contains
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
       real(wp) :: found(9), scale(9), difference(9), tolerance
+      logical :: ive
       integer :: i
+
+      ive = index(name, ", ive ") > 0
 
       call solver%solve(row%impact, trajectory, error)
       if (allocated(error)) then
@@ -237,14 +223,12 @@ contains
       scale(7:8) = row%expect(9)
       difference = abs(found - row%expect)/scale
       do i = 1, size(names)
-         select case (i)
-         case (1, 2)
-            tolerance = asked
-         case (3)
-            tolerance = max(share*asked, best_time)
-         case default
-            tolerance = max(share*asked, best_other)
-         end select
+         tolerance = merge(ive_share(i), direct_share(i), ive)*asked
+         if (i == 3 .or. i == 6) then
+            ! where the contact lets go slowly docs/accuracy.md promises nothing
+            if (row%impact%law == law_receding .or. .not. ive) cycle
+            tolerance = max(tolerance, ive_share(i)*best_time)
+         end if
          call check_difference(difference(i), tolerance + accuracy, name//": "//trim(names(i)))
       end do
       call check_difference(difference(1), honest_share*outcome%cor_error + rounding + accuracy, &
