@@ -45,14 +45,15 @@ program test_impacts
    !> is a quarter too small (25); a plate that relaxes within a hundredth of the contact (59); the
    !> largest force of receding contact: hereditary plate at 1e-10 (17), direct on a power law (27);
    !> pairs whose fitted modulus is a quarter worse than stated (19, 27 of designed.txt)
-   character(len=*), parameter :: known(*) = [character(len=50) :: &
+   character(len=*), parameter :: known(*) = [character(len=90) :: &
       "random.txt 17, ive 1.0E-10: max_force", &
       "random.txt 25, ive 1.0E-06: cor_sphere_error", &
       "random.txt 27, direct 1.0E-06: max_force", &
       "random.txt 59, ive 1.0E-08: hysteresis_energy", &
       "random.txt 59, ive 1.0E-08: wave_energy", &
-      "designed.txt 19 two bodies, relaxing, boltzmann", &
-      "designed.txt 27 two bodies, hereditary, boltzmann"]
+      "designed.txt 19 two bodies, relaxing, boltzmann, eq1, ive 1.0E-08: cor_error", &
+      "designed.txt 19 two bodies, relaxing, boltzmann, eq1, ive 1.0E-08: cor_sphere_error", &
+      "designed.txt 27 two bodies, hereditary, boltzmann, eq1, ive 1.0E-08: cor_error"]
 
    !> One impact
    type :: row_t
