@@ -1,9 +1,10 @@
 !> Words of the command line
 module vcor_app_argument
+   use, intrinsic :: iso_fortran_env, only : int64
    implicit none
    private
 
-   public :: argument_t, get_arguments, append_word, has_word
+   public :: argument_t, get_arguments, append_word, has_word, sum_of_words
 
    !> One word
    type :: argument_t
@@ -27,6 +28,32 @@ contains
          if (length > 0) call get_command_argument(i, words(i)%text)
       end do
    end subroutine get_arguments
+
+   !> A number that tells command lines apart; what follows --threads does not count
+   pure function sum_of_words(words) result(sum)
+      !> Words, shape (n)
+      type(argument_t), intent(in) :: words(:)
+      !> The number, >= 0
+      integer :: sum
+
+      integer(int64), parameter :: factor = 131_int64, modulus = 2147483647_int64
+      integer(int64) :: number
+      integer :: i, j
+      logical :: counts
+
+      number = 0_int64
+      counts = .true.
+      do i = 1, size(words)
+         if (counts .and. index(words(i)%text, '--threads') /= 1) then
+            do j = 1, len(words(i)%text)
+               number = mod(factor*number + int(ichar(words(i)%text(j:j)), int64), modulus)
+            end do
+            number = mod(factor*number + 256_int64, modulus)
+         end if
+         counts = words(i)%text /= '--threads'
+      end do
+      sum = int(number)
+   end function sum_of_words
 
    !> Append a word. (gfortran 12 writes past the end of a deferred-length component in an array
    !> constructor of structure constructors, so there is none.)

@@ -2,11 +2,11 @@
 program vcor_main
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_argument, only : argument_t, get_arguments
+   use vcor_app_argument, only : argument_t, get_arguments, sum_of_words
    use vcor_app_cli, only : parse, request_t
    use vcor_app_driver, only : complain, execute
    use vcor_app_signals, only : prepare_signals
-   use vcor, only : error_t, join_ranks, leave_ranks, share_error
+   use vcor, only : differs, error_t, error_usage, join_ranks, leave_ranks, raise, share_error
    implicit none
 
    interface
@@ -46,6 +46,11 @@ program vcor_main
    call get_arguments(words)
    call parse(words, request, error)
    call share_error(error)
+   if (.not. allocated(error)) then
+      ! they would wait for each other
+      if (differs(sum_of_words(words))) call raise(error, error_usage, &
+         'not all ranks have the same command line, expected the same words after vcor')
+   end if
    if (.not. allocated(error)) call execute(request, error)
    call share_error(error)
    if (allocated(error)) then

@@ -200,3 +200,16 @@ def test_full_disk(solved):
         pytest.skip(f"no disk can be mounted here: {done.err.strip()}")
     assert done.code == FILE
     assert len(said(done)) == 1 and "No space left on device" in said(done)[0]
+
+
+def test_different_commands(vcor):
+    """They end with an error instead of waiting for each other."""
+    vcor.write(SLS)
+    vcor.write(SLS, "other.nml")
+    run_one = [program(), "run", "case.nml"]
+    for other in (["check", "case.nml"], ["run", "other.nml"], ["run", "case.nml", "--quiet"]):
+        done = end(start(vcor, "-n", 1, *run_one, ":", "-n", 1, program(), *other))
+        assert done.code == USAGE
+        assert len(said(done)) == 1 and "same command line" in said(done)[0]
+    words = ["--threads", 1, ":", "-n", 1, *run_one, "--threads=2"]
+    assert end(start(vcor, "-n", 1, *run_one, *words)).code == SUCCESS
