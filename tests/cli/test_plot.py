@@ -595,7 +595,7 @@ def test_figure_is_replaced(vcor, plot):
 REFUSED = {
     "text": (["text.h5"], INPUT, "text.h5: this is no HDF5 file"),
     "empty file": (["nothing.h5"], INPUT, "nothing.h5: this is no HDF5 file"),
-    "cut off": (["cut.h5"], FILE, "cut.h5: HDF5 cannot open it"),
+    "cut off": (["cut.h5"], FILE, "cut.h5: this file is damaged"),
     "not there": (["none.h5"], FILE, "none.h5: there is no such file"),
     "directory": (["folder"], FILE, "folder: found a directory"),
     "no name": ([""], FILE, "empty"),
