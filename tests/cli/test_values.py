@@ -410,13 +410,10 @@ def test_rare_values(vcor, group, key, value, method):
     assert vcor.numbers("case.nml")["status"] == "separated"
 
 
-@pytest.mark.parametrize("sign", ["\t", "\x1b", "\x7f"])
-def test_name_with_a_control_character(vcor, sign):
+@pytest.mark.parametrize("sign, says", [("\t", "a tab"), ("\x1b", "control character"), ("\x7f", "control character")])
+def test_name_with_a_control_character(vcor, sign, says):
     """What cannot be seen makes two names of what looks like one."""
     text = SLS.replace("'rubber'", f"'soft{sign}rubber'")
-    line = text.splitlines().index(f"   name = 'soft{sign}rubber'") + 1
     vcor.write(text)
     done = vcor("run", "case.nml")
-    complaint(done, INPUT, "control character")
-    if sign == "\t":
-        vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="tab")
+    complaint(done, INPUT, says)

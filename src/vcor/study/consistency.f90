@@ -9,7 +9,7 @@ module vcor_study_consistency
    use vcor_study_keys, only : catalogue, find_key, key_t, wanted
    use vcor_study_nearest, only : suggestion
    use vcor_study_path, only : material_names
-   use vcor_study_text, only : canonical_name, has_control, integer_text, real_text, same_name, &
+   use vcor_study_text, only : canonical_name, integer_text, real_text, same_name, &
       & shortened
    implicit none
    private
@@ -156,11 +156,6 @@ contains
       integer :: i
 
       call self%get("material", "name", name, item)
-      if (has_control(name, tabs=.true.)) then
-         call fail(self, "name", item, "found a tab or another control character in the name '" &
-            & //shortened(name)//"', expected letters that can be seen", error)
-         return
-      end if
       do i = 1, item - 1
          call self%get("material", "name", other, i)
          if (.not. same_name(name, other)) cycle

@@ -157,21 +157,16 @@ contains
    end function tidied
 
    !> Whether a text holds control characters
-   pure function has_control(text, tabs) result(yes)
+   pure function has_control(text) result(yes)
       !> Any text
       character(len=*), intent(in) :: text
-      !> Whether a tab counts; absent: no
-      logical, intent(in), optional :: tabs
-      !> True if it does
+      !> True if it does; a tab does not count
       logical :: yes
       integer :: i
-      logical :: tab_counts
 
-      tab_counts = .false.
-      if (present(tabs)) tab_counts = tabs
       yes = .false.
       do i = 1, len(text)
-         if (is_control(text(i:i)) .and. (tab_counts .or. iachar(text(i:i)) /= 9)) yes = .true.
+         if (is_control(text(i:i)) .and. iachar(text(i:i)) /= 9) yes = .true.
       end do
    end function has_control
 
