@@ -255,6 +255,16 @@ SOFT_SPRINGS = {
 }
 
 
+def test_a_contact_at_rest_does_not_grow(vcor):
+    """On a plate at rest the indentation only falls: what looks like growth is rounding."""
+    vcor.write(FLUID)
+    for accuracy in ("1e-5", "1e-8"):
+        words = ["--set", "contact.law=receding", "--set", f"solver.accuracy={accuracy}"]
+        done = vcor("run", "case.nml", "--quiet", "--output", "out", *words)
+        assert done.code == NUMERICAL and "comes to rest in contact" in done.err
+        assert "grows again" not in done.err
+
+
 @pytest.mark.parametrize("rate, modulus", SOFT_SPRINGS)
 def test_equilibrium_modulus_of_next_to_nothing(vcor, rate, modulus):
     """However soft a spring is, in the end it pushes the sphere off: at any accuracy."""

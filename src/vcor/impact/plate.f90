@@ -40,6 +40,8 @@ module vcor_impact_plate
       !> What a hereditary plate remembers of the force, otherwise not allocated
       type(memory_t), allocatable :: memory
    contains
+      !> Whether it moves at all
+      procedure :: moves
       !> Plate parameter alpha(t)
       procedure :: alpha
       procedure :: alpha_at
@@ -61,6 +63,16 @@ module vcor_impact_plate
    end type plate_t
 
 contains
+
+   !> Whether the plate moves: it is not rigid, and there are waves in it
+   pure function moves(self)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Whether it does
+      logical :: moves
+
+      moves = self%coefficient > 0.0_wp
+   end function moves
 
    !> Build a plate
    pure subroutine new_plate(self, material, half_thickness, waves, error)

@@ -28,7 +28,7 @@ module vcor_solver_product
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_history, only : history_rule
    use vcor_solver_plate_sums, only : plate_sums_t
-   use vcor_solver_receding, only : receding_t
+   use vcor_solver_receding, only : receding_t, refuse_growth
    use vcor_solver_second_term, only : second_term_t
    use vcor_solver_series, only : end_of_contact, end_of_receding_contact, find_series_peaks, &
       set_series_weights
@@ -288,8 +288,7 @@ contains
             call contact%find_force(impact, n, du, indentation, velocity, viscosity)
          end if
          if (contact%regrows) then
-            call raise(error, error_numerical, "the contact grows again before it has ended, " &
-               //"which law = 'receding' does not cover: use law = 'boltzmann'")
+            call refuse_growth(impact, error)
             return
          end if
          if (contact%shrinks) then

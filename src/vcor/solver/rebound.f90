@@ -15,6 +15,7 @@ module vcor_solver_rebound
    use vcor_solver_approach, only : approach_t
    use vcor_solver_collocator, only : collocator_t
    use vcor_solver_modes, only : modes_t
+   use vcor_solver_receding, only : refuse_growth
    use vcor_solver_rebound_equations, only : rebound_panel_t, rebound_start_t
    use vcor_solver_rebound_panel, only : advance_rebound, close_contact, solve_rebound_panel
    use vcor_solver_recording, only : record
@@ -180,8 +181,7 @@ contains
          if (is_growing()) then
             ! it may be the error of the kernel that makes it grow
             if (modes%contact%error > unreliable) exit
-            call raise(error, error_numerical, "the contact grows again before it has ended, " &
-               //"which law = 'receding' does not cover: use law = 'boltzmann'")
+            call refuse_growth(impact, error)
             return
          end if
 

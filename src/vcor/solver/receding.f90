@@ -8,13 +8,14 @@
 !> kernel is integrated over a part of the step. The newest indentation and velocity depend on the
 !> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together.
 module vcor_solver_receding
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : hertz, impact_t
    use vcor_kinds, only : wp
    use vcor_numeric_dot, only : dot
    implicit none
    private
 
-   public :: receding_t
+   public :: receding_t, refuse_growth
 
    !> Receding contact under way
    type :: receding_t
@@ -53,6 +54,23 @@ module vcor_solver_receding
    end type receding_t
 
 contains
+
+   !> Refuse a contact in which t1 grows. On a plate at rest s' only falls, and t1' has the sign of
+   !> s': there it is what rounding leaves of a sphere that has come to rest
+   subroutine refuse_growth(impact, error)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_numerical`
+      type(error_t), allocatable, intent(out) :: error
+
+      if (impact%plate%moves()) then
+         call raise(error, error_numerical, "the contact grows again before it has ended, which " &
+            //"law = 'receding' does not cover: use law = 'boltzmann'")
+      else
+         call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
+            //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")
+      end if
+   end subroutine refuse_growth
 
    !> Make room for `steps` steps, what is there stays
    pure subroutine prepare(self, dt, weight, moment)
