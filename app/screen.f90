@@ -181,7 +181,7 @@ contains
          buffer = 'nan'
       else if (.not. abs(value) > 0.0_wp) then
          buffer = '0'
-      else if (abs(value) < 0.1_wp .or. abs(value) >= 1.0e6_wp) then
+      else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d - 1)) then
          write (form, '(a, i0, a)') '(es24.', d - 1, 'e2)'
          write (buffer, form) value
       else

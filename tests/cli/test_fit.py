@@ -218,6 +218,15 @@ def test_trios(vcor):
     vcor.refuses("fit", "data.csv", code=INPUT, at="data.csv:9", says=["'loss_modulus'", "unit"])
 
 
+@pytest.mark.parametrize("units, says", [("Hz,MPa,MPa", "'rad/s'"), ("rad/s,GPa,MPa", "'MPa'")])
+def test_units_against_the_file(vcor, units, says):
+    """Nobody's unit is overruled in silence."""
+    text = columns(*SPECTRUM, head="omega [rad/s],E' [MPa],E'' [MPa]\n")
+    vcor.write(text, "data.csv")
+    vcor.refuses("fit", "data.csv", "--units", units, code=USAGE, says=["--units", "data.csv:1", says])
+    assert vcor("fit", "data.csv", "--model", "sls", "--units", "rad/s,MPa,MPa").code == SUCCESS
+
+
 def test_netzsch(vcor):
     """The header behind ##, decimal commas, tan and delta as Greek letters, falling frequencies."""
     storage, loss = SPECTRUM[1:]

@@ -361,3 +361,11 @@ def test_others_are_done_when_one_fails(sls):
 def test_columns(sls):
     sls.succeeds("run", "case.nml")
     assert list(last_row(sls.folder, "case_summary.csv")) == NAMES
+
+
+@pytest.mark.parametrize("words", [["sphere.radius=10"], ["sphere.radius=3"], ["plate.half_thickness=1e-6"]])
+def test_lambda_of_any_size(vcor, words):
+    """A radius in mm makes lambda a large number, which the message holds all the same."""
+    vcor.write(SLS)
+    settings = [word for setting in words for word in ("--set", setting)]
+    complaint(vcor("run", "case.nml", "--quiet", "--output", "out", *settings), NUMERICAL, "too light")

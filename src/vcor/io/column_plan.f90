@@ -122,7 +122,16 @@ contains
       do i = 1, size(plan%places)
          word = units(plan%places(i))
          if (size(reading%units) > 0) then
-            if (reading%units(i) /= "" .and. plan%roles(i) /= role_tangent) word = reading%units(i)
+            if (reading%units(i) /= "" .and. plan%roles(i) /= role_tangent) then
+               if (word /= "" .and. word /= reading%units(i) &
+                  .and. header%columns(plan%places(i))%unit /= "") then
+                  call raise(error, error_usage, "--units: found '"//trim(reading%units(i)) &
+                     //"', but "//name//":"//integer_text(header%columns(plan%places(i))%line) &
+                     //" says '"//trim(word)//"'; leave --units away, or correct the file")
+                  return
+               end if
+               word = reading%units(i)
+            end if
          end if
          if (word == "" .and. plan%roles(i) == role_frequency .and. header%lines > 0) then
             call raise(error, error_usage, head//": the unit of '" &

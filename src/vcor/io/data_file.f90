@@ -179,15 +179,18 @@ contains
             call raise(error, error_input, found//", a "//name_of(role, unit)//", expected a " &
                & //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
                & //"identifies a material in them")
-         else if (header%count == 2 .and. all(role /= [role_none, expected_roles(i)])) then
+         end if
+         if (allocated(error)) return
+         if (header%count /= 2) cycle
+         if (all(role /= [role_none, expected_roles(i)])) then
             call raise(error, error_input, found//", a "//name_of(role, unit)//", as column " &
                & //integer_text(i)//", expected a time and a relaxation modulus")
-         else if (header%count == 2 .and. role == role_none .and. unit == "") then
+         else if (role == role_none .and. unit == "") then
             call raise(error, error_input, found//" as name of a column, expected "//example(i) &
                & //", or a unit beside it")
          end if
          if (allocated(error)) return
-         if (header%count /= 2 .or. unit == "") cycle
+         if (unit == "") cycle
          call check_unit(unit, expected_roles(i), place, error)
          if (allocated(error)) return
          if (abs(unit_size(trim(unit))/scale(i) - 1.0_wp) < 0.01_wp) cycle
@@ -265,7 +268,7 @@ contains
       else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
          message = "found modulus "//real_text(point(2))//" after "//real_text(before(2)) &
             & //" in line "//integer_text(line)//", expected moduli that fall: a relaxation " &
-            & //"modulus never grows with time"
+            & //"modulus never grows with time; for data with noise identify a model by vcor fit"
       end if
    end subroutine compare
 

@@ -277,7 +277,9 @@ contains
                /(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
             if (two_terms) call second%accept(n, du)
             if (receding .and. speed < 0.0_wp) then
-               ! a dashpot's impulse stays what it is at the largest indentation
+               ! a dashpot's impulse stays what it is at the largest indentation; at rest it may have
+               ! been some steps ago
+               last_speed = max(0.0_wp, last_speed)
                held = viscosity*hertz(trajectory%state(col_indentation, n - 1) &
                   + 0.5_wp*dt*last_speed**2/(last_speed - speed))
                call set_motion(held)
