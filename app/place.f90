@@ -46,7 +46,7 @@ contains
          if (.not. has_word(extensions, extension)) then
             call raise(error, error_usage, "unknown format '"//printable(extension)//"' of '" &
                //printable(trim(output))//"'; "//suggestion(extension, extensions) &
-               //", or a folder's name with a slash at the end")
+               //"; the name of a folder ends with a slash")
             return
          end if
       end if

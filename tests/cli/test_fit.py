@@ -227,6 +227,19 @@ def test_units_against_the_file(vcor, units, says):
     assert vcor("fit", "data.csv", "--model", "sls", "--units", "rad/s,MPa,MPa").code == SUCCESS
 
 
+def test_trios_relaxation(vcor):
+    """One name that is known is enough, and shear is shear by any name."""
+    head = "Filename\tx\n[step]\nStress relaxation\n{}\ns\tPa\n"
+    rows = columns(TIMES, sls(TIMES), separator="\t")
+    for names in ("Step time\tRelaxation modulus", "Time\tRelaxation modulus E(t)"):
+        is_the_sls(fitted(vcor, head.format(names) + rows))
+    rows = columns(TIMES, sls(TIMES) / 3, separator="\t")
+    for name in ("Relaxation modulus G(t)", "Shear relaxation modulus", "Gt"):
+        vcor.write(head.format("Step time\t" + name) + rows, "data.csv")
+        vcor.refuses("fit", "data.csv", "--model", "sls", code=USAGE, says=["shear", "--poisson-ratio"])
+        is_the_sls(fitted(vcor, head.format("Step time\t" + name) + rows, "--poisson-ratio", "0.5"))
+
+
 def test_netzsch(vcor):
     """The header behind ##, decimal commas, tan and delta as Greek letters, falling frequencies."""
     storage, loss = SPECTRUM[1:]

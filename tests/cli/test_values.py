@@ -343,7 +343,7 @@ def test_no_stiffness(vcor):
     vcor.refuses("run", "case.nml", code=INPUT, says=["case.nml:", "rubber", "stiffness"])
 
 
-@pytest.mark.parametrize("value", ["1200.1", "1e300"])
+@pytest.mark.parametrize("value", ["1200.1", "1e50"])
 def test_rubbery_above_glassy(vcor, value):
     spoiled(vcor, ("sls", "material", "alpha"), value, ["alpha", "beta", "1200.0", "rubbery"])
 

@@ -176,14 +176,14 @@ contains
             call raise(error, error_input, found//", a shear modulus, expected a relaxation " &
                & //"modulus E: write E = 2 (1 + nu) G, or identify a material by vcor fit")
          else if (all(role /= [role_none, role_time, role_relaxation])) then
-            call raise(error, error_input, found//", a "//name_of(role, unit)//", expected a " &
+            call raise(error, error_input, found//" ("//name_of(role, unit)//"), expected a " &
                & //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
                & //"identifies a material in them")
          end if
          if (allocated(error)) return
          if (header%count /= 2) cycle
          if (all(role /= [role_none, expected_roles(i)])) then
-            call raise(error, error_input, found//", a "//name_of(role, unit)//", as column " &
+            call raise(error, error_input, found//" ("//name_of(role, unit)//") as column " &
                & //integer_text(i)//", expected a time and a relaxation modulus")
          else if (role == role_none .and. unit == "") then
             call raise(error, error_input, found//" as name of a column, expected "//example(i) &

@@ -41,7 +41,7 @@ module vcor_io_header
    integer, parameter :: role_complex = 7
 
    !> Names of columns; moduli that begin with g are shear moduli
-   character(len=*), parameter :: time_names = " t time times "
+   character(len=*), parameter :: time_names = " t time times step_time "
    character(len=*), parameter :: cycle_names = " f freq "
    character(len=*), parameter :: angular_names = " omega w angular_frequency "//char(207) &
       //char(137)//" "
@@ -143,7 +143,7 @@ contains
       end do
    end subroutine read_names
 
-   !> Whether a line tells the names of columns: two of them at least are known ones
+   !> Whether a line tells the names of columns: one of several at least is a known one
    pure function names_columns(content) result(yes)
       !> The line
       character(len=*), intent(in) :: content
@@ -163,7 +163,7 @@ contains
          call role_of(header%columns(i), role, shear, unit)
          if (role /= role_none) known = known + 1
       end do
-      yes = known > 1
+      yes = known > 0 .and. header%count > 1
    end function names_columns
 
    !> Read the line of the units
@@ -326,14 +326,40 @@ contains
       if (contains_word(loss_names, column%name)) role = role_loss
       if (contains_word(tangent_names, column%name)) role = role_tangent
       if (contains_word(complex_names, column%name)) role = role_complex
-      shear = role >= role_relaxation .and. role /= role_tangent .and. (column%name(1:1) == "g" &
-         .or. column%name(1:2) == "|g" .or. index(column%name, "shear") > 0)
+      shear = (role >= role_relaxation .or. contains_word(modulus_units, unit)) &
+         .and. role /= role_tangent .and. names_shear(column%name)
       if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
       if (unit == "" .and. contains_word(angular_names, column%name)) unit = "rad/s"
       if (role /= role_none) return
       if (contains_word(time_units, unit)) role = role_time
       if (contains_word(frequency_units, unit)) role = role_frequency
    end subroutine role_of
+
+   !> Whether a name speaks of shear: G, Gt, G0, G', |G*|, or a word that begins with shear (Schub)
+   pure function names_shear(name) result(yes)
+      !> The name, lower case, `_` for blanks
+      character(len=*), intent(in) :: name
+      !> True if it does
+      logical :: yes
+
+      character(len=*), parameter :: letters = "abcdefghijklmnopqrsuvwxyz"
+      integer :: i, first
+
+      yes = index(name, "shear") > 0 .or. index(name, "schub") > 0
+      first = 1
+      do i = 1, len_trim(name)
+         if (scan(name(i:i), "_|(") > 0) then
+            first = i + 1
+         else if (i == first .and. name(i:i) == "g") then
+            ! a G by itself or with an index, of which t is one, not the beginning of a word
+            if (i == len_trim(name)) then
+               yes = .true.
+            else
+               yes = yes .or. verify(name(i + 1:i + 1), letters) > 0
+            end if
+         end if
+      end do
+   end function names_shear
 
    !> Check that a unit is one of what a column holds
    subroutine check_unit(unit, role, place, error)

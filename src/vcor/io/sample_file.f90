@@ -205,7 +205,7 @@ contains
          //"modulus")
    end subroutine read_points
 
-   !> Line that names the columns: the last one before the numbers that has two known names
+   !> Line that names the columns: the last one before the numbers that has a known name
    function line_of_names(text) result(found)
       !> Contents of the file
       character(len=*), intent(in) :: text

@@ -139,6 +139,11 @@ contains
          end if
          if (impact%plate%hereditary()) then
             call impact%plate%memory_exponentials(window, plate_share*self%accuracy, modes%plate)
+            if (.not. modes%plate%error < no_sum) then
+               call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
+                  //"plate remembers: use another plate.waves, or method = 'direct'")
+               return
+            end if
          else if (.not. allocated(modes%plate%rates)) then
             allocate (modes%plate%moduli(0), modes%plate%rates(0))
          end if

@@ -276,7 +276,8 @@ contains
             speed = (velocity(1) - velocity(2)*force - (velocity(2) - alpha)/weight*dashpot) &
                /(1.0_wp + 1.5_wp*alpha*viscosity*sqrt(abs(s)))
             if (two_terms) call second%accept(n, du)
-            if (receding .and. speed < 0.0_wp) then
+            ! a first step in which the motion turns is too long, and will be halved
+            if (receding .and. speed < 0.0_wp .and. n > 1) then
                ! a dashpot's impulse stays what it is at the largest indentation; at rest it may have
                ! been some steps ago
                last_speed = max(0.0_wp, last_speed)

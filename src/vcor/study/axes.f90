@@ -1,6 +1,6 @@
 !> From the &sweep groups of a case to a grid of parameters; what cannot be swept is refused
 module vcor_study_axes
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_numeric_sorting, only : sort
    use vcor_study_entries, only : entries_t
@@ -157,8 +157,9 @@ contains
 
       character(len=5), parameter :: ends(3) = [character(len=5) :: 'start', 'stop', 'count']
       character(len=:), allocatable :: spacing
+      real(wp), allocatable :: room(:)
       real(wp) :: start, stop
-      integer :: i, n
+      integer :: i, n, status
 
       call case%get('sweep', 'spacing', spacing, item)
       if (case%given('sweep', 'values', item)) then
@@ -201,7 +202,17 @@ contains
             //' points, expected at most '//integer_text(most_points), error)
          return
       end if
-      if (.not. allocated(values)) values = spaced(start, stop, n, spacing)
+      if (.not. allocated(values)) then
+         ! they are copied and sorted, too
+         allocate (room(4*n), stat=status)
+         if (status /= 0) then
+            call raise(error, error_file, case%location('sweep', 'count', item)//': the memory is ' &
+               //'too small for '//integer_text(n)//' values of a sweep')
+            return
+         end if
+         deallocate (room)
+         values = spaced(start, stop, n, spacing)
+      end if
       call refuse_repeated(case, item, values, error)
    end subroutine find_values
 

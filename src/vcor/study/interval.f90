@@ -6,13 +6,15 @@ module vcor_study_interval
    implicit none
    private
 
-   public :: interval_t, contains_number, interval_text, largest, smallest
+   public :: interval_t, contains_number, is_computable, interval_text, largest, smallest
 
-   !> Largest magnitude of a number in a case; nothing physical comes near, and products of two
-   !> stay finite in practice
+   !> Largest magnitude of a number that is read
    real(wp), parameter :: largest = 1.0e300_wp
-   !> Smallest magnitude of a number in a case that is not zero
+   !> Smallest magnitude of a number that is read and is not zero
    real(wp), parameter :: smallest = 1.0e-300_wp
+   !> Magnitudes of the numbers of a case; nothing physical comes near, and products of some stay
+   !> finite
+   real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
 
    !> Range of a number
    type :: interval_t
@@ -34,7 +36,7 @@ contains
       type(interval_t), intent(in) :: range
       !> The number, finite or not
       real(wp), intent(in) :: number
-      !> True if it is within; false for NaN and infinity
+      !> True if it is within; false for NaN, infinity and magnitudes beyond what can be computed
       logical :: yes
 
       yes = .false.
@@ -43,7 +45,18 @@ contains
       yes = number >= range%lower .and. number <= range%upper
       if (range%lower_open) yes = yes .and. number > range%lower
       if (range%upper_open) yes = yes .and. number < range%upper
+      yes = yes .and. is_computable(number)
    end function contains_number
+
+   !> Whether a finite number is zero or of a magnitude that can be computed with
+   pure function is_computable(number) result(yes)
+      !> The number
+      real(wp), intent(in) :: number
+      !> True if it is
+      logical :: yes
+
+      yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
+   end function is_computable
 
    !> A range as text: `> 0`, `in (-1, 0.5]`; empty where it has no bounds
    pure function interval_text(range) result(text)

@@ -7,7 +7,7 @@
 module vcor_study_store
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_kinds, only : wp
-   use vcor_study_interval, only : contains_number
+   use vcor_study_interval, only : contains_number, is_computable
    use vcor_study_keys, only : catalogue, find_group, find_key, first_row, groups, integer_key, &
       & key_t, last_row, list_key, logical_key, real_key, text_key, wanted
    use vcor_study_nearest, only : nearest_name
@@ -388,6 +388,10 @@ contains
          continue
       end select
       if (message /= "") message = "found "//message//", expected "//wanted(key)
+      if (message /= "" .and. key%value_kind == real_key) then
+         if (.not. is_computable(entry%number)) message = message//", between 1e-60 and 1e60 in " &
+            & //"magnitude: beyond that nothing can be computed"
+      end if
       if (near /= "") message = message//"; did you mean '"//near//"'?"
    end function range_message
 
