@@ -206,8 +206,9 @@ contains
          ! they are copied and sorted, too
          allocate (room(4*n), stat=status)
          if (status /= 0) then
-            call raise(error, error_file, case%location('sweep', 'count', item)//': the memory is ' &
-               //'too small for '//integer_text(n)//' values of a sweep')
+            call raise(error, error_file, case%location('sweep', 'count', item)//': there is ' &
+               //'not enough memory for a sweep of '//integer_text(n)//' points: their values ' &
+               //'alone take '//integer_text(n/125000 + 1)//' MB')
             return
          end if
          deallocate (room)
