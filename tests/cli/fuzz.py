@@ -116,7 +116,7 @@ def fault_of(seed):
         if done.returncode not in {SUCCESS, USAGE, INPUT, FILE, NUMERICAL}:
             fault = f"exit code {done.returncode}"
         elif len(errors) != (done.returncode != SUCCESS) or any(
-            not re.match("vcor: (error|warning|note): ", line) or not line.isprintable() for line in lines
+            not re.match("vcor: (error|warning|note): ", line) or re.search("[\0-\x1f\x7f-\x9f]", line) for line in lines
         ):
             fault = "stderr is not one line"
         elif done.returncode in {USAGE, INPUT, FILE} and len(lines) > 1:
