@@ -306,8 +306,8 @@ contains
       peak_tolerance = 10.0_wp*max(accuracy, 1.0e-8_wp)
       force_tolerance = 1.0e3_wp*peak_tolerance
       ! between the two solutions: with panels as short as at the usual accuracy the one that counts
-      ! is better by an order, unless modes of a continuous spectrum settle within the last one, which
-      ! neither of them resolves
+      ! is better by an order, unless modes of a continuous spectrum settle within the last panel,
+      ! which neither of them resolves
       time_tolerance = accuracy
       if (.not. modes%contact%error > 0.0_wp) &
          time_tolerance = 3.0_wp*accuracy*min(1.0_wp, (usual/accuracy)**0.2_wp)

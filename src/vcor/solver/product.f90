@@ -278,8 +278,8 @@ contains
             if (two_terms) call second%accept(n, du)
             ! a first step in which the motion turns is too long, and will be halved
             if (receding .and. speed < 0.0_wp .and. n > 1) then
-               ! a dashpot's impulse stays what it is at the largest indentation; at rest it may have
-               ! been some steps ago
+               ! a dashpot's impulse stays what it is at the largest indentation; at rest that may
+               ! have been some steps ago
                last_speed = max(0.0_wp, last_speed)
                held = viscosity*hertz(trajectory%state(col_indentation, n - 1) &
                   + 0.5_wp*dt*last_speed**2/(last_speed - speed))
