@@ -9,8 +9,8 @@ program rank_zero
    use vcor, only : case_t, checkpoint_t, create_checkpoint, error_t, identity_of, identity_t, &
       join_ranks, leave_ranks, new_part, new_summary, new_sweep, rank_count, read_case_text, &
       remark_t, summary_t, summary_table, sweep_t, table_t, this_rank, wp, write_csv, write_hdf5
-   use vcor_study_mpi, only : inbox_t, outbox_t, receive_order, send_order
-   use vcor_study_summary, only : numbers_per_point
+   use vcor_sweep_mpi, only : inbox_t, outbox_t, receive_order, send_order
+   use vcor_sweep_summary, only : numbers_per_point
    implicit none
 
    integer, parameter :: points = 2**17

@@ -27,7 +27,7 @@ module vcor
    use vcor_io_number, only : integer_text, real_text
    use vcor_io_path, only : anything_at, check_plain, directory_exists, file_exists, join_path, &
       make_directory, plain_file_exists, quoted_path, same_file
-   use vcor_io_real, only : read_real
+   use vcor_case_real, only : read_real
    use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_sample_file, only : read_samples, reading_t, standard_input
@@ -37,7 +37,7 @@ module vcor
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
-   use vcor_material_fit, only : fit_material, fit_models, fit_t, fixable_parameters, parameter_t, &
+   use vcor_fit, only : fit_material, fit_models, fit_t, fixable_parameters, parameter_t, &
       samples_t, state_bound, state_fixed, state_free, unseen_earlier, unseen_later
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_power_law, only : new_power_law, power_law_t
@@ -45,42 +45,43 @@ module vcor
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_solver, only : default_accuracy, method_for, new_solver, solve_impact, &
       solver_settings_t, solver_t
-   use vcor_study_axes, only : new_grid
-   use vcor_study_build, only : build_impact, build_material, build_solver
-   use vcor_study_case, only : case_t
-   use vcor_study_comparison, only : compare
-   use vcor_study_comparison_attempt, only : attempt_t
-   use vcor_study_comparison_judge, only : error_of_best, is_honest
-   use vcor_study_comparison_type, only : attempt_case, attempt_count, attempt_first, &
+   use vcor_case_axes, only : new_grid
+   use vcor_case_build, only : build_impact, build_material, build_solver
+   use vcor_case_case, only : case_t
+   use vcor_verify_comparison, only : compare
+   use vcor_verify_attempt, only : attempt_t
+   use vcor_verify_judge, only : error_of_best, is_honest
+   use vcor_verify_comparison_type, only : attempt_case, attempt_count, attempt_first, &
       attempt_halved, attempt_refined, compared_t, comparison_t
-   use vcor_study_failures, only : failure_t, failures_t
-   use vcor_study_grid, only : axis_t, grid_t
-   use vcor_study_identified, only : material_text, put_material
-   use vcor_study_keys, only : catalogue, group_t, groups, key_t, kind_name, range_text, text_key
-   use vcor_study_models, only : model_t, solve_models
+   use vcor_sweep_failures, only : failure_t, failures_t
+   use vcor_case_grid, only : axis_t, grid_t
+   use vcor_case_identified, only : material_text, put_material
+   use vcor_case_catalogue, only : catalogue, group_t, groups, key_t, kind_name, range_text, &
+      & text_key
+   use vcor_verify_models, only : model_t, solve_models
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, &
       sampled_times, time_range_t
-   use vcor_study_monitor, only : monitor_t
-   use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
+   use vcor_sweep_monitor, only : monitor_t
+   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
       share_flag, this_rank
-   use vcor_study_name, only : control_in, name_flaw
-   use vcor_study_nearest, only : nearest_name, suggestion
-   use vcor_study_partition, only : new_part, part_t
-   use vcor_study_path, only : material_names
-   use vcor_study_points, only : solve_part
-   use vcor_study_quantity, only : history_quantities, point_failed, point_invalid, &
+   use vcor_case_name, only : control_in, name_flaw
+   use vcor_nearest, only : nearest_name, suggestion
+   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_case_path, only : material_names
+   use vcor_sweep_points, only : solve_part
+   use vcor_sweep_quantity, only : history_quantities, point_failed, point_invalid, &
       point_pending, quantities, quantity_names, quantity_t, quantity_value, status_name, &
       status_t, statuses
    use vcor_study_reliance, only : find_reliance, reliance_t, solve_case
-   use vcor_study_summary, only : new_summary, summary_t
-   use vcor_study_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
       worker_t
-   use vcor_study_text, only : printable
-   use vcor_study_threads, only : default_threads, most_threads
-   use vcor_study_unread, only : refuse_unread
-   use vcor_study_units, only : frequency_units, modulus_units, time_units
-   use vcor_study_verification, only : build_law, law_count, verify_law
-   use vcor_study_verification_row, only : law_t, row_t, verdict_t
+   use vcor_text, only : printable
+   use vcor_sweep_threads, only : default_threads, most_threads
+   use vcor_case_unread, only : refuse_unread
+   use vcor_io_units, only : frequency_units, modulus_units, time_units
+   use vcor_verify_table, only : build_law, law_count, verify_law
+   use vcor_verify_row, only : law_t, row_t, verdict_t
    use vcor_version, only : version
    implicit none
    private

@@ -4,10 +4,10 @@
 program ranks
    use vcor_counting_task, only : counting_t
    use vcor_error, only : error_numerical, error_t
-   use vcor_study_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
+   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
       share_flag, this_rank
-   use vcor_study_partition, only : new_todo, todo_t
-   use vcor_study_team, only : work_together
+   use vcor_sweep_partition, only : new_todo, todo_t
+   use vcor_sweep_team, only : work_together
    use vcor_test, only : check, check_text, finish, suite
    implicit none
 

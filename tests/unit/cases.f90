@@ -15,8 +15,8 @@ module vcor_test_cases
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_product, only : new_product, product_t
    use vcor_solver_type, only : solver_t
-   use vcor_study_build, only : build_impact
-   use vcor_study_case, only : case_t
+   use vcor_case_build, only : build_impact
+   use vcor_case_case, only : case_t
    use vcor_test, only : check
    implicit none
    private

@@ -2,7 +2,7 @@
 module vcor_counting_task
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_study_team, only : task_t
+   use vcor_sweep_team, only : task_t
    implicit none
    private
 

@@ -5,10 +5,10 @@ program test_case
    use vcor_error, only : error_input, error_internal, error_t, error_usage
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
-   use vcor_study_case, only : case_t
-   use vcor_study_keys, only : catalogue, find_group, find_key, first_row, groups, last_row
-   use vcor_study_nearest, only : edit_distance, nearest_name
-   use vcor_study_text, only : integer_text, is_utf8, printable, quoted, real_text, shortened
+   use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
+   use vcor_nearest, only : edit_distance, nearest_name
+   use vcor_text, only : integer_text, is_utf8, printable, quoted, real_text, shortened
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 

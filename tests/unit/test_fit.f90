@@ -4,10 +4,10 @@ program test_fit
    use vcor_error, only : error_input, error_numerical, error_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
-   use vcor_material_fit, only : fit_material, fit_t, fixable_parameters, parameter_t, samples_t, &
+   use vcor_fit, only : fit_material, fit_t, fixable_parameters, parameter_t, samples_t, &
       state_bound, state_fixed, state_free, unseen_earlier, unseen_later
-   use vcor_material_fit_result, only : moduli_of
-   use vcor_material_fit_structure, only : is_structured
+   use vcor_fit_result, only : moduli_of
+   use vcor_fit_structure, only : is_structured
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
    implicit none

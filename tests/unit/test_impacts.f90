@@ -11,8 +11,8 @@ program test_impacts
    use vcor_solver_ive, only : ive_t
    use vcor_solver_product, only : product_t
    use vcor_solver_type, only : solver_t
-   use vcor_study_build, only : build_impact
-   use vcor_study_case, only : case_t
+   use vcor_case_build, only : build_impact
+   use vcor_case_case, only : case_t
    use vcor_test, only : check, finish, suite
    use vcor_test_cases, only : make_ive, make_product, success
    implicit none

@@ -3,7 +3,7 @@ program test_namelist
    use vcor_error, only : error_file, error_input, error_t
    use vcor_io_case_reader, only : read_case, read_case_text
    use vcor_kinds, only : wp
-   use vcor_study_case, only : case_t
+   use vcor_case_case, only : case_t
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 

@@ -8,19 +8,19 @@ program test_sweep
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
-   use vcor_study_axes, only : new_grid
-   use vcor_study_blueprint, only : place_of, place_t
-   use vcor_study_build, only : build_impact, build_solver
-   use vcor_study_case, only : case_t
-   use vcor_study_failures, only : failures_t
-   use vcor_study_grid, only : axis_t, grid_t, spaced
-   use vcor_study_path, only : swept_handles
-   use vcor_study_quantity, only : point_failed, point_invalid, quantities, quantity_values, &
+   use vcor_case_axes, only : new_grid
+   use vcor_case_blueprint, only : place_of, place_t
+   use vcor_case_build, only : build_impact, build_solver
+   use vcor_case_case, only : case_t
+   use vcor_sweep_failures, only : failures_t
+   use vcor_case_grid, only : axis_t, grid_t, spaced
+   use vcor_case_path, only : swept_handles
+   use vcor_sweep_quantity, only : point_failed, point_invalid, quantities, quantity_values, &
       status_name
-   use vcor_study_summary, only : new_summary, summary_t
-   use vcor_study_sweep, only : new_sweep, solve_point, solve_points, sweep_t, worker_t
-   use vcor_study_text, only : real_text
-   use vcor_study_threads, only : default_threads
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_sweep, only : new_sweep, solve_point, solve_points, sweep_t, worker_t
+   use vcor_text, only : real_text
+   use vcor_sweep_threads, only : default_threads
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 

@@ -5,11 +5,11 @@ program test_team
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_kinds, only : wp
-   use vcor_study_failures, only : failures_t
-   use vcor_study_partition, only : new_part, new_todo, part_t, todo_t
-   use vcor_study_quantity, only : point_invalid, point_pending
-   use vcor_study_summary, only : new_summary, numbers_per_point, summary_t
-   use vcor_study_team, only : work_together
+   use vcor_sweep_failures, only : failures_t
+   use vcor_sweep_partition, only : new_part, new_todo, part_t, todo_t
+   use vcor_sweep_quantity, only : point_invalid, point_pending
+   use vcor_sweep_summary, only : new_summary, numbers_per_point, summary_t
+   use vcor_sweep_team, only : work_together
    use vcor_test, only : check, check_text, finish, suite
    implicit none
 

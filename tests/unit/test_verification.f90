@@ -9,16 +9,16 @@ program test_verification
    use vcor_io_case_reader, only : override, read_case
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_study_build, only : build_impact
-   use vcor_study_case, only : case_t
-   use vcor_study_comparison, only : compare
-   use vcor_study_comparison_attempt, only : attempt_t
-   use vcor_study_comparison_judge, only : is_honest, judge_ends, judge_numbers
-   use vcor_study_comparison_type, only : attempt_first, attempt_halved, attempt_refined, &
+   use vcor_case_build, only : build_impact
+   use vcor_case_case, only : case_t
+   use vcor_verify_comparison, only : compare
+   use vcor_verify_attempt, only : attempt_t
+   use vcor_verify_judge, only : is_honest, judge_ends, judge_numbers
+   use vcor_verify_comparison_type, only : attempt_first, attempt_halved, attempt_refined, &
       comparison_t
-   use vcor_study_verification, only : build_law, law_count, verify_law
-   use vcor_study_verification_impacts, only : elastic, sls, strike
-   use vcor_study_verification_row, only : judge, law_t, row_t, verdict_t
+   use vcor_verify_table, only : build_law, law_count, verify_law
+   use vcor_verify_impacts, only : elastic, sls, strike
+   use vcor_verify_row, only : judge, law_t, row_t, verdict_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
    use vcor_test_cases, only : success

@@ -7,8 +7,8 @@ module vcor_figure_legend
    use vcor_figure_result, only : result_t
    use vcor_io_figure, only : plain
    use vcor_kinds, only : wp
-   use vcor_study_keys, only : catalogue
-   use vcor_study_text, only : printable
+   use vcor_case_catalogue, only : catalogue
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -12,7 +12,7 @@ module vcor_figure_map
    use vcor_io_hdf5_dataset, only : dataset_t
    use vcor_kinds, only : wp
    use vcor_numeric_contour, only : find_loops, loop_t
-   use vcor_study_text, only : integer_text
+   use vcor_text, only : integer_text
    implicit none
    private
 

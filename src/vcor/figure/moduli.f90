@@ -11,7 +11,7 @@ module vcor_figure_moduli
       panel_t, style_count
    use vcor_io_hdf5_dataset, only : dataset_t
    use vcor_kinds, only : wp
-   use vcor_study_text, only : integer_text, printable
+   use vcor_text, only : integer_text, printable
    implicit none
    private
 

@@ -8,8 +8,8 @@ module vcor_figure_result
    use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
       open_hdf5, reader_t, text_attribute
    use vcor_kinds, only : wp
-   use vcor_study_nearest, only : suggestion
-   use vcor_study_text, only : printable, shortened
+   use vcor_nearest, only : suggestion
+   use vcor_text, only : printable, shortened
    implicit none
    private
 

@@ -9,7 +9,7 @@ module vcor_figure_sweep
       style_count
    use vcor_io_hdf5_dataset, only : dataset_t
    use vcor_kinds, only : wp
-   use vcor_study_text, only : integer_text, shortened
+   use vcor_text, only : integer_text, shortened
    implicit none
    private
 

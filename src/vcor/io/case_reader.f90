@@ -4,15 +4,15 @@
 !> wrong.
 module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_io_list_filling, only : filling_t
-   use vcor_io_namelist, only : namelist_t, new_namelist, statement_t
+   use vcor_case_list_filling, only : filling_t
+   use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
    use vcor_io_text_file, only : read_text_file
-   use vcor_io_values, only : convert, convert_text
-   use vcor_study_case, only : case_t
-   use vcor_study_keys, only : catalogue, find_group, find_key, groups, list_key, row_for_model
-   use vcor_study_path, only : unknown_group, unknown_key
-   use vcor_study_store, only : entry_t, range_message
-   use vcor_study_text, only : has_control, integer_text, printable, shortened
+   use vcor_case_values, only : convert, convert_text
+   use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, groups, list_key, row_for_model
+   use vcor_case_path, only : unknown_group, unknown_key
+   use vcor_case_store, only : entry_t, range_message
+   use vcor_text, only : has_control, integer_text, printable, shortened
    implicit none
    private
 

@@ -35,10 +35,10 @@ module vcor_io_checkpoint
    use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc_t, new_crc
-   use vcor_study_grid, only : grid_t
-   use vcor_study_partition, only : part_t
-   use vcor_study_quantity, only : quantities
-   use vcor_study_summary, only : summary_t
+   use vcor_case_grid, only : grid_t
+   use vcor_sweep_partition, only : part_t
+   use vcor_sweep_quantity, only : quantities
+   use vcor_sweep_summary, only : summary_t
    implicit none
    private
 

@@ -12,8 +12,8 @@ module vcor_io_checkpoint_points
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc_t, new_crc
-   use vcor_study_quantity, only : point_pending, quantities, status_code
-   use vcor_study_summary, only : summary_t
+   use vcor_sweep_quantity, only : point_pending, quantities, status_code
+   use vcor_sweep_summary, only : summary_t
    implicit none
    private
 

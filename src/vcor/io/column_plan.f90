@@ -9,9 +9,9 @@ module vcor_io_column_plan
       role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, &
       role_time
    use vcor_kinds, only : wp
-   use vcor_study_text, only : integer_text, shortened
-   use vcor_study_units, only : angular_units, time_units
-   use vcor_study_words, only : contains_word
+   use vcor_text, only : integer_text, shortened
+   use vcor_io_units, only : angular_units, time_units
+   use vcor_words, only : contains_word
    implicit none
    private
 

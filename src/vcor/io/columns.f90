@@ -5,7 +5,7 @@
 !> and a byte-order mark is passed over. Numbers may have decimal commas where something else stands
 !> between the columns. A line `sep=;` counts as blank.
 module vcor_io_columns
-   use vcor_study_text, only : lower
+   use vcor_text, only : lower
    implicit none
    private
 

@@ -12,14 +12,14 @@ module vcor_io_data_file
    use vcor_io_header, only : check_unit, header_t, longest_word, note_comment, read_names, &
       & role_none, role_of, role_relaxation, role_time
    use vcor_io_path, only : join_path
-   use vcor_io_real, only : looks_numeric, read_real
+   use vcor_case_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
-   use vcor_study_case, only : case_t
-   use vcor_study_store, only : entry_t
-   use vcor_study_text, only : has_control, integer_text, printable, real_text, shortened
-   use vcor_study_units, only : unit_size
+   use vcor_case_case, only : case_t
+   use vcor_case_store, only : entry_t
+   use vcor_text, only : has_control, integer_text, printable, real_text, shortened
+   use vcor_io_units, only : unit_size
    implicit none
    private
 

@@ -17,8 +17,8 @@ module vcor_io_gnuplot
    use vcor_io_layout, only : body_height, frame_t, lay_out, line_height, title_count
    use vcor_kinds, only : wp
    use vcor_io_path, only : for_shell
-   use vcor_study_buffer, only : buffer_t
-   use vcor_study_text, only : integer_text, printable
+   use vcor_buffer, only : buffer_t
+   use vcor_text, only : integer_text, printable
    use vcor_version, only : version
    implicit none
    private

@@ -15,7 +15,7 @@ module vcor_io_hdf5_dataset
    use vcor_io_hdf5_reader, only : reader_t
    use vcor_io_hdf5_text, only : attribute_of, read_lengths, read_texts
    use vcor_kinds, only : wp
-   use vcor_study_text, only : integer_text, shortened
+   use vcor_text, only : integer_text, shortened
    implicit none
    private
 

@@ -25,7 +25,7 @@ module vcor_io_hdf5_reader
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
    use vcor_kinds, only : wp
-   use vcor_study_text, only : printable, shortened
+   use vcor_text, only : printable, shortened
    implicit none
    private
 

@@ -6,10 +6,10 @@
 module vcor_io_header
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : split
-   use vcor_study_nearest, only : nearest_name
-   use vcor_study_text, only : lower, shortened
-   use vcor_study_units, only : frequency_units, modulus_units, time_units
-   use vcor_study_words, only : contains_word, join_words
+   use vcor_nearest, only : nearest_name
+   use vcor_text, only : lower, shortened
+   use vcor_io_units, only : frequency_units, modulus_units, time_units
+   use vcor_words, only : contains_word, join_words
    implicit none
    private
 
@@ -286,7 +286,7 @@ contains
    pure function usual_unit(unit) result(usual)
       !> A unit as somebody wrote it
       character(len=*), intent(in) :: unit
-      !> The unit as `vcor_study_units` has it, where it is one of these
+      !> The unit as `vcor_io_units` has it, where it is one of these
       character(len=longest_word) :: usual
 
       character(len=*), parameter :: micro = char(181), mu = char(206)//char(188)

@@ -9,9 +9,9 @@ module vcor_io_identity
    use vcor_io_number, only : integer_text
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
-   use vcor_study_case, only : case_t
-   use vcor_study_partition, only : new_part, part_t
-   use vcor_study_text, only : shortened
+   use vcor_case_case, only : case_t
+   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_text, only : shortened
    use vcor_version, only : version
    implicit none
    private

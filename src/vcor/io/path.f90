@@ -8,8 +8,8 @@ module vcor_io_path
    use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, file_at, &
       & file_id_t, is_regular, last_errno, nothing_there, resolved_path, something_else, &
       & system_reason
-   use vcor_study_name, only : name_flaw
-   use vcor_study_text, only : printable
+   use vcor_case_name, only : name_flaw
+   use vcor_text, only : printable
    implicit none
    private
 
@@ -201,7 +201,7 @@ contains
    subroutine check_name(path, error)
       !> Path to check
       character(len=*), intent(in) :: path
-      !> Set if it may not, see `vcor_study_name`
+      !> Set if it may not, see `vcor_case_name`
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: flaw
 

@@ -4,9 +4,9 @@ module vcor_io_results
    use vcor_io_table, only : new_table, table_t
    use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
    use vcor_kinds, only : wp
-   use vcor_study_grid, only : grid_t
-   use vcor_study_quantity, only : history_quantities, quantities, status_label
-   use vcor_study_summary, only : summary_t
+   use vcor_case_grid, only : grid_t
+   use vcor_sweep_quantity, only : history_quantities, quantities, status_label
+   use vcor_sweep_summary, only : summary_t
    use vcor_version, only : version
    implicit none
    private

@@ -12,13 +12,13 @@ module vcor_io_sample_file
       take_decimals, take_line
    use vcor_io_header, only : header_t, most_columns, names_columns, note_comment, read_names, &
       read_units, role_complex, role_frequency, role_tangent
-   use vcor_io_real, only : looks_numeric, read_real
+   use vcor_case_real, only : looks_numeric, read_real
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
-   use vcor_material_fit_samples, only : samples_t
+   use vcor_fit_samples, only : samples_t
    use vcor_material_table, only : largest_value, smallest_value
-   use vcor_study_text, only : has_control, integer_text, printable, real_text
-   use vcor_study_units, only : unit_size
+   use vcor_text, only : has_control, integer_text, printable, real_text
+   use vcor_io_units, only : unit_size
    implicit none
    private
 

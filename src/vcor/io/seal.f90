@@ -17,7 +17,7 @@ module vcor_io_seal
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
    use vcor_numeric_crc, only : crc_t, new_crc
-   use vcor_study_text, only : printable
+   use vcor_text, only : printable
    implicit none
    private
 

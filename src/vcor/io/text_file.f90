@@ -2,8 +2,8 @@
 module vcor_io_text_file
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_study_buffer, only : buffer_t
-   use vcor_study_text, only : printable, shortened
+   use vcor_buffer, only : buffer_t
+   use vcor_text, only : printable, shortened
    implicit none
    private
 

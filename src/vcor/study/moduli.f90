@@ -6,10 +6,10 @@ module vcor_study_moduli
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_study_build, only : build_material
-   use vcor_study_case, only : case_t
-   use vcor_study_grid, only : log_spacing, spaced
-   use vcor_study_text, only : real_text
+   use vcor_case_build, only : build_material
+   use vcor_case_case, only : case_t
+   use vcor_case_grid, only : log_spacing, spaced
+   use vcor_text, only : real_text
    implicit none
    private
 

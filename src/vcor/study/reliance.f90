@@ -14,9 +14,9 @@ module vcor_study_reliance
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_solver, only : solve_impact, solver_t
-   use vcor_study_build, only : build_impact, build_material, build_solver
-   use vcor_study_case, only : case_t
-   use vcor_study_identified, only : put_points, put_solver
+   use vcor_case_build, only : build_impact, build_material, build_solver
+   use vcor_case_case, only : case_t
+   use vcor_case_identified, only : put_points, put_solver
    use vcor_study_moduli, only : sampled_times, time_range_t
    implicit none
    private

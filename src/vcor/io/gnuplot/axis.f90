@@ -4,8 +4,8 @@ module vcor_io_gnuplot_axis
    use vcor_io_figure, only : figure_axis_t, panel_t
    use vcor_io_layout, only : letter_width
    use vcor_kinds, only : wp
-   use vcor_study_buffer, only : buffer_t
-   use vcor_study_text, only : printable, real_text
+   use vcor_buffer, only : buffer_t
+   use vcor_text, only : printable, real_text
    implicit none
    private
 

@@ -1,0 +1,378 @@
+!> The catalogue: every group and every key a case may hold, in one table
+!>
+!> Reading, checking, printing and help are all made from it, so a new key is a new row here and
+!> nothing else.
+!> A key whose meaning depends on the model of its material has one row per meaning, with the
+!> models in `models`;
+!> such rows share their kind and their default.
+module vcor_case_catalogue
+   use vcor_kinds, only : wp
+   use vcor_case_interval, only : interval_t, interval_text
+   use vcor_text, only : lower
+   use vcor_words, only : contains_word, join_words
+   implicit none
+   private
+
+   public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
+      & list_key
+   public :: find_group, find_key, first_row, last_row, row_for_model
+   public :: kind_name, range_text, wanted, keys_of, group_names
+
+   !> Kinds of values: a real number
+   integer, parameter :: real_key = 1
+   !> An integer
+   integer, parameter :: integer_key = 2
+   !> A logical
+   integer, parameter :: logical_key = 3
+   !> A text
+   integer, parameter :: text_key = 4
+   !> A list of real numbers
+   integer, parameter :: list_key = 5
+
+   !> One key
+   type :: key_t
+      !> Group it stands in, lower case
+      character(len=8) :: group = ""
+      !> Name, lower case
+      character(len=26) :: name = ""
+      !> One of the `*_key` constants; `kind` alone would be taken for the inquiry of this name
+      integer :: value_kind = 0
+      !> What it means, one line
+      character(len=72) :: meaning = ""
+      !> Unit, blank for none
+      character(len=8) :: unit = ""
+      !> Range of a number, or of every number of a list
+      type(interval_t) :: range = interval_t()
+      !> Words a text may be, separated by blanks; blank: any text
+      character(len=64) :: choices = ""
+      !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the
+      !> empty text
+      character(len=12) :: default = ""
+      !> Models of the group's selector this row is for, separated by blanks; blank: all
+      character(len=56) :: models = ""
+      !> Whether the key must be given
+      logical :: required = .false.
+   end type key_t
+
+   !> One group
+   type :: group_t
+      !> Name, lower case
+      character(len=8) :: name = ""
+      !> What it describes, one line
+      character(len=72) :: meaning = ""
+      !> Whether it must be there
+      logical :: required = .false.
+      !> Whether it may be there more than once
+      logical :: repeated = .false.
+      !> Key whose value names an item of a repeated group; blank: none
+      character(len=8) :: label = ""
+      !> Key whose value selects the rows of `models`; blank: none
+      character(len=8) :: selector = ""
+   end type group_t
+
+   type(interval_t), parameter :: positive = interval_t(lower=0.0_wp, lower_open=.true.)
+   type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
+   type(interval_t), parameter :: poisson_range = &
+      & interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
+   type(interval_t), parameter :: unit_open = &
+      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
+   type(interval_t), parameter :: unit_half_open = &
+      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)
+   type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
+   type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
+   type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
+
+   !> The groups, in the order they are printed in
+   type(group_t), parameter :: groups(*) = [ &
+      & group_t("case", "What the case is called"), &
+      & group_t("impact", "How the sphere strikes the plate", required=.true.), &
+      & group_t("sphere", "The sphere", required=.true.), &
+      & group_t("plate", "The plate", required=.true.), &
+      & group_t("contact", "Law of the contact force"), &
+      & group_t("material", "A material, named by the sphere or the plate", required=.true., &
+      &    repeated=.true., label="name", selector="model"), &
+      & group_t("solver", "How the equation of motion is solved"), &
+      & group_t("sweep", "A parameter that is varied; several make a grid", repeated=.true.), &
+      & group_t("output", "What is written, and where")]
+
+   !> The keys, group by group in the order of `groups`
+   type(key_t), parameter :: catalogue(*) = [ &
+      & key_t("case", "title", text_key, "Title, copied to the outputs", default="''"), &
+      !
+      & key_t("impact", "velocity", real_key, "Velocity of the sphere at first contact", "m/s", &
+      &    positive, required=.true.), &
+      !
+      & key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
+      & key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
+      & key_t("sphere", "mass", real_key, "Mass; from radius and density when not given", "kg", &
+      &    positive), &
+      !
+      & key_t("plate", "half_thickness", real_key, &
+      &    "Half of the thickness; not needed without waves", "m", positive), &
+      & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
+      & key_t("plate", "waves", text_key, "Model of the flexural waves in the plate", &
+      &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
+      & key_t("plate", "surface_radius", real_key, &
+      &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
+      !
+      & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
+      &    choices="boltzmann receding", default="boltzmann"), &
+      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", &
+      &    choices="eq1 series", default="eq1"), &
+      !
+      & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
+      &    required=.true.), &
+      & key_t("material", "model", text_key, "Model of the relaxation modulus", &
+      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", &
+      &    required=.true.), &
+      & key_t("material", "density", real_key, &
+      &    "Density; of a sphere without mass, of a plate with waves", "kg/m3", positive), &
+      & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
+      &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
+      & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &
+      &    range=poisson_range, models="rigid"), &
+      & key_t("material", "modulus", real_key, "Young's modulus", "Pa", positive, &
+      &    models="elastic", required=.true.), &
+      & key_t("material", "glassy_modulus", real_key, "Modulus at time zero", "Pa", positive, &
+      &    models="sls", required=.true.), &
+      & key_t("material", "alpha", real_key, "Rate; rubbery modulus = glassy_modulus*alpha/beta", &
+      &    "1/s", not_negative, models="sls", required=.true.), &
+      & key_t("material", "beta", real_key, "Rate of relaxation", "1/s", not_negative, &
+      &    models="sls", required=.true.), &
+      & key_t("material", "beta", real_key, "Root of the rate of relaxation", "s^-1/2", positive, &
+      &    models="cerf", required=.true.), &
+      & key_t("material", "equilibrium_modulus", real_key, "Modulus after a long time", "Pa", &
+      &    not_negative, models="prony power_law cerf mittag_leffler", default="0.0"), &
+      & key_t("material", "moduli", list_key, "Moduli of the relaxing terms", "Pa", positive, &
+      &    models="prony"), &
+      & key_t("material", "rates", list_key, "Rates of the relaxing terms; or give times", "1/s", &
+      &    positive, models="prony"), &
+      & key_t("material", "times", list_key, "Relaxation times of the terms; or give rates", "s", &
+      &    positive, models="prony"), &
+      & key_t("material", "viscosity", real_key, "Dashpot in parallel with the other terms", &
+      &    "Pa s", not_negative, models="prony", default="0.0"), &
+      & key_t("material", "coefficient", real_key, "Coefficient C of C t^-a / Gamma(1-a)", &
+      &    "Pa s^a", positive, models="power_law", required=.true.), &
+      & key_t("material", "exponent", real_key, "Exponent a of C t^-a / Gamma(1-a)", &
+      &    range=unit_open, models="power_law", required=.true.), &
+      & key_t("material", "exponent", real_key, "Exponent a of the function E_a(-(t/time)^a)", &
+      &    range=unit_half_open, models="mittag_leffler", required=.true.), &
+      & key_t("material", "relaxing_modulus", real_key, "Part of the modulus that relaxes", "Pa", &
+      &    positive, models="cerf mittag_leffler", required=.true.), &
+      & key_t("material", "time", real_key, "Relaxation time", "s", positive, &
+      &    models="mittag_leffler", required=.true.), &
+      & key_t("material", "file", text_key, "File of times and moduli; from the case's folder", &
+      &    models="table", required=.true.), &
+      & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
+      &    choices="ns us ms s min h", models="table", default="s"), &
+      & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
+      &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
+      & key_t("material", "valid_from", real_key, "First time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
+      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      !
+      & key_t("solver", "method", text_key, &
+      &    "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
+      &    choices="auto ive direct", default="auto"), &
+      & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
+      &    choices="product adams_bashforth", default="product"), &
+      & key_t("solver", "time_step", real_key, "Time step; chosen by the solver when not given", &
+      &    "s", positive), &
+      & key_t("solver", "end_time", real_key, "Longest time; chosen by the solver when not given", &
+      &    "s", positive), &
+      & key_t("solver", "accuracy", real_key, &
+      &    "Wanted error of the restitution; 1e-8 ive, 1e-6 direct", range=accuracy_range), &
+      & key_t("solver", "form", text_key, "Form of Eq. (8) in adams_bashforth", &
+      &    choices="a b", default="a"), &
+      & key_t("solver", "quadrature", text_key, "Sums of adams_bashforth", &
+      &    choices="rectangle trapezoid", default="trapezoid"), &
+      & key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
+      &    range=order_range, default="1"), &
+      & key_t("solver", "volterra_coefficient", real_key, "Coefficient of the second term", &
+      &    "m^-1.5", default="1.0"), &
+      & key_t("solver", "continue_after_separation", logical_key, &
+      &    "Go on to end_time with the force as it comes", default=".false."), &
+      !
+      & key_t("sweep", "parameter", text_key, "What is varied, as in --set: group.key", &
+      &    required=.true.), &
+      & key_t("sweep", "values", list_key, "Its values; or give start, stop and count"), &
+      & key_t("sweep", "start", real_key, "Its first value"), &
+      & key_t("sweep", "stop", real_key, "Its last value"), &
+      & key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
+      & key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
+      &    choices="linear log", default="linear"), &
+      !
+      & key_t("output", "csv", logical_key, "Write CSV files", default=".true."), &
+      & key_t("output", "hdf5", logical_key, "Write an HDF5 file", default=".true."), &
+      & key_t("output", "history", logical_key, "Write the time history", default=".true."), &
+      & key_t("output", "directory", text_key, "Folder of the files", default="."), &
+      & key_t("output", "stem", text_key, &
+      & "Start of the file names; from the case file when not given")]
+
+contains
+
+   !> Index of a group in `groups`
+   pure function find_group(name) result(group)
+      !> Name in any case
+      character(len=*), intent(in) :: name
+      !> Index, 0 when there is no such group
+      integer :: group
+
+      character(len=len(groups%name)) :: small
+
+      group = 0
+      if (len_trim(name) > len(small)) return
+      small = lower(name(:min(len(name), len(small))))
+      do group = 1, size(groups)
+         if (groups(group)%name == small) return
+      end do
+      group = 0
+   end function find_group
+
+   !> First row of a key
+   pure function find_key(group, name) result(row)
+      !> Name of the group in any case
+      character(len=*), intent(in) :: group
+      !> Name of the key in any case
+      character(len=*), intent(in) :: name
+      !> Row of `catalogue`, 0 when there is no such key
+      integer :: row
+
+      character(len=len(catalogue%name)) :: small
+      integer :: owner
+
+      row = 0
+      owner = find_group(group)
+      if (owner == 0 .or. len_trim(name) > len(small)) return
+      small = lower(name(:min(len(name), len(small))))
+      do row = first_row(owner), last_row(owner)
+         if (catalogue(row)%name == small) return
+      end do
+      row = 0
+   end function find_key
+
+   !> First row of a group
+   pure function first_row(group) result(row)
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Row of `catalogue`
+      integer :: row
+
+      do row = 1, size(catalogue) - 1
+         if (catalogue(row)%group == groups(group)%name) return
+      end do
+   end function first_row
+
+   !> Last row of a group
+   pure function last_row(group) result(row)
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Row of `catalogue`
+      integer :: row
+
+      do row = size(catalogue), 2, -1
+         if (catalogue(row)%group == groups(group)%name) return
+      end do
+   end function last_row
+
+   !> Row of a key that is for a model
+   pure function row_for_model(row, model) result(found)
+      !> First row of the key
+      integer, intent(in) :: row
+      !> Value of the group's selector, lower case; blank where the group has none
+      character(len=*), intent(in) :: model
+      !> Row, 0 when the key does not belong to the model
+      integer :: found
+
+      do found = row, size(catalogue)
+         if (catalogue(found)%name /= catalogue(row)%name) exit
+         if (catalogue(found)%models == "") return
+         if (contains_word(catalogue(found)%models, model)) return
+      end do
+      found = 0
+   end function row_for_model
+
+   !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
+   pure function range_text(key) result(text)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> Its range
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (key%value_kind /= text_key) then
+         text = interval_text(key%range)
+      else if (key%choices /= "") then
+         text = "one of "//join_words(key%choices)
+      end if
+   end function range_text
+
+   !> What a key takes, in words: `a number > 0 [m]`
+   pure function wanted(key) result(text)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> Kind, range and unit
+      character(len=:), allocatable :: text
+
+      text = kind_name(key%value_kind)
+      if (key%choices /= "") text = ""
+      text = trim(adjustl(text//" "//range_text(key)))
+      if (key%unit /= "") text = text//" ["//trim(key%unit)//"]"
+   end function wanted
+
+   !> Kind of a key in words, as in `expected a number`
+   pure function kind_name(kind) result(name)
+      !> One of the `*_key` constants
+      integer, intent(in) :: kind
+      !> The words
+      character(len=:), allocatable :: name
+
+      select case (kind)
+      case (real_key)
+         name = "a number"
+      case (integer_key)
+         name = "a whole number"
+      case (logical_key)
+         name = ".true. or .false."
+      case (text_key)
+         name = "a text in quotes"
+      case default
+         name = "numbers"
+      end select
+   end function kind_name
+
+   !> Names of the keys of a group, each once, separated by blanks
+   pure function keys_of(group, model) result(words)
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Only the keys of this model; absent: all
+      character(len=*), intent(in), optional :: model
+      !> The names
+      character(len=:), allocatable :: words
+      integer :: row
+
+      words = ""
+      do row = first_row(group), last_row(group)
+         if (contains_word(words, catalogue(row)%name)) cycle
+         if (present(model)) then
+            if (row_for_model(row, model) == 0) cycle
+         end if
+         words = trim(words//" "//catalogue(row)%name)
+      end do
+      words = trim(adjustl(words))
+   end function keys_of
+
+   !> Names of the groups, separated by blanks
+   pure function group_names() result(words)
+      !> The names
+      character(len=:), allocatable :: words
+      integer :: group
+
+      words = trim(groups(1)%name)
+      do group = 2, size(groups)
+         words = words//" "//trim(groups(group)%name)
+      end do
+   end function group_names
+
+end module vcor_case_catalogue

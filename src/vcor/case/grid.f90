@@ -1,0 +1,118 @@
+!> Grids of parameters: the points of a sweep
+!>
+!> Points are numbered from 1, in the order of nested loops with the first axis outside: row-major,
+!> as C and Python count. A grid without axes has one point.
+module vcor_case_grid
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: axis_t, grid_t, spaced, log_spacing
+
+   !> Spacing of values: equal steps of the logarithm; any other word: of the values themselves
+   character(len=*), parameter :: log_spacing = 'log'
+
+   !> One parameter and its values
+   type :: axis_t
+      !> Path of the parameter, `group.key` or `material_name.key`
+      character(len=:), allocatable :: name
+      !> Unit; blank for a pure number
+      character(len=:), allocatable :: unit
+      !> What it is
+      character(len=:), allocatable :: meaning
+      !> Handle of its entry in the case
+      integer :: handle = 0
+      !> Values in their unit, shape (n), n >= 1
+      real(wp), allocatable :: values(:)
+   end type axis_t
+
+   !> All parameters that are varied
+   type :: grid_t
+      !> Parameters, the slowest first, shape (axes)
+      type(axis_t), allocatable :: axes(:)
+   contains
+      !> Number of points
+      procedure :: count => count_points
+      !> Which value of each parameter a point has
+      procedure :: places
+   end type grid_t
+
+contains
+
+   !> Number of points
+   pure function count_points(self) result(n)
+      !> The grid; the product of its lengths is a default integer
+      class(grid_t), intent(in) :: self
+      !> Number, at least 1
+      integer :: n
+
+      integer :: i
+
+      n = 1
+      do i = 1, size(self%axes)
+         n = n*size(self%axes(i)%values)
+      end do
+   end function count_points
+
+   !> Which value of each parameter a point has
+   pure function places(self, point)
+      !> The grid
+      class(grid_t), intent(in) :: self
+      !> Number of the point, from 1
+      integer, intent(in) :: point
+      !> Numbers of the values, from 1, shape (axes)
+      integer :: places(size(self%axes))
+
+      integer :: i, rest
+
+      rest = point - 1
+      do i = size(self%axes), 1, -1
+         associate (n => size(self%axes(i)%values))
+            places(i) = mod(rest, n) + 1
+            rest = rest/n
+         end associate
+      end do
+   end function places
+
+   !> Values between two ends, which are met exactly
+   pure function spaced(start, stop, count, spacing) result(values)
+      !> First value; > 0 with logarithmic spacing
+      real(wp), intent(in) :: start
+      !> Last value, which may be below the first one; > 0 with logarithmic spacing
+      real(wp), intent(in) :: stop
+      !> Number of values, > 0; where it is 1, the value is `start`
+      integer, intent(in) :: count
+      !> `linear` or `log`
+      character(len=*), intent(in) :: spacing
+      !> The values, shape (count)
+      real(wp) :: values(count)
+
+      integer :: i
+
+      ! both forms are exact where the values are whole numbers or decades
+      do i = 2, count - 1
+         if (spacing == log_spacing) then
+            values(i) = 10.0_wp**between(log10(start), log10(stop))
+         else
+            values(i) = between(start, stop)
+         end if
+      end do
+      values(count) = stop
+      values(1) = start
+
+   contains
+
+      !> Value i of so many in equal steps
+      pure function between(a, b)
+         !> First value
+         real(wp), intent(in) :: a
+         !> Last value
+         real(wp), intent(in) :: b
+         !> Value i
+         real(wp) :: between
+
+         between = (a*real(count - i, wp) + b*real(i - 1, wp))/real(count - 1, wp)
+      end function between
+   end function spaced
+
+end module vcor_case_grid

@@ -1,0 +1,93 @@
+!> Ranges of numbers
+module vcor_case_interval
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_kinds, only : wp
+   use vcor_text, only : integer_text, real_text
+   implicit none
+   private
+
+   public :: interval_t, contains_number, is_computable, interval_text, largest, smallest
+
+   !> Largest magnitude of a number that is read
+   real(wp), parameter :: largest = 1.0e300_wp
+   !> Smallest magnitude of a number that is read and is not zero
+   real(wp), parameter :: smallest = 1.0e-300_wp
+   !> Magnitudes of the numbers of a case; nothing physical comes near, and products of some stay
+   !> finite
+   real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
+
+   !> Range of a number
+   type :: interval_t
+      !> Lower bound, in the unit of the key
+      real(wp) :: lower = -largest
+      !> Upper bound, in the unit of the key
+      real(wp) :: upper = largest
+      !> Whether the lower bound itself is outside
+      logical :: lower_open = .false.
+      !> Whether the upper bound itself is outside
+      logical :: upper_open = .false.
+   end type interval_t
+
+contains
+
+   !> Whether a number is within a range
+   pure function contains_number(range, number) result(yes)
+      !> The range
+      type(interval_t), intent(in) :: range
+      !> The number, finite or not
+      real(wp), intent(in) :: number
+      !> True if it is within; false for NaN, infinity and magnitudes beyond what can be computed
+      logical :: yes
+
+      yes = .false.
+      ! On its own, since comparing a NaN traps in a debug build
+      if (.not. ieee_is_finite(number)) return
+      yes = number >= range%lower .and. number <= range%upper
+      if (range%lower_open) yes = yes .and. number > range%lower
+      if (range%upper_open) yes = yes .and. number < range%upper
+      yes = yes .and. is_computable(number)
+   end function contains_number
+
+   !> Whether a finite number is zero or of a magnitude that can be computed with
+   pure function is_computable(number) result(yes)
+      !> The number
+      real(wp), intent(in) :: number
+      !> True if it is
+      logical :: yes
+
+      yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
+   end function is_computable
+
+   !> A range as text: `> 0`, `in (-1, 0.5]`; empty where it has no bounds
+   pure function interval_text(range) result(text)
+      !> The range
+      type(interval_t), intent(in) :: range
+      !> The text
+      character(len=:), allocatable :: text
+
+      if (range%lower > -largest .and. range%upper < largest) then
+         text = "in "//merge("(", "[", range%lower_open)//bound_text(range%lower)//", " &
+            & //bound_text(range%upper)//merge(")", "]", range%upper_open)
+      else if (range%lower > -largest) then
+         text = trim(merge("> ", ">=", range%lower_open))//" "//bound_text(range%lower)
+      else if (range%upper < largest) then
+         text = trim(merge("< ", "<=", range%upper_open))//" "//bound_text(range%upper)
+      else
+         text = ""
+      end if
+   end function interval_text
+
+   !> A bound as text, without a fraction where there is none
+   pure function bound_text(bound) result(text)
+      !> The bound
+      real(wp), intent(in) :: bound
+      !> Its text
+      character(len=:), allocatable :: text
+      real(wp), parameter :: whole_below = 1.0e6_wp
+
+      text = real_text(bound)
+      if (abs(bound) >= whole_below) return
+      if (abs(bound - anint(bound)) <= 0.0_wp) text = integer_text(nint(bound))
+   end function bound_text
+
+end module vcor_case_interval

@@ -1,0 +1,171 @@
+!> A case as namelists
+module vcor_case_printed
+   use vcor_kinds, only : wp
+   use vcor_buffer, only : buffer_t
+   use vcor_case_entries, only : entries_t
+   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
+      & last_row, list_key, logical_key, real_key, row_for_model
+   use vcor_case_store, only : entry_t
+   use vcor_text, only : integer_text, logical_text, quoted, real_text
+   implicit none
+   private
+
+   public :: printed_case, value_text
+
+   !> Longest line of a list [bytes]
+   integer, parameter :: line_width = 96
+   !> Bytes before a remark, so that most remarks stand one below the other
+   integer, parameter :: remark_column = 48
+   !> Indentation of the keys
+   character(len=*), parameter :: indent = "   "
+   !> Line end
+   character(len=*), parameter :: newline = achar(10)
+
+contains
+
+   !> A case as namelists: groups in the order of the catalogue, of a material only the keys of its
+   !> model
+   pure function printed_case(self, complete, remarks) result(text)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Whether what was not given is printed with its default; absent: no
+      logical, intent(in), optional :: complete
+      !> Whether each key has a comment with unit and meaning; absent: no
+      logical, intent(in), optional :: remarks
+      !> Lines, each with a line feed at its end
+      character(len=:), allocatable :: text
+      type(buffer_t) :: buffer
+      logical :: all, remarked
+      integer :: group, item
+
+      all = .false.
+      if (present(complete)) all = complete
+      remarked = .false.
+      if (present(remarks)) remarked = remarks
+      do group = 1, size(groups)
+         do item = 1, items_to_print(self, group, all)
+            call print_group(buffer, self, group, item, all, remarked)
+         end do
+      end do
+      text = buffer%text()
+   end function printed_case
+
+   !> Number of items of a group that are printed
+   pure function items_to_print(self, group, all) result(n)
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Whether groups that are not in the case are printed
+      logical, intent(in) :: all
+      !> The number
+      integer :: n
+
+      n = self%count(groups(group)%name)
+      if (all .and. .not. groups(group)%repeated) n = 1
+   end function items_to_print
+
+   !> Print one group
+   pure subroutine print_group(buffer, self, group, item, all, remarks)
+      !> Where the lines go
+      type(buffer_t), intent(inout) :: buffer
+      !> The case
+      class(entries_t), intent(in) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Number of the item
+      integer, intent(in) :: item
+      !> Whether keys that were not given are printed with their defaults
+      logical, intent(in) :: all
+      !> Whether remarks are wanted
+      logical, intent(in) :: remarks
+      type(entry_t) :: entry
+      character(len=:), allocatable :: line
+      integer :: row, applicable
+
+      if (buffer%length > 0) call buffer%add(newline)
+      call buffer%add("&"//trim(groups(group)%name)//newline)
+      do row = first_row(group), last_row(group)
+         ! The further rows of a key that has one for each model
+         if (find_key(catalogue(row)%group, catalogue(row)%name) /= row) cycle
+         applicable = row_for_model(row, self%model(group, item))
+         if (applicable == 0) cycle
+         entry = self%entry(self%handle(groups(group)%name, catalogue(row)%name, item))
+         if (.not. (entry%given .or. all .and. entry%present)) cycle
+         line = indent//trim(catalogue(row)%name)//" = "//value_text(catalogue(row), entry)
+         if (remarks) call add_remark(line, catalogue(applicable), entry)
+         call buffer%add(line//newline)
+      end do
+      call buffer%add("/"//newline)
+   end subroutine print_group
+
+   !> Put unit and meaning of a key behind its value
+   pure subroutine add_remark(line, key, entry)
+      !> Key and value; a list may be more than one line
+      character(len=:), allocatable, intent(inout) :: line
+      !> The key, of the model of its item
+      type(key_t), intent(in) :: key
+      !> Its entry
+      type(entry_t), intent(in) :: entry
+      integer :: last_line
+
+      last_line = len(line) - index(line, newline, back=.true.)
+      line = line//repeat(" ", max(0, remark_column - last_line))//" ! "
+      if (key%unit /= "") line = line//"["//trim(key%unit)//"] "
+      line = line//trim(key%meaning)
+      if (.not. entry%given) line = line//" (default)"
+   end subroutine add_remark
+
+   !> A value as a namelist has it
+   pure function value_text(key, entry) result(text)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> Its entry
+      type(entry_t), intent(in) :: entry
+      !> The value; a long list in lines of its own
+      character(len=:), allocatable :: text
+
+      select case (key%value_kind)
+      case (real_key)
+         text = real_text(entry%number)
+      case (integer_key)
+         text = integer_text(entry%whole)
+      case (logical_key)
+         text = logical_text(entry%flag)
+      case (list_key)
+         text = list_text(entry%list, len(indent) + len_trim(key%name) + len(" = "))
+      case default
+         text = quoted(entry%text)
+      end select
+   end function value_text
+
+   !> Numbers with commas between them
+   pure function list_text(list, column) result(text)
+      !> The numbers, shape (n)
+      real(wp), intent(in) :: list(:)
+      !> Bytes in the line before the first number
+      integer, intent(in) :: column
+      !> The text, in lines that begin below the first number
+      character(len=:), allocatable :: text
+      type(buffer_t) :: buffer
+      character(len=:), allocatable :: number
+      integer :: i, used
+
+      used = column
+      do i = 1, size(list)
+         number = real_text(list(i))
+         if (i < size(list)) number = number//","
+         if (used + len(number) + 1 > line_width .and. i > 1) then
+            call buffer%add(newline//repeat(" ", column))
+            used = column
+         else if (i > 1) then
+            call buffer%add(" ")
+            used = used + 1
+         end if
+         call buffer%add(number)
+         used = used + len(number)
+      end do
+      text = buffer%text()
+   end function list_text
+
+end module vcor_case_printed

@@ -1,0 +1,238 @@
+!> What an impact does not read: neither its solution nor a quantity of its output depends on it.
+!> Whoever sets or sweeps it is told so, since the same numbers again would be taken for an answer
+!>
+!> What is read stands here by name, so a key that nobody has thought of is refused.
+module vcor_case_unread
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_solver, only : method_for
+   use vcor_case_entries, only : entries_t
+   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, last_row
+   use vcor_case_path, only : swept_handles
+   use vcor_case_store, only : entry_t
+   implicit none
+   private
+
+   public :: why_unread, refuse_unread
+
+contains
+
+   !> Refuse what was set by --set, or what else an entry says it comes from, and is not read. What
+   !> stands in the case file without being read may stay there
+   subroutine refuse_unread(case, all_materials, error)
+      !> A validated case
+      class(entries_t), intent(in) :: case
+      !> Whether materials are read that are in no body
+      logical, intent(in) :: all_materials
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(entry_t) :: entry
+      character(len=:), allocatable :: reason
+      integer :: group, item, row, handle
+
+      do group = 1, size(groups)
+         if (all_materials .and. groups(group)%name == 'material') cycle
+         do item = 1, case%count(groups(group)%name)
+            do row = first_row(group), last_row(group)
+               if (find_key(groups(group)%name, catalogue(row)%name) /= row) cycle
+               handle = case%handle(groups(group)%name, catalogue(row)%name, item)
+               entry = case%entry(handle)
+               if (.not. allocated(entry%origin)) cycle
+               reason = why_unread(case, handle)
+               ! the band of the data has no part in the numbers, but brings a warning
+               if (group_and_key(group, row) == 'material.valid_from' .or. &
+                   group_and_key(group, row) == 'material.valid_to') &
+                  reason = why_material_is_unread(case, item)
+               if (reason == '') cycle
+               call raise(error, error_input, entry%origin//': the impact does not read it: ' &
+                  //reason)
+               return
+            end do
+         end do
+      end do
+   end subroutine refuse_unread
+
+   !> Why an impact does not read a key
+   pure function why_unread(case, handle) result(reason)
+      !> A case, each entry of which is within its range, and whose bodies have materials
+      class(entries_t), intent(in) :: case
+      !> Handle of the entry
+      integer, intent(in) :: handle
+      !> The reason, empty where the key is read
+      character(len=:), allocatable :: reason
+
+      character(len=:), allocatable :: method, scheme
+      integer :: group, row, item, order
+
+      call case%locate(handle, group, row, item)
+      reason = ''
+      select case (group_and_key(group, row))
+      case ('case.title', 'impact.velocity', 'sphere.radius', 'sphere.material', 'sphere.mass', &
+         'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
+         'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
+         'solver.continue_after_separation')
+         continue
+      case ('output.csv', 'output.hdf5', 'output.history', 'output.directory', 'output.stem')
+         continue
+      case ('sweep.parameter', 'sweep.values', 'sweep.start', 'sweep.stop', 'sweep.count')
+         continue
+      case ('sweep.spacing')
+         if (case%given('sweep', 'values', item)) reason = 'it is for start, stop and count'
+      case ('plate.half_thickness')
+         reason = why_plate_rests(case)
+      case ('plate.waves')
+         if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
+      case ('contact.pair')
+         reason = why_no_pair(case)
+      case ('solver.time_step')
+         call case%get('solver', 'method', method)
+         call case%get('solver', 'scheme', scheme)
+         if (method_for(method, scheme) == 'ive') &
+            reason = "method ive takes its own steps, solver.time_step is for method = 'direct'"
+      case ('solver.form', 'solver.quadrature')
+         call case%get('solver', 'scheme', scheme)
+         if (scheme /= 'adams_bashforth') reason = "it is for scheme = 'adams_bashforth'"
+      case ('solver.volterra_coefficient')
+         call case%get('solver', 'volterra_order', order)
+         if (order /= 2) reason = 'it is for solver.volterra_order = 2'
+      case ('material.valid_from', 'material.valid_to')
+         reason = 'it is for the warning about the band of the data, no number depends on it'
+      case ('material.density')
+         reason = why_material_is_unread(case, item)
+         if (reason == '') reason = why_weightless(case, item)
+      case ('material.poisson_ratio')
+         reason = why_material_is_unread(case, item)
+         if (reason == '' .and. case%model(group, item) == 'rigid') &
+            reason = 'a rigid body does not deform'
+      case ('material.name', 'material.model', 'material.modulus', 'material.glassy_modulus', &
+         'material.alpha', 'material.beta', 'material.equilibrium_modulus', 'material.moduli', &
+         'material.rates', 'material.times', 'material.viscosity', 'material.coefficient', &
+         'material.exponent', 'material.relaxing_modulus', 'material.time', 'material.file', &
+         'material.time_unit', 'material.modulus_unit')
+         reason = why_material_is_unread(case, item)
+      case default
+         reason = 'nothing depends on it'
+      end select
+   end function why_unread
+
+   !> Group and key in one word
+   pure function group_and_key(group, row) result(word)
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Row of the key
+      integer, intent(in) :: row
+      !> Such as `sphere.radius`
+      character(len=len(groups%name) + 1 + len(catalogue%name)) :: word
+
+      word = trim(groups(group)%name)//'.'//catalogue(row)%name
+   end function group_and_key
+
+   !> Why the plate stays where it is
+   pure function why_plate_rests(case) result(reason)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> The reason, empty where the plate moves
+      character(len=:), allocatable :: reason
+
+      character(len=:), allocatable :: waves
+
+      reason = ''
+      call case%get('plate', 'waves', waves)
+      if (body_model(case, 'plate') == 'rigid') then
+         reason = 'the plate is rigid and does not move'
+      else if (waves == 'none') then
+         reason = "with plate.waves = 'none' the plate does not move"
+      end if
+   end function why_plate_rests
+
+   !> Why there are no two bodies that combine in one way or another
+   pure function why_no_pair(case) result(reason)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> The reason, empty where there are
+      character(len=:), allocatable :: reason
+
+      reason = ''
+      if (body_model(case, 'sphere') == 'rigid') then
+         reason = 'the sphere is rigid'
+      else if (body_model(case, 'plate') == 'rigid') then
+         reason = 'the plate is rigid'
+      else if (body_item(case, 'sphere') == body_item(case, 'plate')) then
+         reason = 'sphere and plate are of one material'
+      else if (body_model(case, 'sphere') == 'elastic' .and. &
+               body_model(case, 'plate') == 'elastic') then
+         reason = 'sphere and plate are elastic'
+      end if
+   end function why_no_pair
+
+   !> Why a material has no part in an impact
+   pure function why_material_is_unread(case, item) result(reason)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> The reason, empty where it has
+      character(len=:), allocatable :: reason
+
+      reason = ''
+      if (item /= body_item(case, 'sphere') .and. item /= body_item(case, 'plate')) &
+         reason = 'neither the sphere nor the plate is of this material'
+   end function why_material_is_unread
+
+   !> Why the density of the material of a body has no part in an impact
+   pure function why_weightless(case, item) result(reason)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> The reason, empty where it has
+      character(len=:), allocatable :: reason
+
+      logical :: has_mass
+
+      reason = ''
+      has_mass = case%given('sphere', 'mass') &
+         .or. any(swept_handles(case) == case%handle('sphere', 'mass'))
+      if (item == body_item(case, 'sphere')) then
+         if (.not. has_mass) return
+         reason = 'sphere.mass gives the mass of the sphere'
+      end if
+      if (item == body_item(case, 'plate')) then
+         if (len(reason) > 0) reason = reason//', and '
+         reason = reason//why_plate_rests(case)
+         if (why_plate_rests(case) == '') reason = ''
+      end if
+   end function why_weightless
+
+   !> Number of the material of a body
+   pure function body_item(case, body) result(item)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> sphere or plate
+      character(len=*), intent(in) :: body
+      !> Number, 0 where there is no such material
+      integer :: item
+
+      character(len=:), allocatable :: name
+
+      call case%get(body, 'material', name)
+      item = case%find_material(name)
+   end function body_item
+
+   !> Model of the material of a body
+   pure function body_model(case, body) result(model)
+      !> The case
+      class(entries_t), intent(in) :: case
+      !> sphere or plate
+      character(len=*), intent(in) :: body
+      !> Its model, empty where there is no such material
+      character(len=:), allocatable :: model
+
+      integer :: item
+
+      model = ''
+      item = body_item(case, body)
+      if (item > 0) call case%get('material', 'model', model, item)
+   end function body_model
+
+end module vcor_case_unread

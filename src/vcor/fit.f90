@@ -1,0 +1,120 @@
+!> Identification of a material: the parameters of a model from samples of its moduli
+module vcor_fit
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_kinds, only : wp
+   use vcor_fit_problem, only : parameters_of
+   use vcor_fit_parametric, only : fit_parametric
+   use vcor_fit_result, only : fit_t, parameter_t, state_bound, state_fixed, state_free, &
+      unseen_earlier, unseen_later
+   use vcor_fit_samples, only : samples_t
+   use vcor_fit_series, only : fit_series
+   implicit none
+   private
+
+   public :: fit_t, parameter_t, samples_t, fit_material, fit_models, fixable_parameters
+   public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
+
+   !> Models that can be fitted
+   character(len=*), parameter :: fit_models = 'prony sls power_law cerf mittag_leffler'
+   !> Relative change of the modulus below which nothing relaxes
+   real(wp), parameter :: constant = 1.0e-6_wp
+
+contains
+
+   !> Names of the parameters of a model that can be given, separated by blanks
+   pure function fixable_parameters(model) result(names)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> The names
+      character(len=:), allocatable :: names
+
+      type(parameter_t), allocatable :: parameters(:)
+      integer :: i
+
+      if (model == 'prony') then
+         names = 'equilibrium_modulus'
+         return
+      end if
+      parameters = parameters_of(model)
+      names = trim(parameters(1)%name)
+      do i = 2, size(parameters)
+         names = names//' '//trim(parameters(i)%name)
+      end do
+   end function fixable_parameters
+
+   !> Fit a model to samples
+   subroutine fit_material(fit, model, terms, fixed, samples, error)
+      !> The fit
+      type(fit_t), intent(out) :: fit
+      !> One of `fit_models`
+      character(len=*), intent(in) :: model
+      !> Terms of a Prony series; 0: as many as the data support
+      integer, intent(in) :: terms
+      !> Parameters that have a given value, each one of `fixable_parameters`, shape (n)
+      type(parameter_t), intent(in) :: fixed(:)
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Error of code `error_input` if the data cannot be fitted, of code `error_numerical` if the
+      !> fit fails; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: equilibrium
+      integer :: unknowns
+
+      unknowns = size(parameters_of(model)) - size(fixed)
+      if (model == 'prony') unknowns = 2*max(1, terms) + 1 - size(fixed)
+      if (samples%count() <= unknowns) then
+         call raise(error, error_input, 'found '//text_of(samples%count())//' moduli, expected ' &
+            //'at least '//text_of(unknowns + 1)//': the model has '//text_of(unknowns) &
+            //' parameters to be found')
+      else if (.not. samples%dynamic .and. maxval(samples%modulus) &
+         <= (1.0_wp + constant)*minval(samples%modulus)) then
+         call raise(error, error_input, 'the modulus does not change: nothing is there to be ' &
+            //"fitted, model = 'elastic' describes it")
+      else if (.not. falls(samples)) then
+         call raise(error, error_input, 'the modulus does not fall with time, or rise with ' &
+            //'frequency, as that of a material that relaxes does')
+      else if (unknowns == 0) then
+         call raise(error, error_usage, 'all parameters are given: nothing is there to be fitted')
+      end if
+      if (allocated(error)) return
+
+      if (model == 'prony') then
+         equilibrium = -1.0_wp
+         if (size(fixed) > 0) equilibrium = fixed(size(fixed))%value
+         call fit_series(fit, terms, equilibrium, samples, error)
+      else
+         call fit_parametric(fit, model, fixed, samples, error)
+      end if
+   end subroutine fit_material
+
+   !> Whether the modulus falls with time, or rises with frequency, on the whole: by the slope of
+   !> its logarithm over that of time or frequency
+   pure function falls(samples) result(yes)
+      !> The samples, two or more
+      type(samples_t), intent(in) :: samples
+      !> True if it does
+      logical :: yes
+
+      real(wp) :: x(size(samples%at))
+
+      x = log(samples%at)
+      x = x - sum(x)/real(size(x), wp)
+      if (samples%dynamic) x = -x
+      yes = dot_product(x, log(samples%modulus)) < 0.0_wp
+   end function falls
+
+   !> A whole number as text
+   pure function text_of(number) result(text)
+      !> The number
+      integer, intent(in) :: number
+      !> Its digits
+      character(len=:), allocatable :: text
+
+      character(len=12) :: buffer
+
+      write (buffer, '(i0)') number
+      text = trim(buffer)
+   end function text_of
+
+end module vcor_fit

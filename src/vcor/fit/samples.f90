@@ -1,0 +1,79 @@
+!> Measured moduli that a material is identified from, and what a model misses of them
+!>
+!> Moduli run over decades and are measured to so many percent of themselves, so what counts is the
+!> logarithm of model over data. For small misfits that is the relative misfit; of a noise of 1 %
+!> it makes a bias of 5e-5, half of what relative misfits make.
+module vcor_fit_samples
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: samples_t
+
+   !> Samples of E(t), or of E' and E'' over the angular frequency
+   type :: samples_t
+      !> Whether they are storage and loss moduli over frequency
+      logical :: dynamic = .false.
+      !> Times [s], or angular frequencies [rad/s], increasing, > 0, shape (points)
+      real(wp), allocatable :: at(:)
+      !> Relaxation or storage moduli [Pa], > 0, shape (points)
+      real(wp), allocatable :: modulus(:)
+      !> Loss moduli [Pa], > 0, shape (points); of relaxation data shape (0)
+      real(wp), allocatable :: loss(:)
+   contains
+      !> Number of moduli
+      procedure :: count => count_moduli
+      !> First time
+      procedure :: first_time
+      !> Last time
+      procedure :: last_time
+      !> All moduli as one list
+      procedure :: all => all_moduli
+   end type samples_t
+
+contains
+
+   !> Number of moduli, that of the residuals of a fit
+   pure function count_moduli(self) result(n)
+      !> The samples
+      class(samples_t), intent(in) :: self
+      !> The number
+      integer :: n
+
+      n = size(self%modulus) + size(self%loss)
+   end function count_moduli
+
+   !> Time from which on the samples say something: of frequencies the reciprocal of the largest
+   pure function first_time(self) result(time)
+      !> The samples
+      class(samples_t), intent(in) :: self
+      !> Time [s]
+      real(wp) :: time
+
+      time = self%at(1)
+      if (self%dynamic) time = 1.0_wp/self%at(size(self%at))
+   end function first_time
+
+   !> Time up to which the samples say something: of frequencies the reciprocal of the smallest
+   pure function last_time(self) result(time)
+      !> The samples
+      class(samples_t), intent(in) :: self
+      !> Time [s]
+      real(wp) :: time
+
+      time = self%at(size(self%at))
+      if (self%dynamic) time = 1.0_wp/self%at(1)
+   end function last_time
+
+   !> All moduli as one list: relaxation, or storage and then loss
+   pure function all_moduli(self) result(moduli)
+      !> The samples
+      class(samples_t), intent(in) :: self
+      !> The moduli [Pa], shape (count)
+      real(wp) :: moduli(size(self%modulus) + size(self%loss))
+
+      moduli(:size(self%modulus)) = self%modulus
+      moduli(size(self%modulus) + 1:) = self%loss
+   end function all_moduli
+
+end module vcor_fit_samples

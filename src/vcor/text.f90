@@ -1,0 +1,281 @@
+!> Texts, that is case, names, numbers in their shortest form, and what others wrote made fit for
+!> one line of a message
+module vcor_text
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: lower, same_name, canonical_name, integer_text, real_text, logical_text, quoted
+   public :: printable, shortened, is_utf8, has_control
+
+   !> Longest part of somebody's text that a message repeats [bytes]
+   integer, parameter :: shown_bytes = 60
+   !> Largest magnitude whose rounding to fewer digits cannot overflow
+   real(wp), parameter :: round_limit = 1.0e300_wp
+
+contains
+
+   !> A text in lower case (ASCII letters only)
+   pure function lower(text) result(small)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> The same in lower case
+      character(len=len(text)) :: small
+      integer, parameter :: shift = iachar("a") - iachar("A")
+      integer :: i
+
+      small = text
+      do i = 1, len(text)
+         if (text(i:i) >= "A" .and. text(i:i) <= "Z") small(i:i) = achar(iachar(text(i:i)) + shift)
+      end do
+   end function lower
+
+   !> A name in the form that is compared: lower case, underscores for blanks
+   pure function canonical_name(name) result(canonical)
+      !> Name of a material
+      character(len=*), intent(in) :: name
+      !> Its form for comparison
+      character(len=:), allocatable :: canonical
+      integer :: i
+
+      canonical = trim(adjustl(lower(name)))
+      do i = 1, len(canonical)
+         if (canonical(i:i) == " ") canonical(i:i) = "_"
+      end do
+   end function canonical_name
+
+   !> Whether two names are the same: case, blanks against underscores and outer blanks make no
+   !> difference
+   pure function same_name(a, b) result(same)
+      !> One name
+      character(len=*), intent(in) :: a
+      !> The other
+      character(len=*), intent(in) :: b
+      !> True if they are the same
+      logical :: same
+
+      same = canonical_name(a) == canonical_name(b)
+   end function same_name
+
+   !> An integer as text
+   pure function integer_text(number) result(text)
+      !> The integer
+      integer, intent(in) :: number
+      !> Its digits
+      character(len=:), allocatable :: text
+      character(len=16) :: buffer
+
+      write(buffer, "(i0)") number
+      text = trim(buffer)
+   end function integer_text
+
+   !> A logical as a namelist has it
+   pure function logical_text(flag) result(text)
+      !> The logical
+      logical, intent(in) :: flag
+      !> `.true.` or `.false.`
+      character(len=:), allocatable :: text
+
+      text = trim(merge(".true. ", ".false.", flag))
+   end function logical_text
+
+   !> A text in quotes, as a namelist has it
+   pure function quoted(text) result(between)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> The text between single quotes, single quotes inside doubled
+      character(len=:), allocatable :: between
+      integer :: i, start
+
+      between = "'"
+      start = 1
+      do
+         i = index(text(start:), "'")
+         if (i == 0) exit
+         between = between//text(start:start+i-1)//"'"
+         start = start + i
+      end do
+      between = between//text(start:)//"'"
+   end function quoted
+
+   !> A real number in the shortest form that reads back as the same number: `0.01`, `7.0e10`
+   pure function real_text(number) result(text)
+      !> The number, finite or not
+      real(wp), intent(in) :: number
+      !> Its text, at most 24 characters
+      character(len=:), allocatable :: text
+      character(len=*), parameter :: formats(3) = ["(es32.14e3)", "(es32.15e3)", "(es32.16e3)"]
+      character(len=32) :: buffer
+      real(wp) :: back
+      integer :: digits, status
+
+      if (.not. ieee_is_finite(number)) then
+         text = trim(merge("NaN     ", "Infinity", ieee_is_nan(number)))
+         return
+      end if
+      do digits = merge(1, size(formats), abs(number) < round_limit), size(formats)
+         write(buffer, formats(digits)) number
+         if (digits == size(formats)) exit
+         read(buffer, *, iostat=status) back
+         if (status == 0 .and. abs(back - number) <= 0.0_wp) exit
+      end do
+      text = tidied(trim(adjustl(buffer)))
+   end function real_text
+
+   !> A number from an `es` format without the zeros nobody needs
+   pure function tidied(scientific) result(text)
+      !> Such as `-1.50000000000000E+003`
+      character(len=*), intent(in) :: scientific
+      !> Such as `-1500.0`
+      character(len=:), allocatable :: text
+      character(len=:), allocatable :: digits, sign
+      integer, parameter :: fixed_below = 6, fixed_above = -5
+      integer :: start, mark, exponent, length
+
+      sign = ""
+      start = 1
+      if (scientific(1:1) == "-") then
+         sign = "-"
+         start = 2
+      end if
+      mark = index(scientific, "E")
+      read(scientific(mark+1:), *) exponent
+      digits = scientific(start:start)//scientific(start+2:mark-1)
+      length = max(1, verify(digits, "0", back=.true.))
+      digits = digits(:length)
+
+      if (exponent >= fixed_below .or. exponent <= fixed_above) then
+         if (length == 1) digits = digits//"0"
+         text = sign//digits(1:1)//"."//digits(2:)//"e"//integer_text(exponent)
+      else if (exponent < 0) then
+         text = sign//"0."//repeat("0", -exponent - 1)//digits
+      else
+         if (length < exponent + 2) digits = digits//repeat("0", exponent + 2 - length)
+         text = sign//digits(:exponent+1)//"."//digits(exponent+2:)
+      end if
+   end function tidied
+
+   !> Whether a text holds control characters
+   pure function has_control(text) result(yes)
+      !> Any text
+      character(len=*), intent(in) :: text
+      !> True if it does; a tab does not count
+      logical :: yes
+      integer :: i
+
+      yes = .false.
+      do i = 1, len(text)
+         if (is_control(text(i:i)) .and. iachar(text(i:i)) /= 9) yes = .true.
+      end do
+   end function has_control
+
+   !> Whether a byte is an ASCII control character
+   pure function is_control(byte) result(yes)
+      !> The byte
+      character, intent(in) :: byte
+      !> True if it is
+      logical :: yes
+
+      yes = iachar(byte) < 32 .or. iachar(byte) == 127
+   end function is_control
+
+   !> Whether a text is UTF-8
+   pure function is_utf8(text) result(yes)
+      !> Any bytes
+      character(len=*), intent(in) :: text
+      !> True if it is; plain ASCII is
+      logical :: yes
+      integer :: i, width
+
+      yes = .true.
+      i = 1
+      do while (i <= len(text))
+         width = utf8_width(text(i:))
+         yes = width > 0
+         if (.not. yes) return
+         i = i + width
+      end do
+   end function is_utf8
+
+   !> Bytes of the UTF-8 character a text begins with
+   pure function utf8_width(text) result(width)
+      !> At least one byte
+      character(len=*), intent(in) :: text
+      !> 1 to 4, 0 when it is not UTF-8
+      integer :: width
+      integer :: first, i
+
+      first = ichar(text(1:1))
+      select case (first)
+      case (0:127)
+         width = 1
+      case (194:223)
+         width = 2
+      case (224:239)
+         width = 3
+      case (240:244)
+         width = 4
+      case default
+         width = 0
+      end select
+      if (width > len(text)) width = 0
+      do i = 2, width
+         if (ichar(text(i:i)) < 128 .or. ichar(text(i:i)) > 191) width = 0
+         if (width == 0) return
+      end do
+      ! Forms that are longer than they need be, surrogates, and what is beyond Unicode
+      if (width < 3) return
+      i = ichar(text(2:2))
+      if (first == 224 .and. i < 160 .or. first == 237 .and. i > 159 &
+         & .or. first == 240 .and. i < 144 .or. first == 244 .and. i > 143) width = 0
+   end function utf8_width
+
+   !> A text as a message may show it: no control characters, nothing that is not UTF-8
+   pure function printable(text) result(shown)
+      !> Any bytes
+      character(len=*), intent(in) :: text
+      !> The same with a blank for tabs and line ends, a question mark for each other byte that
+      !> cannot be shown
+      character(len=len(text)) :: shown
+      character(len=*), parameter :: white = achar(9)//achar(10)//achar(13)
+      integer :: i, width
+
+      shown = text
+      i = 1
+      do while (i <= len(text))
+         width = utf8_width(text(i:min(i+3, len(text))))
+         if (width == 1) then
+            if (is_control(text(i:i))) shown(i:i) = merge(" ", "?", index(white, text(i:i)) > 0)
+         else if (width == 2) then
+            ! The second set of control characters, U+0080 to U+009F
+            if (ichar(text(i:i)) == 194 .and. ichar(text(i+1:i+1)) < 160) shown(i:i+1) = "??"
+         else if (width == 0) then
+            shown(i:i) = "?"
+         end if
+         i = i + max(1, width)
+      end do
+   end function printable
+
+   !> A text as a message may repeat it: printable, and cut with three dots where it is long
+   pure function shortened(text) result(shown)
+      !> Any bytes
+      character(len=*), intent(in) :: text
+      !> At most `shown_bytes` bytes of it
+      character(len=:), allocatable :: shown
+      integer :: last
+
+      if (len(text) <= shown_bytes) then
+         shown = printable(text)
+         return
+      end if
+      ! Not in the middle of a UTF-8 character
+      last = shown_bytes - 3
+      do while (last > 1 .and. ichar(text(last+1:last+1)) >= 128 &
+         & .and. ichar(text(last+1:last+1)) < 192)
+         last = last - 1
+      end do
+      shown = printable(text(:last))//"..."
+   end function shortened
+
+end module vcor_text
