@@ -4,8 +4,14 @@ module vcor_app_band
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : short, significant
    use vcor_app_sweep_screen, only : coordinates
-   use vcor, only : case_t, contact_separated, error_t, find_reliance, printable, quantities, &
-      reliance_t, summary_t, wp
+   use vcor_case_case, only : case_t
+   use vcor_error, only : error_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_kinds, only : wp
+   use vcor_study_reliance, only : find_reliance, reliance_t
+   use vcor_sweep_quantity, only : quantities
+   use vcor_sweep_summary, only : summary_t
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -3,8 +3,13 @@ module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
    use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
    use vcor_app_option_value, only : read_positive, read_whole
-   use vcor, only : control_in, error_t, error_usage, most_threads, name_flaw, printable, &
-      quantity_names, raise, suggestion, time_range_t
+   use vcor_case_name, only : control_in, name_flaw
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_nearest, only : suggestion
+   use vcor_study_moduli, only : time_range_t
+   use vcor_sweep_quantity, only : quantity_names
+   use vcor_sweep_threads, only : most_threads
+   use vcor_text, only : printable
    implicit none
    private
 

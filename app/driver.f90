@@ -13,8 +13,12 @@ module vcor_app_driver
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
-   use vcor, only : default_accuracy, error_numerical, error_t, integer_text, real_text, &
-      share_error, this_rank, version, write_stdout
+   use vcor_error, only : error_numerical, error_t
+   use vcor_io_file, only : write_stdout
+   use vcor_io_number, only : integer_text, real_text
+   use vcor_solver, only : default_accuracy
+   use vcor_sweep_mpi, only : share_error, this_rank
+   use vcor_version, only : version
    implicit none
    private
 

@@ -2,9 +2,17 @@
 module vcor_app_files
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
-   use vcor, only : default_threads, error_t, history_table, identity_t, make_directory, &
-      place_in_table, remark_t, remarks_of, table_t, trajectory_t, write_csv, write_hdf5, &
-      write_rows, write_summary
+   use vcor_error, only : error_t
+   use vcor_impact_trajectory, only : trajectory_t
+   use vcor_io_csv, only : write_csv
+   use vcor_io_hdf5, only : remark_t, write_hdf5
+   use vcor_io_identity, only : identity_t, remarks_of
+   use vcor_io_path, only : make_directory
+   use vcor_io_results, only : history_table
+   use vcor_io_row_text, only : place_in_table, write_rows
+   use vcor_io_summary_files, only : write_summary
+   use vcor_io_table, only : table_t
+   use vcor_sweep_threads, only : default_threads
    implicit none
    private
 

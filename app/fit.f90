@@ -5,9 +5,15 @@ module vcor_app_fit
    use vcor_app_fit_screen, only : fit_report, fit_remarks
    use vcor_app_place, only : find_place
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
-   use vcor, only : data_file, error_input, error_t, error_usage, fit_material, fit_t, &
-      material_text, printable, raise, read_samples, reading_t, same_file, samples_t, &
-      standard_input, write_file, write_stdout, wp
+   use vcor_case_identified, only : material_text
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_fit, only : fit_material, fit_t, samples_t
+   use vcor_io_data_file, only : data_file
+   use vcor_io_file, only : write_file, write_stdout
+   use vcor_io_path, only : same_file
+   use vcor_io_sample_file, only : read_samples, reading_t, standard_input
+   use vcor_kinds, only : wp
+   use vcor_text, only : printable
    implicit none
    private
 

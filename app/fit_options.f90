@@ -2,8 +2,13 @@
 module vcor_app_fit_options
    use vcor_app_argument, only : has_word
    use vcor_app_option_value, only : read_number, read_positive, read_whole
-   use vcor, only : error_t, error_usage, fit_models, fixable_parameters, frequency_units, &
-      modulus_units, parameter_t, printable, raise, reading_t, suggestion, time_units, wp
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_fit, only : fit_models, fixable_parameters, parameter_t
+   use vcor_io_sample_file, only : reading_t
+   use vcor_io_units, only : frequency_units, modulus_units, time_units
+   use vcor_kinds, only : wp
+   use vcor_nearest, only : suggestion
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -1,8 +1,11 @@
 !> What the screen shows of a fit
 module vcor_app_fit_screen
    use vcor_app_screen, only : short, significant
-   use vcor, only : fit_t, integer_text, printable, samples_t, state_bound, state_fixed, &
-      unseen_earlier, unseen_later, version, wp
+   use vcor_fit, only : fit_t, samples_t, state_bound, state_fixed, unseen_earlier, unseen_later
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_text, only : printable
+   use vcor_version, only : version
    implicit none
    private
 

@@ -1,6 +1,9 @@
 !> Help pages
 module vcor_app_help
-   use vcor, only : error_t, error_usage, nearest_name, printable, raise, suggestion, version
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_nearest, only : nearest_name, suggestion
+   use vcor_text, only : printable
+   use vcor_version, only : version
    use vcor_app_input_help, only : input_page, input_words
    use vcor_app_output_help, only : output_page, output_words
    implicit none

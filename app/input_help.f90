@@ -1,6 +1,6 @@
 !> Help on the input, made from the catalogue of keys
 module vcor_app_input_help
-   use vcor, only : catalogue, group_t, groups, key_t, range_text
+   use vcor_case_catalogue, only : catalogue, group_t, groups, key_t, range_text
    implicit none
    private
 

@@ -2,7 +2,8 @@
 module vcor_app_input_manual
    use vcor_app_argument, only : has_word
    use vcor_app_markup, only : markup_t, new_page
-   use vcor, only : catalogue, groups, key_t, kind_name, range_text, text_key, version
+   use vcor_case_catalogue, only : catalogue, groups, key_t, kind_name, range_text, text_key
+   use vcor_version, only : version
    implicit none
    private
 

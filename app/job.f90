@@ -2,10 +2,22 @@
 module vcor_app_job
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
-   use vcor, only : case_t, data_file, error_input, error_t, error_usage, grid_t, impact_t, &
-      integer_text, join_path, method_for, name_flaw, new_part, new_sweep, override, part_t, &
-      printable, quantity_names, raise, read_case, read_data, refuse_unread, same_file, &
-      single_impact, suggestion, sweep_t
+   use vcor_case_case, only : case_t
+   use vcor_case_grid, only : grid_t
+   use vcor_case_name, only : name_flaw
+   use vcor_case_unread, only : refuse_unread
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_impact_problem, only : impact_t
+   use vcor_io_case_reader, only : override, read_case
+   use vcor_io_data_file, only : data_file, read_data
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : join_path, same_file
+   use vcor_nearest, only : suggestion
+   use vcor_solver, only : method_for
+   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_sweep_quantity, only : quantity_names
+   use vcor_sweep_sweep, only : new_sweep, single_impact, sweep_t
+   use vcor_text, only : printable
    implicit none
    private
 

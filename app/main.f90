@@ -6,7 +6,8 @@ program vcor_main
    use vcor_app_cli, only : parse, request_t
    use vcor_app_driver, only : complain, execute
    use vcor_app_signals, only : prepare_signals
-   use vcor, only : differs, error_t, error_usage, join_ranks, leave_ranks, raise, share_error
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, share_error
    implicit none
 
    interface

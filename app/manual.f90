@@ -9,7 +9,8 @@ module vcor_app_manual
    use vcor_app_input_manual, only : input_manual
    use vcor_app_markup, only : markup_t, new_page
    use vcor_app_output_manual, only : output_manual, put_exit_codes
-   use vcor, only : error_t, error_usage, raise, version
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_version, only : version
    implicit none
    private
 

@@ -5,9 +5,19 @@ module vcor_app_material
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : short, significant
    use vcor_app_window, only : find_window, take_first_point, window_t
-   use vcor, only : case_t, compute_moduli, curves_t, error_t, integer_text, loss_tangent, &
-      make_directory, moduli_t, moduli_tables, named_table_t, printable, table_t, version, wp, &
-      write_csv, write_hdf5, write_stdout
+   use vcor_case_case, only : case_t
+   use vcor_error, only : error_t
+   use vcor_io_csv, only : write_csv
+   use vcor_io_file, only : write_stdout
+   use vcor_io_hdf5, only : named_table_t, write_hdf5
+   use vcor_io_moduli_tables, only : moduli_tables
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : make_directory
+   use vcor_io_table, only : table_t
+   use vcor_kinds, only : wp
+   use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t
+   use vcor_text, only : printable
+   use vcor_version, only : version
    implicit none
    private
 

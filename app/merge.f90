@@ -3,11 +3,26 @@ module vcor_app_merge
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings
    use vcor_app_previous, only : look_at, previous_t, remark, replaced
-   use vcor, only : case_t, check_same, contact_separated, default_threads, error_file, &
-      error_numerical, error_t, grid_t, identity_t, integer_text, join_path, make_directory, &
-      new_grid, new_part, new_summary, point_pending, quoted_path, raise, &
-      read_case_text, read_identity, read_points, remark_t, remarks_of, same_file, &
-      status_name, summary_t, summary_table, table_t, version, write_stdout, write_summary
+   use vcor_case_axes, only : new_grid
+   use vcor_case_case, only : case_t
+   use vcor_case_grid, only : grid_t
+   use vcor_error, only : error_file, error_numerical, error_t, raise
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_io_case_reader, only : read_case_text
+   use vcor_io_checkpoint_points, only : read_points
+   use vcor_io_file, only : write_stdout
+   use vcor_io_hdf5, only : remark_t
+   use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : join_path, make_directory, quoted_path, same_file
+   use vcor_io_results, only : summary_table
+   use vcor_io_summary_files, only : write_summary
+   use vcor_io_table, only : table_t
+   use vcor_sweep_partition, only : new_part
+   use vcor_sweep_quantity, only : point_pending, status_name
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_threads, only : default_threads
+   use vcor_version, only : version
    implicit none
    private
 

@@ -1,6 +1,10 @@
 !> Numbers as values of options
 module vcor_app_option_value
-   use vcor, only : error_t, error_usage, integer_text, printable, raise, read_real, wp
+   use vcor_case_real, only : read_real
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_text, only : printable
    implicit none
    private
 

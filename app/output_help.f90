@@ -1,7 +1,7 @@
 !> Help on the output, made from the tables of quantities and statuses
 module vcor_app_output_help
    use vcor_app_input_help, only : indented
-   use vcor, only : history_quantities, quantities, quantity_t, statuses
+   use vcor_sweep_quantity, only : history_quantities, quantities, quantity_t, statuses
    implicit none
    private
 

@@ -1,8 +1,10 @@
 !> Page of the manual on the output, from the tables of columns, statuses and exit codes
 module vcor_app_output_manual
    use vcor_app_markup, only : markup_t, new_page
-   use vcor, only : code_meanings, code_names, history_quantities, integer_text, quantities, &
-      quantity_t, statuses, version
+   use vcor_error, only : code_meanings, code_names
+   use vcor_io_number, only : integer_text
+   use vcor_sweep_quantity, only : history_quantities, quantities, quantity_t, statuses
+   use vcor_version, only : version
    implicit none
    private
 

@@ -1,8 +1,11 @@
 !> Where a command that writes one file puts it
 module vcor_app_place
    use vcor_app_argument, only : has_word
-   use vcor, only : directory_exists, error_t, error_usage, join_path, make_directory, printable, &
-      raise, split_path, suggestion
+   use vcor_error, only : error_t, error_usage, raise
+   use vcor_io_drawing, only : split_path
+   use vcor_io_path, only : directory_exists, join_path, make_directory
+   use vcor_nearest, only : suggestion
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -3,9 +3,17 @@ module vcor_app_plot
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor_app_place, only : find_place
-   use vcor, only : build_figure, draw, error_input, error_t, error_usage, figure_formats, &
-      figure_kinds, figure_t, integer_text, legend_t, printable, raise, read_result, result_t, &
-      same_file, suggestion, usual_kind, write_stdout
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_figure_build, only : build_figure, figure_kinds => kinds, legend_t, read_result, &
+      result_t, usual_kind
+   use vcor_io_drawing, only : draw
+   use vcor_io_figure, only : figure_t
+   use vcor_io_file, only : write_stdout
+   use vcor_io_gnuplot, only : figure_formats => formats
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : same_file
+   use vcor_nearest, only : suggestion
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -3,9 +3,11 @@ module vcor_app_previous
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : endings, job_t
-   use vcor, only : attach, check_plain, check_same, checkpoint_t, error_file, error_t, &
-      identity_t, plain_file_exists, quoted_path, raise, read_csv_identity, read_identity, &
-      write_stdout
+   use vcor_error, only : error_file, error_t, raise
+   use vcor_io_checkpoint, only : attach, checkpoint_t
+   use vcor_io_file, only : write_stdout
+   use vcor_io_identity, only : check_same, identity_t, read_csv_identity, read_identity
+   use vcor_io_path, only : check_plain, plain_file_exists, quoted_path
    implicit none
    private
 

@@ -1,8 +1,14 @@
 !> The rows of a summary in its file as soon as all rows before them are finished: while the first
 !> rank writes, the others go on
 module vcor_app_row_stream
-   use vcor, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, error_t, grid_t, &
-      identity_t, lend_rows, point_pending, summary_t, summary_table, table_t, take_back
+   use vcor_case_grid, only : grid_t
+   use vcor_error, only : error_t
+   use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv
+   use vcor_io_identity, only : identity_t
+   use vcor_io_results, only : lend_rows, summary_table, take_back
+   use vcor_io_table, only : table_t
+   use vcor_sweep_quantity, only : point_pending
+   use vcor_sweep_summary, only : summary_t
    implicit none
    private
 

@@ -7,10 +7,19 @@ module vcor_app_run
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : report, short, significant
    use vcor_app_sweep, only : run_sweep
-   use vcor, only : contact_lasting, contact_separated, data_file, error_numerical, error_t, &
-      identity_of, identity_t, integer_text, new_summary, outcome_t, raise, share_error, &
-      solve_point, summary_t, summary_table, table_t, this_rank, trajectory_t, worker_t, wp, &
-      write_stdout
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
+   use vcor_io_data_file, only : data_file
+   use vcor_io_file, only : write_stdout
+   use vcor_io_identity, only : identity_of, identity_t
+   use vcor_io_number, only : integer_text
+   use vcor_io_results, only : summary_table
+   use vcor_io_table, only : table_t
+   use vcor_kinds, only : wp
+   use vcor_sweep_mpi, only : share_error, this_rank
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_sweep, only : solve_point, worker_t
    implicit none
    private
 

@@ -4,10 +4,22 @@ module vcor_app_sampling
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t, prepare
    use vcor_app_window, only : find_window, take_first_point, window_t
-   use vcor, only : build_material, case_t, error_input, error_t, error_usage, file_exists, &
-      integer_text, material_data_t, material_names, material_t, printable, put_material, raise, &
-      sampled_times, samples_t, solve_case, outcome_t, contact_separated, suggestion, &
-      time_range_t, wp
+   use vcor_case_build, only : build_material
+   use vcor_case_case, only : case_t
+   use vcor_case_identified, only : put_material
+   use vcor_case_path, only : material_names
+   use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_fit, only : samples_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : file_exists
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, material_t
+   use vcor_nearest, only : suggestion
+   use vcor_study_moduli, only : sampled_times, time_range_t
+   use vcor_study_reliance, only : solve_case
+   use vcor_text, only : printable
    implicit none
    private
 

@@ -1,8 +1,12 @@
 !> What the screen shows of an impact
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor, only : contact_separated, integer_text, outcome_t, quantities, quantity_value, &
-      status_name, version, wp
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_sweep_quantity, only : quantities, quantity_value, status_name
+   use vcor_version, only : version
    implicit none
    private
 

@@ -12,11 +12,21 @@ module vcor_app_sweep
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
-   use vcor, only : anything_at, create_checkpoint, differs, error_file, error_input, &
-      error_numerical, error_t, failures_t, identity_of, identity_t, integer_text, move_file, &
-      new_summary, number_of, open_checkpoint, point_pending, quoted_path, raise, rank_count, &
-      read_points, read_results, share_error, share_flag, solve_part, stderr_is_terminal, &
-      summary_t, summary_table, table_t, this_rank, trajectory_t, write_stdout
+   use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
+   use vcor_impact_trajectory, only : trajectory_t
+   use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint
+   use vcor_io_checkpoint_points, only : read_points, read_results
+   use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout
+   use vcor_io_identity, only : identity_of, identity_t, number_of
+   use vcor_io_number, only : integer_text
+   use vcor_io_path, only : anything_at, quoted_path
+   use vcor_io_results, only : summary_table
+   use vcor_io_table, only : table_t
+   use vcor_sweep_failures, only : failures_t
+   use vcor_sweep_mpi, only : differs, rank_count, share_error, share_flag, this_rank
+   use vcor_sweep_points, only : solve_part
+   use vcor_sweep_quantity, only : point_pending
+   use vcor_sweep_summary, only : new_summary, summary_t
    implicit none
    private
 

@@ -3,8 +3,14 @@ module vcor_app_sweep_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_job, only : job_t, shard_text
    use vcor_app_screen, only : shown, significant
-   use vcor, only : axis_t, failures_t, integer_text, place_in_table, quantities, table_t, &
-      version, wp
+   use vcor_case_grid, only : axis_t
+   use vcor_io_number, only : integer_text
+   use vcor_io_row_text, only : place_in_table
+   use vcor_io_table, only : table_t
+   use vcor_kinds, only : wp
+   use vcor_sweep_failures, only : failures_t
+   use vcor_sweep_quantity, only : quantities
+   use vcor_version, only : version
    implicit none
    private
 

@@ -2,8 +2,15 @@
 module vcor_app_verify
    use vcor_app_job, only : job_t
    use vcor_app_verify_screen, only : comparison_text, law_text, models_text
-   use vcor, only : build_law, compare, comparison_t, error_numerical, error_t, integer_text, &
-      law_count, law_t, model_t, raise, solve_models, verdict_t, verify_law, version, write_stdout
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_io_file, only : write_stdout
+   use vcor_io_number, only : integer_text
+   use vcor_verify_comparison, only : compare
+   use vcor_verify_comparison_type, only : comparison_t
+   use vcor_verify_models, only : model_t, solve_models
+   use vcor_verify_row, only : law_t, verdict_t
+   use vcor_verify_table, only : build_law, law_count, verify_law
+   use vcor_version, only : version
    implicit none
    private
 

@@ -2,10 +2,16 @@
 module vcor_app_verify_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_screen, only : short, significant
-   use vcor, only : contact_separated, model_t, &
-      attempt_case, attempt_count, attempt_first, attempt_halved, attempt_refined, &
-      comparison_t, error_of_best, integer_text, is_honest, law_t, status_name, verdict_t, &
-      version, wp
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_sweep_quantity, only : status_name
+   use vcor_verify_comparison_type, only : attempt_case, attempt_count, attempt_first, &
+      attempt_halved, attempt_refined, comparison_t
+   use vcor_verify_judge, only : error_of_best, is_honest
+   use vcor_verify_models, only : model_t
+   use vcor_verify_row, only : law_t, verdict_t
+   use vcor_version, only : version
    implicit none
    private
 

@@ -4,8 +4,15 @@ module vcor_app_watch
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_row_stream, only : row_stream_t
    use vcor_app_signals, only : caught_signal
-   use vcor, only : checkpoint_t, create_checkpoint, error_t, grid_t, identity_t, integer_text, &
-      monitor_t, summary_t, wp, write_terminal
+   use vcor_case_grid, only : grid_t
+   use vcor_error, only : error_t
+   use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint
+   use vcor_io_file, only : write_terminal
+   use vcor_io_identity, only : identity_t
+   use vcor_io_number, only : integer_text
+   use vcor_kinds, only : wp
+   use vcor_sweep_monitor, only : monitor_t
+   use vcor_sweep_summary, only : summary_t
    implicit none
    private
 

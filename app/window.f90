@@ -3,7 +3,12 @@
 module vcor_app_window
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : significant
-   use vcor, only : case_t, contact_separated, error_t, outcome_t, solve_point, worker_t, wp
+   use vcor_case_case, only : case_t
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_kinds, only : wp
+   use vcor_sweep_sweep, only : solve_point, worker_t
    implicit none
    private
 
