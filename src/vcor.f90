@@ -8,7 +8,8 @@ module vcor
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
       waves_hereditary, waves_none, waves_relaxing
-   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding, new_impact
+   use vcor_impact_law, only : contact_law_t, new_contact_law
+   use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
@@ -97,7 +98,7 @@ module vcor
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
    public :: waves_hereditary
-   public :: impact_t, new_impact, law_boltzmann, law_receding
+   public :: impact_t, new_impact, contact_law_t, new_contact_law
    public :: solver_t, solver_settings_t, new_solver, solve_impact, method_for, default_accuracy
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    public :: outcome_t, evaluate

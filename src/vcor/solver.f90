@@ -1,7 +1,7 @@
 !> Solvers by the name of their method
 module vcor_solver
    use vcor_error, only : error_input, error_t, raise
-   use vcor_impact_problem, only : impact_t, law_receding
+   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_auto, only : auto_t
    use vcor_solver_ive, only : ive_t, new_ive
@@ -149,7 +149,7 @@ contains
       logical :: papers_scheme
 
       papers_scheme = settings%scheme /= 'product'
-      if (impact%law == law_receding) then
+      if (impact%law%receding) then
          if (abs(settings%second_coefficient) > 0.0_wp) then
             call raise(error, error_input, receding_without_second_term)
          else if (papers_scheme) then

@@ -4,9 +4,10 @@ program test_impact
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
+   use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_none, waves_relaxing
-   use vcor_impact_problem, only : hertz_contact_time, impact_t, new_impact
+   use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate_velocity, &
       col_sphere, col_sphere_velocity, col_time, col_velocity, columns, contact_lasting, &
       contact_separated, trajectory_t
@@ -32,8 +33,6 @@ program test_impact
    real(wp), parameter :: slope_tolerance = 1.0e-10_wp
    !> Iteration for the time scale ends at changes of 1e-3, contracted by up to 2/5
    real(wp), parameter :: scale_tolerance = 1.0e-3_wp
-   !> Hertz's contact time sets steps only
-   real(wp), parameter :: hertz_tolerance = 1.0e-9_wp
    !> Fourier quadrature of a pair against closed forms
    real(wp), parameter :: transform_tolerance = 1.0e-11_wp
 
@@ -66,6 +65,7 @@ program test_impact
    call test_unsound_constants()
    call test_plate()
    call test_radius()
+   call test_law()
    call test_time_scale()
    call test_sample()
    call test_outcome()
@@ -73,6 +73,53 @@ program test_impact
    call finish()
 
 contains
+
+   !> The law of spheres is s sqrt(|s|) to the last bit, by default, built, or asked for many
+   !> values; the other laws hold at both ends of their exponents
+   subroutine test_law()
+      real(wp), parameter :: s(5) = [-2.0e-5_wp, 0.0_wp, 3.0e-7_wp, 1.7e-4_wp, 4.0_wp]
+      ! contact times of n = 1, half a period of a spring, and of n = 2
+      real(wp), parameter :: exponent(2) = [1.0_wp, 2.0_wp]
+      real(wp) :: duration(2), root(5)
+      type(contact_law_t) :: hertz, built, law
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call new_contact_law(built, 1.5_wp, .true., error)
+      call success(error, "the law of spheres is built")
+      call check(built%receding .and. .not. hertz%receding, "the receding law is asked for")
+      call check(.not. abs(built%contact_time - hertz%contact_time) > 0.0_wp, &
+         "a built law of spheres is the default")
+      call check_close(hertz%contact_time, 0.8_wp*sqrt(pi)*gamma(0.4_wp)/gamma(0.9_wp) &
+         *1.25_wp**0.4_wp, rounding, "Hertz: contact time in units of T")
+      call check(.not. any(abs(hertz%u(s) - s*sqrt(abs(s))) > 0.0_wp), "u = s sqrt(|s|)")
+      call check(.not. any(abs(hertz%slope(s) - 1.5_wp*sqrt(abs(s))) > 0.0_wp), "slope of u")
+      call hertz%secants(size(s), s, root)
+      call check(.not. any(abs(root - sqrt(abs(s))) > 0.0_wp), "u/s of many values")
+      call check_relative(hertz%time_scale(2.0_wp, 3.0_wp, 4.0_wp), (1.0_wp/3.0_wp)**0.4_wp, &
+         rounding, "T = (m/(k sqrt(v0)))^(2/5)")
+
+      duration = [pi, 2.0_wp*1.5_wp**(1.0_wp/3.0_wp)*sqrt(pi)*gamma(4.0_wp/3.0_wp) &
+         /gamma(5.0_wp/6.0_wp)]
+      do i = 1, size(exponent)
+         call new_contact_law(law, exponent(i), .false., error)
+         call success(error, "another law is built")
+         call check_relative(law%contact_time, duration(i), rounding, "contact time in units of T")
+         call check_relative(law%u(-0.3_wp), -0.3_wp**exponent(i), rounding, "u is odd")
+         call check_relative(law%slope(-0.3_wp), exponent(i)*0.3_wp**(exponent(i) - 1.0_wp), &
+            rounding, "u' is even")
+         call law%secants(size(s), s, root)
+         call check(.not. any(abs(root - law%secant(s)) > 0.0_wp), "many values are the same")
+         call check_relative(law%time_scale(2.0_wp, 3.0_wp, 4.0_wp), &
+            merge(sqrt(2.0_wp/3.0_wp), (2.0_wp/12.0_wp)**(1.0_wp/3.0_wp), i == 1), rounding, &
+            "T of another law")
+      end do
+
+      call new_contact_law(law, 0.9_wp, .false., error)
+      call check_refused(error, "an exponent below 1")
+      call new_contact_law(law, ieee_value(1.0_wp, ieee_positive_inf), .false., error)
+      call check_refused(error, "an infinite exponent")
+   end subroutine test_law
 
    !> Density and Poisson's ratio are set after a material is built: whoever takes it looks at them
    subroutine test_unsound_constants()
@@ -512,8 +559,6 @@ contains
          rounding, "Zener's lambda = alpha(0) m/T")
       call check_close(impact%inelasticity(), 0.138_wp, 1.0e-4_wp, "the paper's is 0.1380")
       call check(impact%patience(impact%time_scale()) > 100.0_wp*scale, "a contact may last")
-      call check_close(hertz_contact_time, 0.8_wp*sqrt(pi)*gamma(0.4_wp)/gamma(0.9_wp) &
-         *1.25_wp**0.4_wp, hertz_tolerance, "Hertz: contact time in units of T")
 
       call rigid_on_plate(power_law, waves_relaxing, 10.0_wp, impact)
       scale = impact%time_scale()

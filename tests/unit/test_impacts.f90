@@ -3,7 +3,7 @@
 program test_impacts
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
-   use vcor_impact_problem, only : impact_t, law_receding
+   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : read_case_text
    use vcor_io_data_file, only : read_data
@@ -235,7 +235,7 @@ contains
          tolerance = merge(ive_share(i), direct_share(i), ive)*asked
          if (i == 3 .or. i == 6) then
             ! where the contact lets go slowly docs/accuracy.md promises nothing
-            if (row%impact%law == law_receding .or. .not. ive) cycle
+            if (row%impact%law%receding .or. .not. ive) cycle
             tolerance = max(tolerance, ive_share(i)*best_time)
          end if
          call check_difference(difference(i), tolerance + accuracy, name//": "//trim(names(i)))

@@ -5,7 +5,7 @@ program test_mechanics
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
       waves_relaxing
-   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding
+   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_cerf, only : cerf_t, new_cerf
@@ -63,8 +63,7 @@ contains
    subroutine test_table()
       integer, parameter :: waves(5) = [waves_none, waves_constant, waves_relaxing, &
          waves_hereditary, waves_hereditary]
-      integer, parameter :: law(5) = [law_receding, law_receding, law_receding, law_boltzmann, &
-         law_receding]
+      logical, parameter :: receding(5) = [.true., .true., .true., .false., .true.]
       real(wp), parameter :: cor(5) = [0.6320155755_wp, 0.4902964335_wp, 0.4479958102_wp, &
          0.4711951774_wp, 0.4875824382_wp]
       real(wp), parameter :: cor_sphere(5) = [0.6320155755_wp, 0.4902964335_wp, 0.4195242675_wp, &
@@ -85,7 +84,7 @@ contains
       call make_rubber(rubber)
       do i = 1, size(cor)
          call rigid_on_plate(rubber, waves(i), 10.0_wp, impact)
-         impact%law = law(i)
+         impact%law%receding = receding(i)
          call run(ive, impact, outcome)
          call check_close(outcome%cor, cor(i), ive_accuracy, trim(name(i))//": ive, cor")
          call check_close(outcome%cor_sphere, cor_sphere(i), ive_accuracy, &
@@ -118,7 +117,7 @@ contains
 
       call make_rubber(rubber)
       call rigid_on_plate(rubber, waves_hereditary, 10.0_wp, impact)
-      impact%law = law_receding
+      impact%law%receding = .true.
       call make_product(step, 1.0e-6_wp, coarse)
       call make_product(0.25_wp*step, 1.0e-6_wp, fine)
       call run(coarse, impact, one)
@@ -147,7 +146,7 @@ contains
 
       call make_rubber(rubber)
       call rigid_on_plate(rubber, waves_none, velocity, impact)
-      impact%law = law_receding
+      impact%law%receding = .true.
       call run(ive, impact, outcome)
 
       ! x from 0 to the largest contact radius and somewhat beyond, elements between equal steps
@@ -211,7 +210,7 @@ contains
       do i = 1, size(waves)
          call rigid_on_plate(elastic, waves(i), 10.0_wp, impact)
          call run(ive, impact, usual)
-         impact%law = law_receding
+         impact%law%receding = .true.
          call run(ive, impact, outcome)
          call check_close(outcome%cor, usual%cor, tolerance, "elastic contact: ive, cor")
          call check_relative(outcome%contact_time, usual%contact_time, tolerance, &
@@ -247,7 +246,7 @@ contains
                call new_sls(rubber, 15.0e6_wp, rubbery(j)*rate(k), rate(k), error)
                call success(error, "an SLS is built")
                call rigid_on_plate(rubber, waves(i), 2.0_wp, impact)
-               impact%law = law_receding
+               impact%law%receding = .true.
                call run(fine, impact, outcome)
                call run(finest, impact, exact)
                call check_close(outcome%cor_error, 0.0_wp, tight, "receding at 1e-10: stated")
@@ -277,7 +276,7 @@ contains
       rubber%poisson_ratio = poisson_ratio
       rubber%density = density
       call rigid_on_plate(rubber, waves_relaxing, velocity, impact)
-      impact%law = law_receding
+      impact%law%receding = .true.
       call make_product(0.0_wp, 1.0e-4_wp, product)
       do i = 1, size(light)
          call new_plate(impact%plate, rubber, light(i), waves_relaxing, error)
@@ -357,7 +356,7 @@ contains
          call new_power_law(material, 0.0_wp, 2.0e4_wp, exponent(i), error)
          call success(error, "a power law next to a dashpot is built")
          call rigid_on_plate(material, waves_none, 5.0_wp, impact)
-         impact%law = law_receding
+         impact%law%receding = .true.
          call run(ive, impact, outcome)
          call run(fine, impact, exact)
          call check(outcome%status == contact_separated, "a nearly fluid contact ends")
@@ -381,12 +380,11 @@ contains
       type(outcome_t) :: outcome, coarse, fine
       type(product_t) :: solver
       real(wp) :: step
-      integer :: i, law
+      integer :: i
 
       do i = 1, 2
-         law = merge(law_boltzmann, law_receding, i == 1)
          call rigid_on_plate(material, waves_hereditary, 10.0_wp, impact)
-         impact%law = law
+         impact%law%receding = i == 2
          call run(ive, impact, outcome)
          step = outcome%contact_time/500.0_wp
          call make_product(step, 1.0e-6_wp, solver)
@@ -503,7 +501,7 @@ contains
             call rigid_on_plate(prony, waves_hereditary, velocity, impact, mass, radius)
          end select
          call success(error, "a random material is built")
-         impact%law = merge(law_receding, law_boltzmann, mod(i/4, 2) == 0)
+         impact%law%receding = mod(i/4, 2) == 0
          call run(ive, impact, outcome)
          if (outcome%status /= contact_separated) cycle
          separated = separated + 1
@@ -580,7 +578,7 @@ contains
          call success(error, "a random SLS is built")
          call rigid_on_plate(rubber, waves_hereditary, random%log_between(0.1_wp, 10.0_wp), &
             impact, mass=random%log_between(0.03_wp, 0.3_wp))
-         impact%law = merge(law_receding, law_boltzmann, mod(i, 2) == 0)
+         impact%law%receding = mod(i, 2) == 0
          call run(ive, impact, outcome)
          call run(fine, impact, exact)
          call check_close(outcome%cor, exact%cor, ive_accuracy, "light plate: cor")

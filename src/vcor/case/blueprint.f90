@@ -6,7 +6,8 @@ module vcor_case_blueprint
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
       waves_hereditary, waves_none, waves_relaxing
-   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding, new_impact
+   use vcor_impact_law, only : contact_law_t
+   use vcor_impact_problem, only : impact_t, new_impact
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_solver, only : solver_settings_t
@@ -55,8 +56,8 @@ module vcor_case_blueprint
       real(wp) :: half_thickness = 0.0_wp
       !> One of the `waves_*` constants
       integer :: waves = waves_relaxing
-      !> One of the `law_*` constants
-      integer :: law = law_boltzmann
+      !> Contact law
+      type(contact_law_t) :: law
       !> One of the `pair_*` constants
       integer :: pair = pair_eq1
       !> The sphere
@@ -114,7 +115,7 @@ contains
       end select
 
       call case%get('contact', 'law', law)
-      if (law == 'receding') self%law = law_receding
+      self%law%receding = law == 'receding'
       call case%get('contact', 'pair', pair)
       if (pair == 'series') self%pair = pair_series
 

@@ -6,13 +6,14 @@
 !>     s(t) = v0 t - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^(3/2),    k(t) = (4/3) sqrt(R) E'(t)
 !>
-!> Receding contact (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845, doi:10.1115/1.3625192): once the
-!> contact shrinks, the integral ends at t1(t), when it was as large as now and growing,
+!> and with the receding law, once the contact shrinks, the integral ends at t1(t), when it was as
+!> large as now and growing,
 !>
 !>     F(t) = int_0^t1 k(t - x) u'(x) dx,   int_t1^t k(t - x) s'(x) dx = 0
 module vcor_impact_problem
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : contact_modulus_t
+   use vcor_impact_law, only : contact_law_t
    use vcor_impact_plate, only : plate_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -21,13 +22,6 @@ module vcor_impact_problem
 
    public :: impact_t, new_impact
    public :: hertz, hertz_contact_time
-   public :: law_boltzmann, law_receding
-
-   !> Contact laws: the force is the hereditary integral over all the past, which is exact while the
-   !> contact grows
-   integer, parameter :: law_boltzmann = 0
-   !> While the contact shrinks, over the past up to the time at which it was as small before: exact
-   integer, parameter :: law_receding = 1
 
    !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
    !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
@@ -45,8 +39,8 @@ module vcor_impact_problem
       type(contact_modulus_t) :: modulus
       !> The plate
       type(plate_t) :: plate
-      !> One of the `law_*` constants
-      integer :: law = law_boltzmann
+      !> Contact law
+      type(contact_law_t) :: law
    contains
       !> Kernel k(t)
       procedure :: kernel
@@ -63,7 +57,7 @@ module vcor_impact_problem
       !> Time scale of the contact
       procedure :: time_scale
       !> Time scale of an elastic contact
-      procedure, private :: hertz_time
+      procedure, private :: elastic_time
       !> Time scale of the fastest motion
       procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
@@ -110,8 +104,8 @@ contains
       type(plate_t), intent(in) :: plate
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> One of the `law_*` constants; absent: law_boltzmann
-      integer, intent(in), optional :: law
+      !> Contact law; absent: Hertz's over all the past
+      type(contact_law_t), intent(in), optional :: law
 
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
@@ -218,8 +212,7 @@ contains
       viscosity = self%hertz_factor*self%modulus%viscosity()
    end function kernel_viscosity
 
-   !> Time scale of the contact: T = (m/(k sqrt(v0)))^(2/5) with the mean kernel over (0, T), so
-   !> that it is that of Hertz's elastic impact where the kernel is constant
+   !> Time scale of the contact: that of an elastic impact with the mean kernel over it
    pure function time_scale(self) result(scale)
       !> The impact
       class(impact_t), intent(in) :: self
@@ -230,22 +223,22 @@ contains
       integer :: iteration
 
       ! start from the time scale of the glassy contact, or 1 s, and iterate; with a kernel t^-a the
-      ! map contracts by 2a/5
+      ! map contracts by a/(n + 1)
       scale = 1.0_wp
       firmness = self%hertz_factor*self%modulus%glassy()
-      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) scale = self%hertz_time(firmness)
+      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) scale = self%elastic_time(firmness)
       viscosity = self%kernel_viscosity()
       do iteration = 1, 60
          firmness = (self%kernel_integral(scale) + viscosity)/scale
-         guess = self%hertz_time(firmness)
+         guess = self%elastic_time(firmness)
          if (abs(guess - scale) <= 1.0e-3_wp*guess) exit
          scale = guess
       end do
       scale = guess
    end function time_scale
 
-   !> Hertz's time scale T = (m/(k sqrt(v0)))^(2/5) of an elastic contact
-   pure function hertz_time(self, firmness) result(time)
+   !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz's
+   pure function elastic_time(self, firmness) result(time)
       !> The impact
       class(impact_t), intent(in) :: self
       !> Firmness k of the contact [N/m^1.5], > 0
@@ -253,8 +246,8 @@ contains
       !> Time scale [s]
       real(wp) :: time
 
-      time = (self%mass/(firmness*sqrt(self%velocity)))**0.4_wp
-   end function hertz_time
+      time = self%law%time_scale(self%mass, firmness, self%velocity)
+   end function elastic_time
 
    !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
    !> that relaxes before it is over can be shorter than its time scale
@@ -269,7 +262,7 @@ contains
       scale = self%time_scale()
       firmness = self%hertz_factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
-         scale = min(scale, self%hertz_time(firmness))
+         scale = min(scale, self%elastic_time(firmness))
    end function fast_time_scale
 
    !> Time after which a contact counts as lasting where the user gives none: a thousand time
@@ -286,7 +279,7 @@ contains
 
       time = time_scale
       firmness = self%hertz_factor*self%modulus%rubbery()
-      if (firmness > 0.0_wp) time = max(time, self%hertz_time(firmness))
+      if (firmness > 0.0_wp) time = max(time, self%elastic_time(firmness))
       time = 1000.0_wp*time
    end function patience
 
@@ -308,7 +301,7 @@ contains
    end function springs_back
 
    !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
-   !> that is infinite at t = 0, the limit of k(0) going there
+   !> that is infinite or nothing at t = 0
    pure function inelasticity(self) result(lambda)
       !> The impact
       class(impact_t), intent(in) :: self
@@ -319,8 +312,8 @@ contains
 
       lambda = 0.0_wp
       firmness = self%hertz_factor*self%modulus%glassy()
-      if (firmness <= huge(1.0_wp)) lambda = self%plate%alpha(0.0_wp)*self%mass &
-         *(firmness*sqrt(self%velocity)/self%mass)**0.4_wp
+      if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
+         lambda = self%plate%alpha(0.0_wp)*self%mass/self%elastic_time(firmness)
    end function inelasticity
 
    !> Zener's parameter with alpha after a time and the mean of the kernel up to there: how light
@@ -335,7 +328,7 @@ contains
       real(wp) :: lambda
 
       lambda = self%plate%alpha_after(time)*self%mass &
-         /self%hertz_time((self%kernel_integral(time) + self%kernel_viscosity())/time)
+         /self%elastic_time((self%kernel_integral(time) + self%kernel_viscosity())/time)
    end function lasting_inelasticity
 
    !> Kinetic energy of the sphere before the impact, m v0^2/2

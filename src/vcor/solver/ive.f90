@@ -14,7 +14,7 @@
 !> u = s^1.5 loses its derivatives, the panels shrink geometrically.
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz_contact_time, impact_t, law_receding
+   use vcor_impact_problem, only : hertz_contact_time, impact_t
    use vcor_impact_trajectory, only : col_impulse, col_time, col_velocity, contact_separated, &
       contact_sticking, trajectory_t
    use vcor_kinds, only : wp
@@ -276,7 +276,7 @@ contains
       start%lag = 0.0_wp
       start%p = 0.0_wp
       coarse_start = start
-      recedes = impact%law == law_receding
+      recedes = impact%law%receding
       largest_inner = 0.0_wp
       if (any(modes%contact%rates*time_scale > fast)) then
          step%reach = short_step*(accuracy/usual)**short_growth

@@ -19,7 +19,7 @@
 module vcor_solver_product
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz, hertz_contact_time, impact_t, law_receding
+   use vcor_impact_problem, only : hertz, hertz_contact_time, impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       contact_separated, contact_sticking, trajectory_t
@@ -207,7 +207,7 @@ contains
       viscosity = impact%kernel_viscosity()
       frozen = impact%plate%frozen()
       two_terms = abs(self%second_coefficient) > 0.0_wp
-      receding = impact%law == law_receding
+      receding = impact%law%receding
       end_time = self%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
       room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1

@@ -1,7 +1,7 @@
 !> The impacts of Green's paper in the verification table: own reference values and printed ones
 module vcor_verify_golden
    use vcor_impact_plate, only : waves_frozen, waves_hereditary, waves_none, waves_relaxing
-   use vcor_impact_problem, only : impact_t, law_boltzmann, law_receding
+   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
    use vcor_verify_methods, only : methods_for
@@ -81,8 +81,7 @@ contains
          'hereditary', 'exact', 'series', 'all three']
       integer, parameter :: waves(6) = [waves_relaxing, waves_frozen, waves_hereditary, &
          waves_hereditary, waves_none, waves_hereditary]
-      integer, parameter :: contact(6) = [law_receding, law_boltzmann, law_boltzmann, &
-         law_receding, law_boltzmann, law_receding]
+      logical, parameter :: receding(6) = [.true., .false., .false., .true., .false., .true.]
       integer, parameter :: first_in_series = 5
       real(wp), parameter :: value(3, 6) = reshape([ &
          0.4479958101877601_wp, 0.4195242674135116_wp, 1.442593897176693_wp, &
@@ -103,9 +102,9 @@ contains
       methods = methods_for()
       do i = 1, size(title)
          if (i < first_in_series) then
-            call strike(impact, law%error, material(1), waves(i), law=contact(i))
+            call strike(impact, law%error, material(1), waves(i), receding=receding(i))
          else
-            call strike(impact, law%error, material(1), waves(i), law=contact(i), &
+            call strike(impact, law%error, material(1), waves(i), receding=receding(i), &
                sphere=sls(8.0e6_wp, 360.0_wp, 900.0_wp))
          end if
          if (allocated(law%error)) return

@@ -6,6 +6,7 @@ module vcor_verify_impacts
    use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_series
+   use vcor_impact_law, only : contact_law_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_none
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_kinds, only : wp
@@ -34,8 +35,8 @@ module vcor_verify_impacts
 contains
 
    !> A sphere strikes a material; the first error stays
-   subroutine strike(impact, error, material, waves, velocity, mass, radius, half_thickness, law, &
-                     sphere)
+   subroutine strike(impact, error, material, waves, velocity, mass, radius, half_thickness, &
+                     receding, sphere)
       !> The impact
       type(impact_t), intent(out) :: impact
       !> Unallocated on success
@@ -52,8 +53,8 @@ contains
       real(wp), intent(in), optional :: radius
       !> Half thickness of the plate [m]; absent: the paper's
       real(wp), intent(in), optional :: half_thickness
-      !> One of the `law_*` constants; absent: Boltzmann's
-      integer, intent(in), optional :: law
+      !> Whether the contact is receding; absent: the force is that of all the past
+      logical, intent(in), optional :: receding
       !> Material of the sphere, in series with the plate's; absent: it is rigid
       type(material_data_t), intent(in), optional :: sphere
 
@@ -61,6 +62,7 @@ contains
       type(prony_t) :: rigid
       type(contact_modulus_t) :: modulus
       type(plate_t) :: plate
+      type(contact_law_t) :: law
       type(error_t), allocatable :: trouble
       real(wp) :: v, m, r, h
       integer :: model
@@ -74,6 +76,7 @@ contains
       if (present(mass)) m = mass
       r = usual_radius
       if (present(radius)) r = radius
+      if (present(receding)) law%receding = receding
       h = usual_half_thickness
       if (present(half_thickness)) h = half_thickness
 

@@ -1,0 +1,153 @@
+!> Contact law: how the force follows the indentation s, through u(s) = s^n in
+!>
+!>     F(t) = int_0^t k(t - x) u'(x) dx,    k(t) = K E'(t)
+!>
+!> All that depends on the exponent n is asked of this object. A sphere has n = 3/2 (Hertz) and
+!> K = (4/3) sqrt(R); a body of revolution z = C r^p has n = 1 + 1/p: I. N. Sneddon, Int. J. Eng.
+!> Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4. Units are written out for n = 3/2, such as
+!> [m^1.5] for u and [N/m^1.5] for k.
+!>
+!> Past the end of an elastic contact s is negative and the force with it, so u is odd:
+!> u(s) = s |s|^(n-1).
+module vcor_impact_law
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_constants, only : pi
+   use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
+   implicit none
+   private
+
+   public :: contact_law_t, new_contact_law
+
+   !> Exponent of Hertz's contact of curved surfaces [-]
+   real(wp), parameter :: hertz = 1.5_wp
+
+   !> A contact law: by default Hertz's, its force the hereditary integral over all the past, which
+   !> is exact while the contact grows; immutable once built
+   type :: contact_law_t
+      !> Exponent n of u = s^n [-], >= 1
+      real(wp) :: exponent = hertz
+      !> Duration of an elastic impact in units of `time_scale` [-]
+      real(wp) :: contact_time = 3.2180654597190435_wp
+      !> Whether the integral ends where the contact was as small as it is now and growing: exact
+      !> while the contact shrinks too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
+      !> doi:10.1115/1.3625192)
+      logical :: receding = .false.
+   contains
+      !> u(s)
+      procedure :: u
+      !> du/ds
+      procedure :: slope
+      !> u/s
+      procedure :: secant
+      !> u/s at many indentations
+      procedure :: secants
+      !> Time scale of an elastic impact
+      procedure :: time_scale
+   end type contact_law_t
+
+contains
+
+   !> Build the law of an exponent
+   pure subroutine new_contact_law(self, exponent, receding, error)
+      !> The law
+      type(contact_law_t), intent(out) :: self
+      !> Exponent n [-], >= 1: 3/2 for spheres, 2 for cones, 1 for flat punches
+      real(wp), intent(in) :: exponent
+      !> Whether the force of a shrinking contact is Ting's
+      logical, intent(in) :: receding
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: part
+
+      if (.not. ieee_is_finite(exponent)) then
+         call raise(error, error_input, 'the exponent of a contact law must be a number')
+      else if (exponent < 1.0_wp) then
+         call raise(error, error_input, 'the exponent of a contact law must be at least 1')
+      end if
+      if (allocated(error)) return
+      self%receding = receding
+      if (.not. abs(exponent - hertz) > 0.0_wp) return
+      ! twice the way to the largest indentation, where k s^(n+1)/(n+1) is the energy
+      part = 1.0_wp/(exponent + 1.0_wp)
+      self%exponent = exponent
+      self%contact_time = 2.0_wp*(0.5_wp/part)**part &
+         *sqrt(pi)*gamma(1.0_wp + part)/gamma(0.5_wp + part)
+   end subroutine new_contact_law
+
+   !> u(s) = s |s|^(n-1)
+   elemental function u(self, s)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> u [m^1.5]
+      real(wp) :: u
+
+      u = s*self%secant(s)
+   end function u
+
+   !> du/ds = n |s|^(n-1)
+   elemental function slope(self, s)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> Slope [m^0.5], >= 0
+      real(wp) :: slope
+
+      slope = self%exponent*self%secant(s)
+   end function slope
+
+   !> u/s = |s|^(n-1); for Hertz by a square root, which costs a tenth of a power
+   elemental function secant(self, s)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> u/s [m^0.5], >= 0
+      real(wp) :: secant
+
+      if (abs(self%exponent - hertz) > 0.0_wp) then
+         secant = abs(s)**(self%exponent - 1.0_wp)
+      else
+         secant = sqrt(abs(s))
+      end if
+   end function secant
+
+   !> u/s at many indentations in one call, for inner loops: u is s times it, the slope n times it
+   pure subroutine secants(self, n, s, secant)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Number of indentations
+      integer, intent(in) :: n
+      !> Indentations [m]
+      real(wp), intent(in) :: s(n)
+      !> u/s [m^0.5], >= 0
+      real(wp), intent(out) :: secant(n)
+
+      if (abs(self%exponent - hertz) > 0.0_wp) then
+         secant = abs(s)**(self%exponent - 1.0_wp)
+      else
+         secant = sqrt(abs(s))
+      end if
+   end subroutine secants
+
+   !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of the impact on an elastic contact, F = k u
+   pure function time_scale(self, mass, firmness, velocity) result(time)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Mass [kg], > 0
+      real(wp), intent(in) :: mass
+      !> Firmness k of the contact [N/m^1.5], > 0
+      real(wp), intent(in) :: firmness
+      !> Velocity of approach v0 [m/s], > 0
+      real(wp), intent(in) :: velocity
+      !> Time scale [s]
+      real(wp) :: time
+
+      time = (mass/(firmness*self%secant(velocity)))**(1.0_wp/(self%exponent + 1.0_wp))
+   end function time_scale
+
+end module vcor_impact_law
