@@ -1,7 +1,8 @@
 !> The command line as a request
 module vcor_app_cli
    use vcor_app_argument, only : append_word, argument_t, has_word
-   use vcor_app_fit_options, only : apply_fit_option, fit_options, fit_request_t
+   use vcor_app_commands, only : commands, options_of
+   use vcor_app_fit_options, only : apply_fit_option, fit_request_t
    use vcor_app_option_value, only : read_positive, read_whole
    use vcor_case_name, only : control_in, name_flaw
    use vcor_error, only : error_t, error_usage, raise
@@ -13,27 +14,7 @@ module vcor_app_cli
    implicit none
    private
 
-   public :: request_t, parse, commands
-
-   !> Known commands
-   character(len=*), parameter :: commands = 'run merge check material fit plot verify help'
-   !> Options of run
-   character(len=*), parameter :: run_options = '--set --output --print --threads --resume ' &
-      //'--shard --quiet --help --version'
-   !> Options of merge
-   character(len=*), parameter :: merge_options = '--output --quiet --help --version'
-   !> Options of check
-   character(len=*), parameter :: check_options = '--set --help --version'
-   !> Options of material, and of fit beside its own
-   character(len=*), parameter :: material_options = '--set --output --from --to --points ' &
-      //'--quiet --help --version'
-   !> Options of plot
-   character(len=*), parameter :: plot_options = '--kind --quantity --legend --output --format ' &
-      //'--script --quiet --help --version'
-   !> Options of verify
-   character(len=*), parameter :: verify_options = '--set --quiet --help --version'
-   !> Options of help
-   character(len=*), parameter :: help_options = '--man --markdown --help --version'
+   public :: request_t, parse
 
    !> Most points of --points
    integer, parameter :: most_points = 100000
@@ -72,8 +53,8 @@ module vcor_app_cli
       logical :: script = .false.
       !> Nothing on the screen
       logical :: quiet = .false.
-      !> Form of a page of help: empty for the screen, else --man or --markdown
-      character(len=:), allocatable :: form
+      !> Whether help is wanted as JSON
+      logical :: json = .false.
    end type request_t
 
 contains
@@ -92,7 +73,6 @@ contains
       logical :: plain
 
       allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
-      request%form = ''
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
             //'plot, verify, help (vcor help says more)')
@@ -100,34 +80,21 @@ contains
       end if
 
       select case (words(1)%text)
-      case ('run')
-         known = run_options
-      case ('merge')
-         known = merge_options
-      case ('check')
-         known = check_options
-      case ('material')
-         known = material_options
-      case ('fit')
-         known = fit_options//' '//material_options
-      case ('plot')
-         known = plot_options
-      case ('verify')
-         known = verify_options
-      case ('help', '--help', '-h')
-         known = help_options
       case ('--version')
          request%command = 'version'
          if (size(words) > 1) call raise(error, error_usage, '--version takes nothing, found ' &
             //"'"//printable(words(2)%text)//"'")
          return
       case default
-         call raise(error, error_usage, "unknown command '"//printable(words(1)%text)//"'; " &
-            //suggestion(words(1)%text, commands//' '//help_options))
-         return
+         request%command = words(1)%text
+         if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
+         if (.not. has_word(commands, request%command)) then
+            call raise(error, error_usage, "unknown command '"//printable(request%command)//"'; " &
+               //suggestion(request%command, commands//' '//options_of('help')))
+            return
+         end if
       end select
-      request%command = words(1)%text
-      if (request%command(1:1) == '-') request%command = 'help'
+      known = options_of(request%command)
 
       plain = .false.
       i = 1
@@ -158,13 +125,6 @@ contains
             return
          end if
          select case (name)
-         case ('--man', '--markdown')
-            if (mark > 0) then
-               call raise(error, error_usage, 'option '//name//' takes no value')
-               return
-            end if
-            request%form = name
-            cycle
          case ('--help')
             deallocate (request%files)
             allocate (request%files(0))
@@ -174,7 +134,7 @@ contains
          case ('--version')
             request%command = 'version'
             return
-         case ('--quiet', '--resume', '--shear', '--dynamic', '--script')
+         case ('--quiet', '--resume', '--shear', '--dynamic', '--script', '--json')
             if (mark > 0) then
                call raise(error, error_usage, 'option '//name//' takes no value')
                return
@@ -184,6 +144,7 @@ contains
             if (name == '--shear') request%fit%shear = .true.
             if (name == '--dynamic') request%fit%dynamic = .true.
             if (name == '--script') request%script = .true.
+            if (name == '--json') request%json = .true.
             cycle
          case default
          end select
@@ -208,6 +169,8 @@ contains
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
+      if (request%json .and. size(request%files) > 0) call raise(error, error_usage, &
+         "help --json takes no topic, found '"//printable(request%files(1)%text)//"'")
    end subroutine parse
 
    !> Refuse a request without a case file where it needs one: verify does for its settings only

@@ -5,9 +5,9 @@ module vcor_app_driver
    use vcor_app_cli, only : request_t
    use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_text
+   use vcor_app_help_json, only : help_json
    use vcor_app_job, only : job_t, prepare
    use vcor_app_merge, only : merge_shards
-   use vcor_app_manual, only : manual_text
    use vcor_app_material, only : show_materials
    use vcor_app_plot, only : plot
    use vcor_app_run, only : run_job
@@ -43,7 +43,7 @@ contains
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
       case ('help')
-         call help(request%files, request%form, error)
+         call help(request%files, request%json, error)
       case ('merge')
          call merge_shards(request, error)
       case ('check')
@@ -71,11 +71,11 @@ contains
    end subroutine complain
 
    !> Print a help page
-   subroutine help(topics, form, error)
+   subroutine help(topics, json, error)
       !> Topic, if any
       type(argument_t), intent(in) :: topics(:)
-      !> Empty for the screen, --man or --markdown for a page of the manual
-      character(len=*), intent(in) :: form
+      !> Whether to print everything as JSON
+      logical, intent(in) :: json
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
@@ -83,10 +83,10 @@ contains
 
       topic = ''
       if (size(topics) > 0) topic = topics(1)%text
-      if (form == '') then
-         call help_text(topic, text, error)
+      if (json) then
+         text = help_json()
       else
-         call manual_text(topic, form == '--man', text, error)
+         call help_text(topic, text, error)
       end if
       if (.not. allocated(error)) call write_stdout(text, error)
    end subroutine help

@@ -12,11 +12,8 @@ module vcor_app_fit_options
    implicit none
    private
 
-   public :: fit_request_t, fit_options, apply_fit_option, check_fit
+   public :: fit_request_t, apply_fit_option, check_fit
 
-   !> Options of fit alone
-   character(len=*), parameter :: fit_options = '--model --terms --fix --units --shear ' &
-      //'--poisson-ratio --density --name --from-model --dynamic'
    !> Most terms of --terms
    integer, parameter :: most_terms = 60
    !> A Poisson's ratio that was not given
@@ -50,7 +47,7 @@ contains
 
    !> Take the value of an option of fit
    subroutine apply_fit_option(option, value, request, error)
-      !> Option, one of `fit_options` that have a value
+      !> Option, one of those that fit alone has, with a value
       character(len=*), intent(in) :: option
       !> Its value, not blank
       character(len=*), intent(in) :: value

@@ -1,21 +1,36 @@
-!> Help pages
+!> Screens of help: the commands, and the words of the input and the output
 module vcor_app_help
-   use vcor_error, only : error_t, error_usage, raise
+   use vcor_app_commands, only : commands, entry_t, get_page, texts_of
+   use vcor_case_catalogue, only : catalogue, groups, key_t, range_text
+   use vcor_error, only : code_names, error_t, error_usage, raise
    use vcor_nearest, only : nearest_name, suggestion
-   use vcor_text, only : printable
+   use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
+      statuses
+   use vcor_text, only : integer_text, printable
    use vcor_version, only : version
-   use vcor_app_input_help, only : input_page, input_words
-   use vcor_app_output_help, only : output_page, output_words
    implicit none
    private
 
-   public :: help_text
+   public :: help_text, screen_words, screen_meanings
 
    !> End of a line
-   character(len=*), parameter :: nl = new_line('a')
-   !> Known topics
-   character(len=*), parameter :: topics = &
-      'run merge check material fit plot verify input output help'
+   character(len=*), parameter :: nl = new_line("a")
+   !> Longest line of a page
+   integer, parameter :: width = 86
+   !> Column before the meaning of an option, a key or a column
+   integer, parameter :: margin = 30
+   !> What the screen of a run shows and no column holds: its words, between blanks, and what it is
+   character(len=*), parameter :: screen_words(*) = [character(len=40) :: &
+      " KE_1 ", " exponentials kernel ", " +- "]
+   character(len=*), parameter :: screen_meanings(size(screen_words)) = [character(len=480) :: &
+      "left to the sphere: its kinetic energy after the impact, KE_0 cor_sphere^2 [J]", &
+      "'kernel as a sum of 98 exponentials, to 1.0E-10': method ive writes a relaxation modulus " &
+      //"with a continuous spectrum (power law, CERF, Mittag-Leffler, tables, some pairs) as a " &
+      //"sum of exponentials. Their number follows from solver.accuracy. The second number is " &
+      //"the largest relative error of the sum over the contact time; cor_error includes it. A " &
+      //"Prony series is such a sum already, so nothing is printed.", &
+      "estimated numerical error of the number before it: cor_error or cor_sphere_error. It says " &
+      //"nothing about the model or the material data."]
 
 contains
 
@@ -29,40 +44,31 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(entry_t), allocatable :: page(:)
       character(len=:), allocatable :: words
 
       select case (topic)
-      case ('', 'help')
+      case ("", "help")
          text = overview()
-      case ('run')
-         text = run_page()
-      case ('merge')
-         text = merge_page()
-      case ('check')
-         text = check_page()
-      case ('material')
-         text = material_page()
-      case ('fit')
-         text = fit_page()
-      case ('plot')
-         text = plot_page()
-      case ('verify')
-         text = verify_page()
-      case ('input')
-         text = 'A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units.' &
+      case ("input")
+         text = "A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units." &
             //nl//nl//input_page()
-      case ('output')
+      case ("output")
          text = output_page()
       case default
+         call get_page(topic, page)
+         text = command_page(page)
+         if (text /= "") return
          text = input_page(topic)
          words = output_page(topic)
-         if (text /= '' .and. words /= '') text = text//nl
+         if (text /= "" .and. words /= "") text = text//nl
          text = text//words
-         if (text /= '') return
-         ! too many words to be listed, not to look for one nearby
-         words = topics//input_words()//output_words()
-         if (nearest_name(topic, words) == '') then
-            text = suggestion(topic, topics)//', or a word of the input or the output'
+         if (text /= "") return
+         ! too many words to list, but not too many to search for a near one
+         words = commands//" input output"//all_words()
+         if (nearest_name(topic, words) == "") then
+            text = suggestion(topic, commands//" input output") &
+               //", or a word of the input or the output"
          else
             text = suggestion(topic, words)
          end if
@@ -75,210 +81,283 @@ contains
       !> The page
       character(len=:), allocatable :: text
 
-      text = 'vcor '//version//': coefficient of restitution of viscoelastic impacts'//nl//nl &
-         //'usage: vcor run CASE.nml ... [options]    solve impacts, write their results'//nl &
-         //'       vcor merge SHARD.h5 ...            one sweep from its shards'//nl &
-         //'       vcor check CASE.nml ...            validate, print with all defaults'//nl &
-         //'       vcor material CASE.nml ...         moduli over time and frequency'//nl &
-         //'       vcor fit DATA                      identify a material from data'//nl &
-         //'       vcor plot RESULT.h5 ...            figures of results'//nl &
-         //'       vcor verify [CASE.nml ...]         verify the program, or cases'//nl &
-         //'       vcor help [TOPIC]                  topics: run, merge, check, material,'//nl &
-         //'                                          fit, plot, verify, input, output,'//nl &
-         //'                                          or a word of the input or the output'//nl &
-         //'       vcor --version'//nl//nl &
-         //'exit codes: 0 success, 1 internal error, 2 usage, 3 input, 4 file, ' &
-         //'5 numerical failure'//nl
-      text = text//nl//'pages of the manual: vcor help [input|output] --man, or --markdown'//nl
+      integer, parameter :: column = 30
+      character(len=:), allocatable :: command, usage
+      integer :: first, last, i
+
+      text = "vcor "//version//": coefficient of restitution of viscoelastic impacts"//nl//nl
+      first = 1
+      do while (first <= len(commands))
+         last = first - 2 + index(commands(first:)//" ", " ")
+         command = commands(first:last)
+         associate (usages => texts_of(command, "usage"), meanings => texts_of(command, "summary"))
+            usage = trim(usages(1))
+            usage = usage(:index(usage//" [options]", " [options]") - 1)
+            text = text//merge("usage: ", "       ", first == 1)//usage &
+               //repeat(" ", max(1, column - len(usage)))//trim(meanings(1))//nl
+         end associate
+         first = last + 2
+      end do
+      text = text//"       vcor --version"//nl//nl &
+         //"TOPIC: a command, input, output, or a word of the input or the output."//nl &
+         //"vcor help --json prints everything as one JSON document."//nl//nl
+      text = text//"exit codes: 0 "//trim(code_names(0))
+      do i = 1, ubound(code_names, 1)
+         text = text//", "//integer_text(i)//" "//trim(code_names(i))
+      end do
+      text = text//nl
    end function overview
 
-   !> Page of run
-   function run_page() result(text)
-      !> The page
+   !> Page of a command
+   function command_page(page) result(text)
+      !> Its entries
+      type(entry_t), intent(in) :: page(:)
+      !> Its page; empty without entries
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor run CASE.nml ... [options]'//nl//nl &
-         //'Solves the impact of each case and writes STEM_summary.csv, STEM.csv (the time'//nl &
-         //'history) and STEM.h5 (both), STEM being the name of the case file.'//nl//nl &
-         //'Where a case has &sweep groups, the impacts of its grid: a row for each in the'//nl &
-         //'summary, no history. A point that has no result (out of range, no separation,'//nl &
-         //'numerical failure) has its status and nan in the row, the others go on, and the'//nl &
-         //'exit code is 5.'//nl//nl &
-         //'  --set GROUP.KEY=VALUE   replace a value of the case; a material is addressed'//nl &
-         //"                          by its name: --set rubber.beta=600; may be repeated"//nl &
-         //'  --output DIR            directory of the files, made if it is not there'//nl &
-         //'  --print NAME,NAME       print bare numbers instead of the table, a line per'//nl &
-         //'                          impact, and write files only if --output is given;'//nl &
-         //'                          names: vcor help output, or a parameter that is swept'//nl &
-         //'  --threads N             threads of a sweep; default: as many as there are cores'//nl &
-         //'  --resume                go on with a sweep that was interrupted'//nl &
-         //'  --shard I/N             solve part I of N of a sweep, to STEM_shard_I_of_N.h5;'//nl &
-         //'                          vcor merge makes one of them'//nl &
-         //'  --quiet                 print nothing'//nl//nl &
-         //'A sweep that takes more than a moment keeps what is finished in STEM.part.h5, a'//nl &
-         //'valid file at any time. SIGINT (Ctrl-C) and SIGTERM end it after the points at'//nl &
-         //'work, with exit code 130 or 143. With --resume the same command goes on, after a'//nl &
-         //'crash too, and gives the same files. A file of another case, or of another'//nl &
-         //'version, is refused.'//nl &
-         //'Results of another case are replaced, and that is said; unfinished ones are not.'//nl &
-         //'Built for MPI (cmake --preset mpi), mpirun vcor run shares a sweep among ranks.'//nl
-   end function run_page
+      character(len=:), allocatable :: words, before, kind
+      integer :: i
 
-   !> Page of merge
-   function merge_page() result(text)
-      !> The page
+      text = ""
+      kind = ""
+      do i = 1, size(page)
+         before = kind
+         words = plain(page(i)%text)
+         kind = "item"
+         if (page(i)%term == "") kind = "paragraph"
+         if (any(page(i)%term == ["usage  ", "summary", "example"])) kind = trim(page(i)%term)
+         if (index(page(i)%term, "--") == 1) kind = "option"
+         ! a blank line before each paragraph, and between things of different kinds
+         if (kind == "paragraph" .or. (kind /= before .and. any(kind == ["option ", "example"]))) &
+            text = text//nl
+         select case (kind)
+         case ("usage", "example")
+            if (kind == before) then
+               text = text//repeat(" ", len(kind) + 2)//words//nl
+            else
+               text = text//kind//": "//words//nl
+            end if
+         case ("paragraph")
+            text = text//wrapped("", words, 0)
+         case ("summary")
+            cycle
+         case default
+            text = text//item("  "//page(i)%term, words)
+         end select
+      end do
+   end function command_page
+
+   !> The groups with their keys, all or those that a word is about
+   function input_page(word) result(text)
+      !> Name of a group, KEY, GROUP.KEY, or a choice of a key, such as a model; absent: all
+      character(len=*), intent(in), optional :: word
+      !> The page; empty if the word is unknown
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor merge STEM_shard_*.h5 [options]'//nl//nl &
-         //'Makes STEM_summary.csv and STEM.h5 of the files that vcor run --shard I/N has'//nl &
-         //'written, the same as one run makes. All N shards are needed, each once, finished,'//nl &
-         //'of the same case and version. Exit code 5: points without result, as for run.'//nl//nl &
-         //'  --output DIR            directory of the files, made if it is not there;'//nl &
-         //'                          default: that of the case'//nl &
-         //'  --quiet                 print nothing'//nl
-   end function merge_page
+      character(len=:), allocatable :: keys
+      integer :: i, j
 
-   !> Page of check
-   function check_page() result(text)
-      !> The page
+      text = ""
+      do i = 1, size(groups)
+         keys = ""
+         do j = 1, size(catalogue)
+            if (catalogue(j)%group /= groups(i)%name) cycle
+            if (present(word)) then
+               if (.not. is_about(word, catalogue(j))) cycle
+            end if
+            keys = keys//item("   "//catalogue(j)%name, about(catalogue(j)))
+         end do
+         if (keys == "") cycle
+         if (text /= "") text = text//nl
+         text = text//"&"//trim(groups(i)%name)//"  "//trim(groups(i)%meaning)
+         if (groups(i)%repeated) text = text//"; may be repeated"
+         if (.not. groups(i)%required) text = text//"; optional"
+         text = text//nl//keys
+      end do
+   end function input_page
+
+   !> Whether a word is about a key
+   pure function is_about(word, key) result(yes)
+      !> The word
+      character(len=*), intent(in) :: word
+      !> The key
+      type(key_t), intent(in) :: key
+      !> True if it is its name, its group, both, or one of its choices or models
+      logical :: yes
+
+      yes = index(word, " ") == 0 .and. index(" "//trim(key%group)//" "//trim(key%name)//" " &
+         //trim(key%group)//"."//trim(key%name)//" "//key%choices//" "//key%models//" ", &
+         " "//word//" ") > 0
+   end function is_about
+
+   !> What a key means and takes
+   function about(key) result(words)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> Meaning, unit, range, default, models
+      character(len=:), allocatable :: words
+
+      words = trim(key%meaning)
+      if (key%unit /= "") words = words//" ["//trim(key%unit)//"]"
+      if (range_text(key) /= "") words = words//", "//range_text(key)
+      if (key%required) then
+         words = words//", required"
+      else if (key%default /= "" .and. key%default /= "''") then
+         words = words//", default "//trim(key%default)
+      end if
+      if (key%models /= "") words = words//"; "//trim(key%models)
+   end function about
+
+   !> The columns of the summary and the statuses, all or those that a word is about
+   function output_page(word) result(text)
+      !> Name or symbol of a column, name of a status, or a word of the screen; absent: all columns
+      !> of the summary and statuses
+      character(len=*), intent(in), optional :: word
+      !> The page; empty if the word is unknown
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor check CASE.nml ... [--set GROUP.KEY=VALUE]'//nl//nl &
-         //'Validates each case and prints it with every default filled in; what it prints is'//nl &
-         //'a case file again.'//nl
-   end function check_page
+      character(len=:), allocatable :: lines
+      integer :: i
 
-   !> Page of material
-   function material_page() result(text)
-      !> The page
+      text = lines_of(quantities)
+      if (is_wanted("steps")) text = text//item("   steps", "number of time steps")
+      if (is_wanted("status")) text = text//item("   status", "how the contact ended")
+      if (text /= "") text = "Columns of STEM_summary.csv and names for --print:"//nl//text
+
+      lines = ""
+      do i = 1, size(statuses)
+         if (.not. (is_wanted(statuses(i)%name) .or. is_wanted("status"))) cycle
+         lines = lines//item("   "//statuses(i)%name, statuses(i)%meaning)
+         if (statuses(i)%advice /= "") &
+            lines = lines//item("", "what to do: "//statuses(i)%advice)
+      end do
+      if (lines /= "") call append("Values of status; the numbers are nan for all but " &
+         //"separated:", lines)
+
+      if (.not. present(word)) return
+      call append("Columns of STEM.csv, the time history:", lines_of(history_quantities))
+      do i = 1, size(screen_words)
+         if (word /= "" .and. index(screen_words(i), " "//word//" ") > 0) &
+            call append("On the screen of a run:", item("", screen_meanings(i)))
+      end do
+
+   contains
+
+      !> Append a part of the page, unless it is empty
+      subroutine append(heading, part)
+         !> Line above it
+         character(len=*), intent(in) :: heading
+         !> Its lines
+         character(len=*), intent(in) :: part
+
+         if (part == "") return
+         if (text /= "") text = text//nl
+         text = text//heading//nl//part
+      end subroutine append
+
+      !> Lines of the columns that are wanted
+      function lines_of(list) result(lines)
+         !> Columns of a file
+         type(quantity_t), intent(in) :: list(:)
+         !> A line for each
+         character(len=:), allocatable :: lines
+
+         integer :: k
+
+         lines = ""
+         do k = 1, size(list)
+            if (is_wanted(list(k)%name) .or. is_wanted(list(k)%symbol)) lines = lines &
+               //item("   "//list(k)%name, trim(list(k)%meaning)//" ["//trim(list(k)%unit) &
+               //"], symbol "//list(k)%symbol)
+         end do
+      end function lines_of
+
+      !> Whether a name is the word, or all are wanted
+      pure function is_wanted(name) result(yes)
+         !> The name
+         character(len=*), intent(in) :: name
+         !> Whether it is wanted
+         logical :: yes
+
+         yes = .true.
+         if (present(word)) yes = name == word
+      end function is_wanted
+   end function output_page
+
+   !> All words of the input and the output but GROUP.KEY, a blank before each
+   function all_words() result(words)
+      !> The words
+      character(len=:), allocatable :: words
+
+      integer :: i
+
+      words = " "//quantity_names()
+      do i = 1, size(catalogue)
+         words = words//" "//trim(catalogue(i)%group)//" "//trim(catalogue(i)%name)
+         if (catalogue(i)%choices /= "") words = words//" "//trim(catalogue(i)%choices)
+      end do
+      do i = 1, size(statuses)
+         words = words//" "//trim(statuses(i)%name)
+      end do
+   end function all_words
+
+   !> A term and what it means
+   pure function item(term, words) result(text)
+      !> The term, with the blanks before it
+      character(len=*), intent(in) :: term
+      !> What it means
+      character(len=*), intent(in) :: words
+      !> Its lines
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor material CASE.nml ... [options]'//nl//nl &
-         //'Computes the moduli of each material of a case, relaxation over time, storage,'//nl &
-         //'loss and loss tangent over angular frequency, and solves the impact for the'//nl &
-         //'window that matters to it: t <= t0 and omega >= 2 pi/t0. Writes'//nl &
-         //'  STEM_material.csv             a row per material: glassy and rubbery modulus,'//nl &
-         //'                                values at t0 and 2 pi/t0'//nl &
-         //'  STEM_material_relaxation.csv  material, time, relaxation_modulus, in_window'//nl &
-         //'  STEM_material_dynamic.csv     material, frequency, storage_modulus,'//nl &
-         //'                                loss_modulus, loss_tangent, in_window'//nl &
-         //'  STEM_material.h5              all of them: /summary, /relaxation, /dynamic;'//nl &
-         //'                                t0 and 2 pi/t0 are attributes, contact_time'//nl &
-         //'                                and min_frequency'//nl//nl &
-         //'Where a case has &sweep groups, its first point counts.'//nl//nl &
-         //'  --from T --to T         first and last time [s]; default: from the glassy to'//nl &
-         //'                          the rubbery plateau, the contact time included. The'//nl &
-         //'                          frequencies are the reciprocals of the times'//nl &
-         //'  --points N              number of times; default: 50 to the decade'//nl &
-         //'  --set GROUP.KEY=VALUE   replace a value of the case, as for run; repeatable'//nl &
-         //'  --output DIR            directory of the files, made if it is not there'//nl &
-         //'  --quiet                 print nothing'//nl
-   end function material_page
+      character(len=max(margin, len_trim(term) + 2)) :: start
 
-   !> Page of fit
-   function fit_page() result(text)
-      !> The page
+      start = term
+      text = wrapped(start, trim(words), margin)
+   end function item
+
+   !> A text in lines that end at a blank
+   pure function wrapped(start, words, indent) result(text)
+      !> What the first line begins with
+      character(len=*), intent(in) :: start
+      !> The text
+      character(len=*), intent(in) :: words
+      !> Blanks before the other lines
+      integer, intent(in) :: indent
+      !> Lines of at most `width` characters
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor fit DATA [options]'//nl &
-         //'       vcor fit --from-model CASE.nml[:MATERIAL] [options]'//nl//nl &
-         //'Fits a material to a file of columns, time and relaxation modulus or frequency,'//nl &
-         //'storage and loss modulus (or loss tangent), and prints its parameters with'//nl &
-         //'standard errors, the misfit, the band of the data and a &material group to be'//nl &
-         //'pasted into a case. DATA may be - for the standard input. Columns are told by a'//nl &
-         //'header (t,E or f,E_stor,E_loss ...), units by the header, by a second line of'//nl &
-         //'units or by --units; other lines before the header are passed over. Without a'//nl &
-         //'header, two columns are s and Pa, three are rad/s, Pa and Pa. Times in s and'//nl &
-         //'moduli in Pa are what a header means that names no units.'//nl//nl &
-         //'  --model NAME            prony (default), sls, power_law, cerf, mittag_leffler'//nl &
-         //'  --terms N               terms of a Prony series; default: as many as the data'//nl &
-         //'                          support, or until the largest misfit is below 0.05 %'//nl &
-         //'  --fix KEY=VALUE         give a parameter, in SI units; may be repeated'//nl &
-         //'  --units LIST            units of the columns: s,MPa or Hz,MPa or rad/s,Pa ...'//nl &
-         //'  --shear                 the moduli are shear moduli G: E = 2 (1 + nu) G'//nl &
-         //'  --poisson-ratio NU      of the material; default 0.5, of shear moduli required'//nl &
-         //'  --density RHO           of the material [kg/m3]'//nl &
-         //'  --name NAME             of the material; default: that of the file'//nl &
-         //'  --output PATH           write the group to NAME.nml, or to DATA_fit.nml in a'//nl &
-         //'                          folder of another name, made if it is not there'//nl &
-         //'  --quiet                 print nothing'//nl//nl &
-         //'With --from-model a material of a case is sampled in place of data, the one that'//nl &
-         //'is named or that of the plate, and its impact is solved with it and with the fit.'//nl &
-         //'  --from T --to T         first and last time [s]; default: from 1e-5 to 10 times'//nl &
-         //'                          the contact time, in whole decades'//nl &
-         //'  --points N              number of samples; default: 50 to the decade'//nl &
-         //'  --dynamic               sample storage and loss modulus, over the reciprocals'//nl &
-         //'  --set GROUP.KEY=VALUE   replace a value of the case'//nl//nl &
-         //'The keys valid_from and valid_to of the group tell the band of the data. vcor run'//nl &
-         //'warns where the cor of an impact changes by more than 1e-4 with the modulus held'//nl &
-         //'constant outside of it.'//nl//nl &
-         //'A standard error is a third of the way to the further end of the interval of three' &
-         //nl &
-         //'standard errors. A parameter at its bound has one too: 0 +- 1E+5 may be 1E+5, and'//nl &
-         //'the errors of the others allow for it.'//nl//nl &
-         //'A note says where the misfits are above 0.5 % and no noise: then the model does'//nl &
-         //'not follow the data. Where the modulus still falls at the end of the data, an'//nl &
-         //'error holds only if nothing relaxes later, and the equilibrium modulus of a'//nl &
-         //'series is "not seen": what is fitted holds all that relaxes later.'//nl//nl &
-         //'exit code 5: the fit does not converge, or the data do not determine the'//nl &
-         //'parameters.'//nl
-   end function fit_page
+      integer :: first, last, room
 
-   !> Page of plot
-   function plot_page() result(text)
-      !> The page
+      text = start
+      room = width - len(start)
+      first = 1
+      do
+         last = len(words)
+         if (last - first >= room) last = first - 2 + index(words(first:first + room), " ", &
+            back=.true.)
+         if (last < first) last = first - 2 + index(words(first:)//" ", " ")
+         text = text//words(first:last)//nl
+         first = last + 2
+         if (first > len(words)) exit
+         text = text//repeat(" ", indent)
+         room = width - indent
+      end do
+   end function wrapped
+
+   !> A text without backquotes
+   pure function plain(words) result(text)
+      !> Any text
+      character(len=*), intent(in) :: words
+      !> The same without the backquotes
       character(len=:), allocatable :: text
 
-      text = 'usage: vcor plot RESULT.h5 ... [options]'//nl//nl &
-         //'Draws the results of vcor run and vcor material through gnuplot, several of one'//nl &
-         //'kind in one figure with a legend. Kinds:'//nl &
-         //'  history  indentation, velocity and force over time, each over its largest'//nl &
-         //'           value; dashed: ghost lines after contact; values at its end marked'//nl &
-         //'  loop     contact force over indentation, the energy lost in the legend'//nl &
-         //'  moduli   relaxation modulus over time, storage and loss modulus and loss'//nl &
-         //'           tangent over frequency, for each material'//nl &
-         //'  sweep    quantities of the summary over the parameter that is swept'//nl &
-         //'  map      a quantity over two parameters, as contours'//nl//nl &
-         //'  --kind KIND             default: what the file holds; of an impact history,'//nl &
-         //'                          of a sweep of one parameter sweep, of two map'//nl &
-         //'  --quantity NAME,NAME    what sweep and map show, sweep a panel for each;'//nl &
-         //'                          default: cor; names: vcor help output'//nl &
-         //'  --legend TEXT           text of the legend, once for each file, in order;'//nl &
-         //'                          default: titles, or in what the cases differ'//nl &
-         //'  --output PATH           NAME.svg, .pdf or .png: the figure; another name: the'//nl &
-         //'                          folder of STEM_KIND.svg, made if it is not there;'//nl &
-         //'                          default: STEM_KIND.svg in the current directory'//nl &
-         //'  --format FORMAT         svg, pdf, png; default: what PATH ends with, else svg'//nl &
-         //'  --script                leave the script of gnuplot and its data, FILE with'//nl &
-         //'                          .gp and .dat, for work by hand'//nl &
-         //'  --quiet                 print nothing'//nl//nl &
-         //'Figures are 8.5 cm wide, a column, or 17 cm, a page. Where gnuplot is missing the'//nl &
-         //'script is written and the exit code is 4.'//nl
-   end function plot_page
+      integer :: i
 
-   !> Page of verify
-   function verify_page() result(text)
-      !> The page
-      character(len=:), allocatable :: text
-
-      text = 'usage: vcor verify [CASE.nml ...] [options]'//nl//nl &
-         //'Without a case: evaluates laws of impact and independent numbers. Each row'//nl &
-         //'says what is expected, what is found and how far off it may be.'//nl//nl &
-         //'With cases: solves each one by internal variables (ive) at its accuracy and'//nl &
-         //'at a hundredth of it, and by product integration (direct) with 1000, 2000 and'//nl &
-         //'4000 steps per contact, extrapolated. A scheme of its own that the case asks'//nl &
-         //'for stands beside them. No files are written. The columns:'//nl &
-         //'  states    error of cor that the solution states'//nl &
-         //'  off by    distance from the best cor; honest if at most three times as much'//nl &
-         //'  dW/KE_0   what the energies miss, over the energy before the impact'//nl &
-         //'  order     order of convergence of direct'//nl &
-         //'  digits    significant digits that can be trusted: those that the solution'//nl &
-         //'            at the accuracy of the case shares with the best of both methods'//nl//nl &
-         //'  --set GROUP.KEY=VALUE   replace a value of the case, as for run; repeatable'//nl &
-         //'  --quiet                 print nothing'//nl//nl &
-         //'exit code 5: a row fails; or the methods disagree by more than they state,'//nl &
-         //'the energies do not close or a solution fails. A contact that does not end is'//nl &
-         //'no failure where both methods say so.'//nl
-   end function verify_page
+      text = ""
+      do i = 1, len_trim(words)
+         if (words(i:i) /= "`") text = text//words(i:i)
+      end do
+   end function plain
 
 end module vcor_app_help

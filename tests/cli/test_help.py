@@ -103,7 +103,7 @@ def test_words_of_the_input(vcor, word, groups, keys):
     assert [line.split()[0] for line in lines if line.startswith("&")] == [f"&{name}" for name in groups]
     assert [line.split()[0] for line in lines if line[:4].strip() and line[0] == " "] == keys
     assert set(lines) <= set(vcor.succeeds("help", "input").splitlines())
-    vcor.refuses("help", word, "--man", code=USAGE, says=["no manual page", word])
+    vcor.refuses("help", word, "--json", code=USAGE, says=["takes no topic", word])
 
 
 @pytest.mark.parametrize(

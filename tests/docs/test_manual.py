@@ -1,35 +1,33 @@
-"""The pages that the program prints of itself: current, complete, and readable by man."""
+"""What the program knows of itself, and the pages that scripts/manual.py makes of it."""
 
+import json
 import os
 import subprocess
+import sys
 
 import pytest
 from places import ROOT
 
-# As scripts/manual.sh has them
-PAGES = {
-    "docs/commands.md": ["--markdown"],
-    "docs/input.md": ["input", "--markdown"],
-    "docs/output.md": ["output", "--markdown"],
-    "man/vcor.1": ["--man"],
-    "man/vcor-input.5": ["input", "--man"],
-    "man/vcor-output.5": ["output", "--man"],
-}
-MAN = [name for name in PAGES if name.startswith("man/")]
+MAN = ["man/vcor.1", "man/vcor-input.5", "man/vcor-output.5"]
+MARKDOWN = ["docs/commands.md", "docs/input.md", "docs/output.md"]
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_page_is_current(vcor, run, name):
-    page = run(vcor, "help", *PAGES[name])
-    assert (ROOT / name).read_text(encoding="utf-8") == page, "run scripts/manual.sh"
+@pytest.fixture(scope="module")
+def document(vcor, run):
+    """What `vcor help --json` prints."""
+    return json.loads(run(vcor, "help", "--json"))
+
+
+def test_pages_are_current(vcor, run):
+    run(sys.executable, ROOT / "scripts/manual.py", "--check", vcor)
+
+
+@pytest.mark.parametrize("name", MAN + MARKDOWN)
+def test_page_is_plain(name):
+    page = (ROOT / name).read_text(encoding="utf-8")
     assert page.isascii()
     assert not any(line.endswith(" ") for line in page.splitlines())
-
-
-def test_the_script_writes_these_pages():
-    lines = (ROOT / "scripts/manual.sh").read_text().splitlines()
-    calls = [line.split()[1:] for line in lines if line.startswith("page ")]
-    assert {name: words for name, *words in calls} == PAGES
+    assert "{{" not in page
 
 
 def test_no_other_page_of_man():
@@ -44,9 +42,38 @@ def test_man_has_nothing_to_complain_about(run, name):
     run("groff", "-man", "-ww", "-z", "-Tutf8", ROOT / name)
 
 
-@pytest.mark.parametrize("suffix", ["--man", "--markdown"])
-def test_every_key_and_group(vcor, run, suffix):
-    """What the help on the screen has, the manual has too."""
+def test_document(document, vcor, run):
+    assert run(vcor, "--version") == f"{document['program']} {document['version']}\n"
+    assert [c["code"] for c in document["exit_codes"]] == list(range(6))
+    assert [c["name"] for c in document["commands"]][:2] == ["run", "merge"]
+    velocity = document["groups"][1]["keys"][0]
+    assert velocity["name"] == "velocity"
+    assert (velocity["type"], velocity["unit"], velocity["range"]) == ("real", "m/s", "> 0")
+    assert velocity["required"] and "default" not in velocity
+    waves = next(k for k in document["groups"][3]["keys"] if k["name"] == "waves")
+    assert waves["default"] == "relaxing" and waves["default"] in waves["choices"]
+
+
+def test_every_text_is_complete(document):
+    """Fortran cuts a text that is too long for its place, and pads a short one."""
+
+    def texts(value):
+        if isinstance(value, str):
+            yield value
+        elif isinstance(value, (list, dict)):
+            for element in value.values() if isinstance(value, dict) else value:
+                yield from texts(element)
+
+    for text in texts(document):
+        assert text == text.strip() and text.isascii() and text.count("`") % 2 == 0
+    for command in document["commands"]:
+        assert command["summary"] and command["usage"] and command["examples"]
+        for entry in command["page"]:
+            assert len(entry["text"]) < 560
+
+
+def test_every_key_and_group(document, vcor, run):
+    """What the help on the screen has, the document and the manual have too."""
     groups, keys = [], []
     for line in run(vcor, "help", "input").splitlines():
         if line.startswith("&"):
@@ -54,51 +81,62 @@ def test_every_key_and_group(vcor, run, suffix):
         elif line.startswith("   ") and line[3] != " ":
             keys.append(line.split()[0])
     assert len(groups) > 8 and len(keys) > 40
-    page = run(vcor, "help", "input", suffix)
+    assert groups == [group["name"] for group in document["groups"]]
+    assert keys == [key["name"] for group in document["groups"] for key in group["keys"]]
+    page, man = ((ROOT / name).read_text() for name in ("docs/input.md", "man/vcor-input.5"))
     for group in groups:
-        heading = f"## &{group}" if suffix == "--markdown" else f".SH &{group.upper()}"
-        assert f"\n{heading}\n" in page
-    mark = "\n| `{}` |" if suffix == "--markdown" else "\n.TP\n\\fB{}\\fR\n"
+        assert f"\n## &{group}\n" in page and f"\n.SH &{group.upper()}\n" in man
     for key in keys:
-        assert page.count(mark.format(key)) == keys.count(key), key
+        assert page.count(f"\n| `{key}` |") == keys.count(key), key
+        assert man.count(f"\n.TP\n\\fB{key}\\fR\n") == keys.count(key), key
 
 
-@pytest.mark.parametrize("suffix", ["--man", "--markdown"])
-def test_every_command_and_option(vcor, run, suffix):
-    page = run(vcor, "help", suffix).replace("\\-", "-")
-    commands = [
-        line.split("vcor ")[1].split()[0]
+def test_every_command_and_option(document, vcor, run):
+    page, man = ((ROOT / name).read_text() for name in ("docs/commands.md", "man/vcor.1"))
+    man = man.replace("\\-", "-")
+    shown = [
+        line[7:].split()[1]
         for line in run(vcor, "help").splitlines()
         if line.startswith(("usage: vcor", "       vcor"))
     ]
-    commands = [word for word in dict.fromkeys(commands) if word.isalpha() and word != "help"]
-    assert len(commands) >= 3
-    mark = "\n### `vcor {}`\n" if suffix == "--markdown" else "\n.SS \\fBvcor {}\\fR\n"
-    for command in commands:
-        assert mark.format(command) in page
-        for line in run(vcor, "help", command).splitlines():
+    assert shown == [command["name"] for command in document["commands"]] + ["--version"]
+    for command in document["commands"]:
+        assert f"\n### `vcor {command['name']}`\n" in page
+        assert f"\n.SS \\fBvcor {command['name']}\\fR\n" in man
+        if command["name"] == "help":
+            continue
+        for line in run(vcor, "help", command["name"]).splitlines():
             if line.startswith("  --"):
                 term = line.strip().split("  ")[0]
-                assert f"`{term}`" in page or f"\\fB{term}\\fR" in page
+                assert f"`{term}`" in page and f"\\fB{term}\\fR" in man
 
 
-def test_every_column(vcor, run):
-    page = run(vcor, "help", "output", "--markdown")
+def test_the_parser_takes_every_option(document, vcor):
+    """Each option is known, and takes a value if the page names one."""
+    for command in document["commands"]:
+        assert command["options"][-2:] == ["--help", "--version"]
+        for entry in command["page"]:
+            if "option" not in entry:
+                continue
+            words = [vcor, command["name"], entry["option"]]
+            said = subprocess.run(words, capture_output=True, text=True, check=False).stderr
+            assert "unknown option" not in said
+            assert ("needs a value" in said) == bool(entry["value"]), words
+
+
+def test_every_column(document, vcor, run):
+    page = (ROOT / "docs/output.md").read_text()
+    columns = [column["name"] for column in document["summary"]]
     for line in run(vcor, "help", "output").splitlines():
         if line.startswith("   ") and line[3] != " ":
-            assert f"| `{line.split()[0]}` |" in page
+            name = line.split()[0]
+            assert f"| `{name}` |" in page
+            assert name in columns or name in [status["name"] for status in document["statuses"]]
+    for column in columns + [column["name"] for column in document["history"]]:
+        assert f"| `{column}` |" in page
 
 
 def test_the_example_of_the_input_runs(vcor, run, tmp_path):
     text = (ROOT / "docs/input.md").read_text().split("```fortran\n")[1].split("```")[0]
     (tmp_path / "case.nml").write_text(text)
     assert 0 < float(run(vcor, "run", "case.nml", "--print", "cor", cwd=tmp_path)) < 1
-
-
-@pytest.mark.parametrize("topic", ["run", "verify", "nothing"])
-def test_no_manual_page(vcor, topic):
-    done = subprocess.run(
-        [vcor, "help", topic, "--man"], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stdout) == (2, "")
-    assert done.stderr.startswith("vcor: error: no ") and topic in done.stderr

@@ -1,0 +1,284 @@
+!> The commands and their options, in one table: the parser takes its list of options from it, the
+!> screens of help, `vcor help --json` and with it the manual their text.
+module vcor_app_commands
+   implicit none
+   private
+
+   public :: entry_t, commands, get_page, options_of, texts_of
+
+   !> Known commands
+   character(len=*), parameter :: commands = "run merge check material fit plot verify help"
+
+   !> One line of a command's page. Backquotes stand around what is to be typed as it is
+   type :: entry_t
+      !> `usage`, `summary` or `example`; an option with the name of its value; another word that is
+      !> explained; blank: a paragraph
+      character(len=32) :: term
+      !> What is to be said
+      character(len=560) :: text
+   end type entry_t
+
+   !> Page of run
+   type(entry_t), parameter :: run_page(*) = [ &
+      entry_t("usage", "vcor run CASE.nml ... [options]"), &
+      entry_t("summary", "solve impacts and write the results"), &
+      entry_t("", "Solves the impact of each case and writes three files: STEM_summary.csv (one " &
+      //"row per impact), STEM.csv (the time history) and STEM.h5 (both). STEM is the name of " &
+      //"the case file without its ending."), &
+      entry_t("", "A case with &sweep groups is solved at every point of its grid. The summary " &
+      //"has one row per point, and there is no time history. A point without a result (values " &
+      //"out of range, no separation, numerical failure) gets a status and `nan` in its row. The " &
+      //"other points are solved all the same, and the exit code is 5."), &
+      entry_t("--set GROUP.KEY=VALUE", "replace a value of the case; may be repeated. A material " &
+      //"is addressed by its name: `--set rubber.beta=600`"), &
+      entry_t("--output DIR", "folder of the files; created if it does not exist"), &
+      entry_t("--print NAME,NAME", "print these numbers only, one line per impact, in place of " &
+      //"the table, and write files only if `--output` is given. A name is a column " &
+      //"(`vcor help output`) or a swept parameter"), &
+      entry_t("--threads N", "threads of a sweep; default: one per core"), &
+      entry_t("--resume", "continue an interrupted sweep"), &
+      entry_t("--shard I/N", "solve part I of N of a sweep and write it to " &
+      //"STEM_shard_I_of_N.h5; `vcor merge` joins the parts"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("", "A sweep that takes longer than a moment saves the finished points in " &
+      //"STEM.part.h5, which is a valid HDF5 file at any time. Ctrl-C (SIGINT) and SIGTERM end " &
+      //"the sweep after the points in progress, with exit code 130 or 143. The same command " &
+      //"with `--resume` continues it, also after a crash, and writes the same files as an " &
+      //"uninterrupted run. A STEM.part.h5 of another case or version is refused."), &
+      entry_t("", "Finished results of another case are replaced, with a message. Unfinished " &
+      //"results of another case are never replaced."), &
+      entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
+      //"among ranks."), &
+      entry_t("example", "vcor run examples/paper/sls.nml"), &
+      entry_t("example", "vcor run examples/paper/sls.nml --set impact.velocity=2.5 --print cor")]
+
+   !> Page of merge
+   type(entry_t), parameter :: merge_page(*) = [ &
+      entry_t("usage", "vcor merge STEM_shard_*.h5 [options]"), &
+      entry_t("summary", "join the shards of a sweep"), &
+      entry_t("", "Joins the files that `vcor run --shard I/N` has written and makes " &
+      //"STEM_summary.csv and STEM.h5, the same files as one run makes. All N shards are needed, " &
+      //"each once, finished, and of the same case and version. The exit code is 5 if a point " &
+      //"has no result, as for run."), &
+      entry_t("--output DIR", "folder of the files; created if it does not exist; default: the " &
+      //"folder of the case"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("example", "vcor merge sls_velocity_shard_*_of_8.h5")]
+
+   !> Page of check
+   type(entry_t), parameter :: check_page(*) = [ &
+      entry_t("usage", "vcor check CASE.nml ... [options]"), &
+      entry_t("summary", "validate a case and print it with all defaults"), &
+      entry_t("", "Validates each case and prints it with every default filled in. The output is " &
+      //"a case file again."), &
+      entry_t("--set GROUP.KEY=VALUE", "replace a value of the case, as for run; repeatable"), &
+      entry_t("example", "vcor check examples/paper/sls.nml")]
+
+   !> Page of material
+   type(entry_t), parameter :: material_page(*) = [ &
+      entry_t("usage", "vcor material CASE.nml ... [options]"), &
+      entry_t("summary", "compute moduli over time and frequency"), &
+      entry_t("", "Computes the moduli of each material of a case: relaxation modulus over time; " &
+      //"storage modulus, loss modulus and loss tangent over angular frequency. It solves the " &
+      //"impact as well, to mark the window that matters to it: t <= t0 and omega >= 2 pi/t0, " &
+      //"with t0 the contact time. For a case with &sweep groups, the first point is taken."), &
+      entry_t("STEM_material.csv", "one row per material: glassy and rubbery modulus, values at " &
+      //"t0 and 2 pi/t0"), &
+      entry_t("STEM_material_relaxation.csv", "material, time, relaxation_modulus, in_window"), &
+      entry_t("STEM_material_dynamic.csv", "material, frequency, storage_modulus, loss_modulus, " &
+      //"loss_tangent, in_window"), &
+      entry_t("STEM_material.h5", "all of them as /summary, /relaxation and /dynamic; t0 and " &
+      //"2 pi/t0 are the attributes contact_time and min_frequency"), &
+      entry_t("--set GROUP.KEY=VALUE", "replace a value of the case, as for run; repeatable"), &
+      entry_t("--output DIR", "folder of the files; created if it does not exist"), &
+      entry_t("--from T", "first time [s]; default: on the glassy plateau, before the contact " &
+      //"time"), &
+      entry_t("--to T", "last time [s]; default: on the rubbery plateau, after the contact time. " &
+      //"The frequencies are the reciprocals of the times"), &
+      entry_t("--points N", "number of times; default: 50 per decade"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("example", "vcor material examples/paper/sls.nml --from 1e-6 --to 10")]
+
+   !> Page of fit
+   type(entry_t), parameter :: fit_page(*) = [ &
+      entry_t("usage", "vcor fit DATA [options]"), &
+      entry_t("usage", "vcor fit --from-model CASE.nml[:MATERIAL] [options]"), &
+      entry_t("summary", "identify a material from measured moduli"), &
+      entry_t("", "Fits a material to a file of columns: time and relaxation modulus, or " &
+      //"frequency, storage modulus and loss modulus (or loss tangent). Prints the parameters " &
+      //"with standard errors, the misfit, the band of the data, and a &material group to paste " &
+      //"into a case. DATA may be - for standard input."), &
+      entry_t("", "A header (t,E or f,E_stor,E_loss ...) names the columns. Units come from the " &
+      //"header, from a second line of units, or from `--units`; a header without units means s " &
+      //"and Pa. Other lines before the header are skipped. Without a header, two columns are s " &
+      //"and Pa, three are rad/s, Pa and Pa."), &
+      entry_t("", "With `--from-model`, a material of a case is sampled in place of data: the " &
+      //"named one, or that of the plate. The impact of the case is then solved with the " &
+      //"material and with the fit."), &
+      entry_t("--model NAME", "prony (default), sls, power_law, cerf or mittag_leffler"), &
+      entry_t("--terms N", "terms of a Prony series; default: as many as the data support, or " &
+      //"until the largest misfit is below 0.05 %"), &
+      entry_t("--fix KEY=VALUE", "fix a parameter, in SI units; may be repeated"), &
+      entry_t("--units LIST", "units of the columns, such as s,MPa or Hz,MPa or rad/s,Pa"), &
+      entry_t("--shear", "the data are shear moduli G: E = 2 (1 + nu) G"), &
+      entry_t("--poisson-ratio NU", "Poisson's ratio of the material; default 0.5; required with " &
+      //"`--shear`"), &
+      entry_t("--density RHO", "density of the material [kg/m3]"), &
+      entry_t("--name NAME", "name of the material; default: the name of the data file"), &
+      entry_t("--from-model CASE.nml", "sample a material of this case in place of data"), &
+      entry_t("--dynamic", "with `--from-model`: sample storage and loss modulus, at the " &
+      //"reciprocals of the times"), &
+      entry_t("--set GROUP.KEY=VALUE", "with `--from-model`: replace a value of the case"), &
+      entry_t("--output PATH", "write the group to PATH if it ends in .nml, otherwise to " &
+      //"DATA_fit.nml in the folder PATH, which is created if it does not exist"), &
+      entry_t("--from T", "with `--from-model`: first time [s]; default: 1e-5 contact times, " &
+      //"rounded to a whole decade"), &
+      entry_t("--to T", "with `--from-model`: last time [s]; default: 10 contact times, rounded " &
+      //"to a whole decade"), &
+      entry_t("--points N", "with `--from-model`: number of samples; default: 50 per decade"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("", "The keys `valid_from` and `valid_to` of the group hold the band of the data. " &
+      //"`vcor run` warns if holding the modulus constant outside this band changes the cor of " &
+      //"an impact by more than 1e-4."), &
+      entry_t("", "A standard error is one third of the distance to the further end of the " &
+      //"interval of three standard errors. A parameter at its bound has a standard error too: " &
+      //"0 +- 1E+5 may be 1E+5, and the errors of the other parameters allow for it."), &
+      entry_t("", "A note is printed if misfits above 0.5 % do not look like noise: the model " &
+      //"does not follow the data. If the modulus still falls at the end of the data, the errors " &
+      //"hold only if nothing relaxes later. The equilibrium modulus of a series is then " &
+      //"reported as ""not seen"": the fitted value contains everything that relaxes later."), &
+      entry_t("", "The exit code is 5 if the fit does not converge or the data do not determine " &
+      //"the parameters."), &
+      entry_t("example", "vcor fit examples/soft_rubber_data.csv --output soft_rubber.nml")]
+
+   !> Page of plot
+   type(entry_t), parameter :: plot_page(*) = [ &
+      entry_t("usage", "vcor plot RESULT.h5 ... [options]"), &
+      entry_t("summary", "draw figures of results"), &
+      entry_t("", "Draws the results of `vcor run` and `vcor material` with gnuplot. Several " &
+      //"files of one kind go into one figure with a legend. The kinds are:"), &
+      entry_t("history", "indentation, velocity and force over time, each divided by its largest " &
+      //"value, with the values at the end of contact; dashed: ghost lines after contact"), &
+      entry_t("loop", "contact force over indentation, with the energy lost in the legend"), &
+      entry_t("moduli", "relaxation modulus over time; storage modulus, loss modulus and loss " &
+      //"tangent over frequency, for each material"), &
+      entry_t("sweep", "quantities of the summary over the swept parameter"), &
+      entry_t("map", "contours of a quantity over two parameters"), &
+      entry_t("--kind KIND", "default: what the file holds (history for an impact, sweep for a " &
+      //"sweep of one parameter, map for two)"), &
+      entry_t("--quantity NAME,NAME", "columns for sweep (one panel each) or map; default: cor; " &
+      //"names: `vcor help output`"), &
+      entry_t("--legend TEXT", "text of the legend, once per file, in their order; default: the " &
+      //"titles, or what differs between the cases"), &
+      entry_t("--output PATH", "the figure, if PATH ends in .svg, .pdf or .png; otherwise the " &
+      //"folder for STEM_KIND.svg, created if it does not exist; default: STEM_KIND.svg in the " &
+      //"current folder"), &
+      entry_t("--format FORMAT", "svg, pdf or png; default: the ending of PATH, or svg"), &
+      entry_t("--script", "keep the gnuplot script and its data, as .gp and .dat beside the " &
+      //"figure, for changes by hand"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("", "Figures are 8.5 cm (one column) or 17 cm (one page) wide. Without gnuplot, " &
+      //"the script is written and the exit code is 4."), &
+      entry_t("example", "vcor plot sls.h5 --kind loop --output loop.pdf")]
+
+   !> Page of verify
+   type(entry_t), parameter :: verify_page(*) = [ &
+      entry_t("usage", "vcor verify [CASE.nml ...] [options]"), &
+      entry_t("summary", "verify the program, or cases"), &
+      entry_t("", "Without a case: compares the program with laws of impact and with independent " &
+      //"numbers. Each row shows the expected value, the value found, the deviation and its " &
+      //"tolerance."), &
+      entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
+      //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
+      //"steps per contact, extrapolated. If the case asks for another scheme, that solution is " &
+      //"shown too. No files are written. The columns are:"), &
+      entry_t("states", "error of cor that the solution itself estimates"), &
+      entry_t("off by", "distance from the best cor; honest if at most three times the estimate"), &
+      entry_t("dW/KE_0", "energy imbalance over the energy before the impact"), &
+      entry_t("order", "order of convergence of direct"), &
+      entry_t("digits", "significant digits to trust: those that the solution at the accuracy of " &
+      //"the case shares with the best of both methods"), &
+      entry_t("--set GROUP.KEY=VALUE", "replace a value of the case, as for run; repeatable"), &
+      entry_t("--quiet", "print nothing"), &
+      entry_t("", "Ends with exit code 5 if a row fails, the methods disagree by more than their " &
+      //"estimates, the energies do not close, or a solution fails. A contact that does not end " &
+      //"is no failure if both methods agree on it."), &
+      entry_t("example", "vcor verify examples/paper/sls.nml")]
+
+   !> Page of help
+   type(entry_t), parameter :: help_page(*) = [ &
+      entry_t("usage", "vcor help [TOPIC]"), &
+      entry_t("summary", "explain a command or a word"), &
+      entry_t("", "Prints a page of help. TOPIC is a command, `input` (all groups and keys of a " &
+      //"case), `output` (all columns and statuses), or any word of the input or the output: " &
+      //"`vcor help velocity`, `vcor help prony`, `vcor help sticks`."), &
+      entry_t("--json", "print everything that the program knows about its commands, input and " &
+      //"output as one JSON document"), &
+      entry_t("example", "vcor help velocity")]
+
+contains
+
+   !> Page of a command
+   pure subroutine get_page(command, page)
+      !> One of `commands`
+      character(len=*), intent(in) :: command
+      !> Its page; of no entries for another word
+      type(entry_t), allocatable, intent(out) :: page(:)
+
+      select case (command)
+      case ("run")
+         allocate (page, source=run_page)
+      case ("merge")
+         allocate (page, source=merge_page)
+      case ("check")
+         allocate (page, source=check_page)
+      case ("material")
+         allocate (page, source=material_page)
+      case ("fit")
+         allocate (page, source=fit_page)
+      case ("plot")
+         allocate (page, source=plot_page)
+      case ("verify")
+         allocate (page, source=verify_page)
+      case ("help")
+         allocate (page, source=help_page)
+      case default
+         allocate (page(0))
+      end select
+   end subroutine get_page
+
+   !> Options of a command, separated by blanks
+   pure function options_of(command) result(words)
+      !> One of `commands`
+      character(len=*), intent(in) :: command
+      !> Its options, with those that all commands have
+      character(len=:), allocatable :: words
+
+      type(entry_t), allocatable :: page(:)
+      integer :: i
+
+      call get_page(command, page)
+      words = ""
+      do i = 1, size(page)
+         if (index(page(i)%term, "--") /= 1) cycle
+         words = words//page(i)%term(:index(page(i)%term//" ", " "))
+      end do
+      words = words//"--help --version"
+   end function options_of
+
+   !> The texts of one kind on a page
+   pure function texts_of(command, term) result(texts)
+      !> One of `commands`
+      character(len=*), intent(in) :: command
+      !> `usage`, `summary` or `example`
+      character(len=*), intent(in) :: term
+      !> Texts
+      character(len=len(run_page%text)), allocatable :: texts(:)
+
+      type(entry_t), allocatable :: page(:)
+
+      call get_page(command, page)
+      allocate (texts, source=pack(page%text, page%term == term))
+   end function texts_of
+
+end module vcor_app_commands
