@@ -9,7 +9,7 @@ module vcor_app_cli
    use vcor_nearest, only : suggestion
    use vcor_study_moduli, only : time_range_t
    use vcor_sweep_quantity, only : quantity_names
-   use vcor_sweep_threads, only : most_threads
+   use vcor_sweep_points, only : most_threads
    use vcor_text, only : printable
    implicit none
    private

@@ -12,7 +12,7 @@ module vcor_app_files
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
-   use vcor_sweep_threads, only : default_threads
+   use vcor_sweep_points, only : default_threads
    implicit none
    private
 
@@ -37,7 +37,7 @@ contains
    end subroutine make_place
 
    !> Write the files of a case
-   subroutine write_files(request, job, identity, summary, trajectory, files, error, has_csv)
+   subroutine write_files(request, job, identity, summary, trajectory, files, error)
       !> The request
       type(request_t), intent(in) :: request
       !> The case
@@ -52,11 +52,8 @@ contains
       character(len=:), allocatable, intent(out) :: files
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Whether the summary as text is there already; false if it is not given
-      logical, intent(in), optional :: has_csv
 
       type(table_t) :: course
-      character(len=:), allocatable :: csv
       type(remark_t) :: remarks(4)
       integer :: i, n
 
@@ -77,11 +74,8 @@ contains
          if (job%writes(3)) call write_hdf5(job%path//trim(endings(3)), summary, course, error, &
             remarks(:n))
       else
-         csv = name_of(1)
-         if (present(has_csv)) then
-            if (has_csv) csv = ''
-         end if
-         call write_summary(csv, name_of(3), summary, remarks(:n), threads_of(request), error)
+         call write_summary(name_of(1), name_of(3), summary, remarks(:n), threads_of(request), &
+            error)
       end if
       if (allocated(error)) return
       do i = 1, size(endings)

@@ -14,7 +14,7 @@ module vcor_app_job
    use vcor_io_path, only : join_path, same_file
    use vcor_nearest, only : suggestion
    use vcor_solver, only : method_for
-   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_sweep, only : new_sweep, single_impact, sweep_t
    use vcor_text, only : printable

@@ -18,10 +18,10 @@ module vcor_app_merge
    use vcor_io_results, only : summary_table
    use vcor_io_summary_files, only : write_summary
    use vcor_io_table, only : table_t
-   use vcor_sweep_partition, only : new_part
+   use vcor_sweep_part, only : new_part
    use vcor_sweep_quantity, only : point_pending, status_name
    use vcor_sweep_summary, only : new_summary, summary_t
-   use vcor_sweep_threads, only : default_threads
+   use vcor_sweep_points, only : default_threads
    use vcor_version, only : version
    implicit none
    private

@@ -23,9 +23,9 @@ module vcor_app_sweep
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
    use vcor_sweep_failures, only : failures_t
-   use vcor_sweep_mpi, only : differs, rank_count, share_error, share_flag, this_rank
-   use vcor_sweep_points, only : solve_part
-   use vcor_sweep_quantity, only : point_pending
+   use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
+   use vcor_sweep_points, only : solve_points
+   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending
    use vcor_sweep_summary, only : new_summary, summary_t
    implicit none
    private
@@ -61,7 +61,7 @@ contains
       is_finished = .false.
       if (this_rank() == 0) call begin(request, job, watch, previous, summary, is_finished, error)
       call share_error(error)
-      call share_flag(is_finished)
+      is_finished = any(largest([merge(1, 0, is_finished)]) == 1)
       if (is_finished .or. allocated(error)) return
       if (differs(number_of(watch%identity))) then
          call raise(error, error_input, job%case%source//': not all ranks read the same case, or ' &
@@ -70,15 +70,14 @@ contains
       end if
 
       call catch_signals()
-      call solve_part(job%sweep, job%part, threads_of(request), watch, summary, failures, stopped, &
-         error)
+      call solve_points(job%sweep, job%part, threads_of(request), summary, failures, error, watch, &
+         stopped)
       if (this_rank() == 0) then
          call watch%clear()
          if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
             stopped, error)
          call watch%file%close()
          call watch%old%close()
-         call watch%rows%abandon()
       end if
       call share_error(error)
       call release_signals()
@@ -132,13 +131,12 @@ contains
          call make_place(request, job, error)
       end if
       if (allocated(error)) return
+      ! files do not hold why a point has no result: it is solved again, to the same bits
+      where (summary%status == point_invalid .or. summary%status == point_failed) &
+         summary%status = point_pending
       watch%done = count(summary%status /= point_pending)
       watch%done_before = watch%done
       watch%grid = job%sweep%grid
-      if (rank_count() > 1 .and. job%writes(1)) then
-         watch%rows%path = job%path//trim(endings(1))
-      end if
-      watch%rows%threads = threads_of(request)
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
@@ -260,11 +258,8 @@ contains
 
       call warn_of_bands(job, summary)
       associate (identity => watch%identity)
-         call watch%rows%complete(identity, job%sweep%grid, summary, error)
-         if (allocated(error)) return
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(request, job, identity, table, none, files, error, &
-            has_csv=allocated(watch%rows%path))
+         call write_files(request, job, identity, table, none, files, error)
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()

@@ -2,7 +2,6 @@
 !> signal ends it
 module vcor_app_watch
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_app_row_stream, only : row_stream_t
    use vcor_app_signals, only : caught_signal
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_t
@@ -11,7 +10,7 @@ module vcor_app_watch
    use vcor_io_identity, only : identity_t
    use vcor_io_number, only : integer_text
    use vcor_kinds, only : wp
-   use vcor_sweep_monitor, only : monitor_t
+   use vcor_sweep_points, only : monitor_t
    use vcor_sweep_summary, only : summary_t
    implicit none
    private
@@ -31,8 +30,6 @@ module vcor_app_watch
       logical :: keeps = .false.
       !> Whether the terminal shows how far it is
       logical :: shows = .false.
-      !> Whether signals are heeded
-      logical :: heeds = .true.
       !> Path of the file
       character(len=:), allocatable :: path
       !> What the sweep is about
@@ -43,8 +40,6 @@ module vcor_app_watch
       type(checkpoint_t) :: file
       !> What a run before has left of the same sweep, locked until the file takes its place
       type(checkpoint_t) :: old
-      !> Rows that are written while other ranks work
-      type(row_stream_t) :: rows
       !> Points that are done
       integer :: done = 0
       !> Points that were done at the beginning
@@ -54,24 +49,26 @@ module vcor_app_watch
       !> When the terminal was written to [s]
       real(wp), private :: shown = 0.0_wp
    contains
-      !> Places are finished
+      !> Points are finished
       procedure :: finished
       !> Whether the sweep has to stop
-      procedure :: stop_code
+      procedure, nopass :: stop_code => caught_signal
       !> Take the line off the terminal
       procedure :: clear
    end type watch_t
 
 contains
 
-   !> Places are finished
-   subroutine finished(self, first, last, summary, error)
+   !> Points are finished
+   subroutine finished(self, first, last, count, summary, error)
       !> The watch
       class(watch_t), intent(inout) :: self
-      !> First place
+      !> First place that may have changed
       integer, intent(in) :: first
-      !> Last place
+      !> Last place that may have changed
       integer, intent(in) :: last
+      !> Number of points between them that are new
+      integer, intent(in) :: count
       !> Outcomes of all places
       type(summary_t), intent(inout) :: summary
       !> Set if they cannot be kept; unallocated on success
@@ -80,7 +77,7 @@ contains
       real(wp) :: now
 
       now = clock()
-      self%done = self%done + last - first + 1
+      self%done = self%done + count
       if (self%file%is_open()) then
          call self%file%put(first, last, summary, error)
       else if (self%keeps .and. now - self%start > time_without_file) then
@@ -88,23 +85,11 @@ contains
             error, self%old)
       end if
       if (allocated(error)) return
-      call self%rows%advance(self%identity, self%grid, summary, error)
       if (self%shows .and. now - self%shown > time_between_lines) then
          call show(self, now - self%start)
          self%shown = now
       end if
    end subroutine finished
-
-   !> Whether the sweep has to stop
-   function stop_code(self) result(code)
-      !> The watch
-      class(watch_t), intent(in) :: self
-      !> Signal that has come; 0 if there was none
-      integer :: code
-
-      code = 0
-      if (self%heeds) code = caught_signal()
-   end function stop_code
 
    !> Show how far the sweep is
    subroutine show(self, time)

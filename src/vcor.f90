@@ -15,7 +15,7 @@ module vcor
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_checkpoint, only : attach, checkpoint_t, create_checkpoint, open_checkpoint
    use vcor_io_checkpoint_points, only : read_points, read_results
-   use vcor_io_csv, only : add_rows, begin_csv, csv_file_t, discard_csv, end_csv, write_csv
+   use vcor_io_csv, only : write_csv
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : draw, split_path
    use vcor_io_figure, only : figure_t
@@ -29,7 +29,7 @@ module vcor
    use vcor_io_path, only : anything_at, check_plain, directory_exists, file_exists, join_path, &
       make_directory, plain_file_exists, quoted_path, same_file
    use vcor_case_real, only : read_real
-   use vcor_io_results, only : history_table, lend_rows, summary_table, take_back
+   use vcor_io_results, only : history_table, summary_table
    use vcor_io_row_text, only : place_in_table, write_rows
    use vcor_io_sample_file, only : read_samples, reading_t, standard_input
    use vcor_io_scratch, only : remove_all_scratch
@@ -62,23 +62,20 @@ module vcor
    use vcor_verify_models, only : model_t, solve_models
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, &
       sampled_times, time_range_t
-   use vcor_sweep_monitor, only : monitor_t
-   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
-      share_flag, this_rank
+   use vcor_sweep_mpi, only : differs, join_ranks, largest, leave_ranks, rank_count, &
+      share_error, this_rank
    use vcor_case_name, only : control_in, name_flaw
    use vcor_nearest, only : nearest_name, suggestion
-   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_sweep_part, only : new_part, part_t
    use vcor_case_path, only : material_names
-   use vcor_sweep_points, only : solve_part
+   use vcor_sweep_points, only : default_threads, monitor_t, most_threads, solve_points
    use vcor_sweep_quantity, only : history_quantities, point_failed, point_invalid, &
       point_pending, quantities, quantity_names, quantity_t, quantity_value, status_name, &
       status_t, statuses
    use vcor_study_reliance, only : find_reliance, reliance_t, solve_case
-   use vcor_sweep_summary, only : new_summary, summary_t
-   use vcor_sweep_sweep, only : new_sweep, single_impact, solve_point, solve_points, sweep_t, &
-      worker_t
+   use vcor_sweep_summary, only : new_summary, row_of, summary_t
+   use vcor_sweep_sweep, only : new_sweep, single_impact, solve_point, sweep_t, worker_t
    use vcor_text, only : printable
-   use vcor_sweep_threads, only : default_threads, most_threads
    use vcor_case_unread, only : refuse_unread
    use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_verify_table, only : build_law, law_count, verify_law
@@ -107,7 +104,7 @@ module vcor
    public :: quantity_t, quantities, history_quantities, quantity_names, quantity_value
    public :: status_t, statuses, status_name
    public :: axis_t, grid_t, sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points
-   public :: summary_t, new_summary, failure_t, failures_t, point_invalid, point_failed
+   public :: summary_t, new_summary, row_of, failure_t, failures_t, point_invalid, point_failed
    public :: point_pending
    public :: default_threads, most_threads
    public :: law_t, row_t, verdict_t, law_count, build_law, verify_law
@@ -117,13 +114,12 @@ module vcor
    public :: key_t, group_t, catalogue, groups, range_text, kind_name, text_key
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    public :: place_in_table, write_rows, named_table_t
-   public :: part_t, new_part, monitor_t, solve_part, new_grid
-   public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, share_flag, differs
+   public :: part_t, new_part, monitor_t, new_grid
+   public :: join_ranks, leave_ranks, this_rank, rank_count, share_error, largest, differs
    public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same
    public :: number_of, checkpoint_t, create_checkpoint, open_checkpoint, attach, read_points, &
       read_results
    public :: remark_t, write_summary
-   public :: csv_file_t, begin_csv, add_rows, end_csv, discard_csv, lend_rows, take_back
    public :: samples_t, reading_t, read_samples, standard_input, fit_t, parameter_t, fit_material
    public :: fit_models, fixable_parameters, state_free, state_fixed, state_bound
    public :: unseen_earlier, unseen_later

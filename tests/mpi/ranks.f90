@@ -1,66 +1,50 @@
-!> Chunks dealt out to ranks: every place once, failures and stops on a rank that is not the first
-!>
-!>     mpirun -n N ranks work|fail|stop
+!> What ranks say to each other: numbers of the first one, the largest ones, all of them, errors
 program ranks
-   use vcor_counting_task, only : counting_t
-   use vcor_error, only : error_numerical, error_t
-   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, rank_count, share_error, &
-      share_flag, this_rank
-   use vcor_sweep_partition, only : new_todo, todo_t
-   use vcor_sweep_team, only : work_together
+   use vcor_error, only : error_file, error_t, error_usage, raise
+   use vcor_kinds, only : wp
+   use vcor_sweep_mpi, only : differs, gathered, join_ranks, largest, leave_ranks, of_first, &
+      rank_count, share_error, this_rank
    use vcor_test, only : check, check_text, finish, suite
    implicit none
 
-   integer, parameter :: places = 20000
-   type(counting_t) :: task
-   type(todo_t) :: todo
    type(error_t), allocatable :: error
-   character(len=8) :: way
-   integer :: stopped
-   logical :: flag
+   real(wp), allocatable :: numbers(:)
+   integer :: i, last
 
    call join_ranks()
-   call get_command_argument(1, way)
-   call suite("ranks "//way)
-   call check(rank_count() > 1, "there are several ranks")
-   call task%reset(places)
-   ! what only the last rank does
-   if (this_rank() == rank_count() - 1) then
-      if (way == "fail") task%fails_after = 2
-      if (way == "stop") task%stops_after = 2
-   end if
-   if (this_rank() == 0) call new_todo(todo, task%seen == 1)
-   call work_together(task, todo, stopped, error)
-
-   call check(task%chunks > 0, "every rank has work")
+   call suite("ranks")
+   last = rank_count() - 1
+   call check(last > 0, "there are several ranks")
+   associate (those => of_first([(i + this_rank(), i=1, 5*(1 - this_rank()))]))
+      call check(size(those) == 5 .and. all(those == [1, 2, 3, 4, 5]), "numbers of the first")
+   end associate
+   call check(all(largest([this_rank(), -this_rank()]) == [last, 0]), "the largest")
+   ! each rank has one more than the one before, the first none
+   numbers = gathered([(real(10*this_rank() + i, wp), i=1, this_rank())])
    if (this_rank() == 0) then
-      select case (way)
-      case ("work")
-         call check(task%is_right(), "every place once")
-         call check(stopped == 0, "nobody stopped it")
-      case ("stop")
-         call check(stopped == 15, "the code of the last rank")
-         call check(all(task%seen <= 1), "no place twice")
-         call check(count(task%seen == 1) + todo%left == places, "the rest is left")
-         call check(todo%left > 0, "something is left")
-      case default
-         call check(all(task%seen <= 1), "no place twice")
-         call check(todo%left > 0, "something is left")
-      end select
+      call check(size(numbers) == last*(last + 1)/2, "as many as all have")
+      call check(nint(numbers(1)) == 11 .and. nint(numbers(size(numbers))) == 11*last, "in order")
+   else
+      call check(size(numbers) == 0, "the first has them")
    end if
-
-   call share_error(error)
-   call check(allocated(error) .eqv. way == "fail", "all ranks know of the failure")
-   if (allocated(error)) then
-      call check(error%code == error_numerical, "its code")
-      call check_text(error%message(:5), "rank ", "where it was")
-      call check_text(error%message(8:), " injected failure", "what it was")
-   end if
-   flag = this_rank() == 0
-   call share_flag(flag)
-   call check(flag, "what the first rank knows")
    call check(.not. differs(-7), "the same number")
    call check(differs(this_rank()), "different numbers")
+
+   call share_error(error)
+   call check(.not. allocated(error), "nobody has an error")
+   if (this_rank() == last) call raise(error, error_file, "injected failure")
+   call share_error(error)
+   call check(allocated(error), "all ranks know of the failure")
+   call check(error%code == error_file, "its code")
+   if (this_rank() == 0) then
+      call check_text(error%message(:5), "rank ", "where it was")
+      call check_text(error%message(8:), " injected failure", "what it was")
+      deallocate (error)
+      call raise(error, error_usage, "the first one's own")
+   end if
+   call share_error(error)
+   call check(error%code == error_usage, "of two errors that of the first rank")
+   if (this_rank() == 0) call check_text(error%message, "the first one's own", "its message")
    call leave_ranks()
    call finish()
 end program ranks

@@ -1,4 +1,4 @@
-!> Sweeps: the order of the grid, spacing, what is built per point, chunks and threads
+!> Sweeps: the order of the grid, spacing, what is built per point, parts, threads, interruptions
 program test_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_input, error_t
@@ -15,12 +15,14 @@ program test_sweep
    use vcor_sweep_failures, only : failures_t
    use vcor_case_grid, only : axis_t, grid_t, spaced
    use vcor_case_path, only : swept_handles
-   use vcor_sweep_quantity, only : point_failed, point_invalid, quantities, quantity_values, &
-      status_name
+   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities, &
+      quantity_values, status_name
    use vcor_sweep_summary, only : new_summary, summary_t
-   use vcor_sweep_sweep, only : new_sweep, solve_point, solve_points, sweep_t, worker_t
+   use vcor_sweep_part, only : new_part, part_t
+   use vcor_sweep_points, only : default_threads, solve_points
+   use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
+   use vcor_test_watch, only : stops, watch_t
    use vcor_text, only : real_text
-   use vcor_sweep_threads, only : default_threads
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
 
@@ -42,8 +44,12 @@ program test_sweep
    call test_order()
    call test_grid_of_a_case()
    call test_points()
-   call test_chunks_and_threads()
+   call test_parts_and_threads()
    call test_reasons()
+   call test_packed_reasons()
+   call test_parts()
+   call test_stop()
+   call test_trouble()
    call test_statuses()
    call finish()
 
@@ -177,25 +183,38 @@ contains
       end do
    end subroutine test_points
 
-   !> In whatever chunks, by whatever number of threads
-   subroutine test_chunks_and_threads()
-      type(case_t) :: case
+   !> In whatever parts, begun by whatever has been done before, by whatever number of threads
+   subroutine test_parts_and_threads()
       type(sweep_t) :: sweep
-      type(summary_t) :: one, other
+      type(part_t) :: part
+      type(summary_t) :: one, other, shard
       type(failures_t) :: reasons, others
       type(error_t), allocatable :: error
-      integer :: i, n
+      integer :: i, j, k, n
 
-      call read_case_text(case, text//sweeps//"&sweep parameter = 'sphere.radius' start = 1e-3," &
-         //" stop = 1e-2, count = 40, spacing = 'log' /", "x.nml", error)
-      call new_sweep(sweep, case, error)
+      call long_sweep(sweep)
       n = sweep%grid%count()
       call new_summary(one, n, error)
       call new_summary(other, n, error)
       call check(.not. allocated(error), "there is room")
-      call solve_points(sweep, 1, n, 1, one, reasons)
-      call solve_points(sweep, n/3, n, 4, other, others)
-      call solve_points(sweep, 1, n/3 - 1, 2, other, others)
+      call solve_points(sweep, new_part(n, 1, 1), 1, one, reasons, error)
+      call check(.not. allocated(error), "solved")
+      do k = 1, 3
+         part = new_part(n, k, 3)
+         call new_summary(shard, part%count(), error)
+         call solve_points(sweep, part, 4, shard, others, error)
+         do j = 1, part%count(), k
+            other%steps(part%point(j)) = shard%steps(j)
+            other%status(part%point(j)) = shard%status(j)
+            if (any(shard%status(j) == [point_invalid, point_failed])) &
+               other%status(part%point(j)) = point_pending
+            do i = 1, size(quantities)
+               other%values(i)%at(part%point(j)) = shard%values(i)%at(j)
+            end do
+         end do
+      end do
+      call check(count(other%status == point_pending) > n/3, "a part is left")
+      call solve_points(sweep, new_part(n, 1, 1), 2, other, others, error)
       call check(all(one%status == other%status), "the same statuses")
       call check(all(one%steps == other%steps), "the same steps")
       do i = 1, size(quantities)
@@ -213,7 +232,111 @@ contains
          call check_text(reasons%reason(i)%message, others%reason(i)%message, "the same words")
       end do
       call check(default_threads() >= 1, "there is a thread")
-   end subroutine test_chunks_and_threads
+   end subroutine test_parts_and_threads
+
+   !> A sweep of some points, of which some make no impact
+   subroutine long_sweep(sweep)
+      !> The sweep
+      type(sweep_t), intent(out) :: sweep
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+
+      call read_case_text(case, text//sweeps//"&sweep parameter = 'sphere.radius' start = 1e-3," &
+         //" stop = 1e-2, count = 40, spacing = 'log' /", "x.nml", error)
+      call new_sweep(sweep, case, error)
+      call check(.not. allocated(error), "the sweep is built")
+   end subroutine long_sweep
+
+   !> A monitor ends a sweep; what is solved stays, and the rest can be solved
+   subroutine test_stop()
+      type(sweep_t) :: sweep
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      type(watch_t) :: watch
+      type(error_t), allocatable :: error
+      integer :: stopped, n
+
+      call long_sweep(sweep)
+      n = sweep%grid%count()
+      call new_summary(summary, n, error)
+      stops = 0
+      watch%stops_after = 2
+      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch, stopped)
+      call check(stopped == 15 .and. .not. allocated(error), "stopped")
+      call check(watch%count == count(summary%status /= point_pending), "what is finished is told")
+      call check(watch%count > 0 .and. watch%count < n, "some, not all")
+      stops = 0
+      watch%stops_after = huge(n)
+      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch, stopped)
+      call check(stopped == 0, "not stopped")
+      call check(watch%count == n .and. all(summary%status /= point_pending), "all, once")
+   end subroutine test_stop
+
+   !> A monitor that cannot keep the results ends the sweep
+   subroutine test_trouble()
+      type(sweep_t) :: sweep
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      type(watch_t) :: watch
+      type(error_t), allocatable :: error
+      integer :: n
+
+      call long_sweep(sweep)
+      n = sweep%grid%count()
+      call new_summary(summary, n, error)
+      stops = 0
+      watch%fails_after = 2
+      call solve_points(sweep, new_part(n, 1, 1), 2, summary, failures, error, watch)
+      call check(allocated(error), "failed")
+      if (allocated(error)) call check_text(error%message, "injected failure", "for that reason")
+      call check(watch%rounds == 2, "at once")
+   end subroutine test_trouble
+
+   !> Every point is in one part, the parts are of one size, and no value of a row has a part alone
+   subroutine test_parts()
+      integer, parameter :: points(*) = [1, 7, 12, 100], parts(*) = [1, 2, 3, 5, 10]
+      integer, allocatable :: owners(:)
+      type(part_t) :: part
+      integer :: i, j, n, place
+
+      do i = 1, size(points)
+         do j = 1, size(parts)
+            if (parts(j) > points(i)) cycle
+            allocate (owners(points(i)), source=0)
+            do n = 1, parts(j)
+               part = new_part(points(i), n, parts(j))
+               call check(abs(part%count() - points(i)/parts(j)) <= 1, "parts are of one size")
+               do place = 1, part%count()
+                  owners(part%point(place)) = owners(part%point(place)) + 1
+                  if (place > 1) call check(part%point(place) > part%point(place - 1), "in order")
+               end do
+            end do
+            call check(all(owners == 1), "every point is in one part")
+            deallocate (owners)
+         end do
+      end do
+      part = new_part(100, 3, 10)
+      call check(any(mod([(part%point(i), i = 1, 10)], 10) == 0) &
+         .and. any(mod([(part%point(i), i = 1, 10)], 10) == 5), "a part has all values of a row")
+   end subroutine test_parts
+
+   !> Reasons as numbers and back
+   subroutine test_packed_reasons()
+      type(failures_t) :: one, other, none, both
+
+      call one%note(8, "radius is out of range")
+      call one%note(3, "no separation within 1 s")
+      call other%note(2, "no separation within 2 s")
+      call other%note(9, "no separation within 3 s")
+      call one%note_inexact(17)
+      call both%add_packed([one%pack(), other%pack(), none%pack()])
+      call both%sort()
+      call check(both%count == 4 .and. both%reasons == 2, "four points, two reasons")
+      call check(both%reason(1)%count == 3 .and. both%reason(1)%first == 2, "three of one")
+      call check_text(both%reason(1)%message, "no separation within 2 s", "the first one's words")
+      call check_text(both%reason(2)%message, "radius is out of range", "the other")
+      call check(both%inexact == 1 .and. both%first_inexact == 17, "and one that is inexact")
+   end subroutine test_packed_reasons
 
    !> Reasons are told apart by their words, not their numbers
    subroutine test_reasons()

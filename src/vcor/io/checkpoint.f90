@@ -36,7 +36,7 @@ module vcor_io_checkpoint
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc_t, new_crc
    use vcor_case_grid, only : grid_t
-   use vcor_sweep_partition, only : part_t
+   use vcor_sweep_part, only : part_t
    use vcor_sweep_quantity, only : quantities
    use vcor_sweep_summary, only : summary_t
    implicit none

@@ -10,7 +10,7 @@ module vcor_io_identity
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
-   use vcor_sweep_partition, only : new_part, part_t
+   use vcor_sweep_part, only : new_part, part_t
    use vcor_text, only : shortened
    use vcor_version, only : version
    implicit none

@@ -11,7 +11,7 @@ module vcor_io_results
    implicit none
    private
 
-   public :: summary_table, lend_rows, take_back, history_table, unit_of
+   public :: summary_table, history_table, unit_of
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500
@@ -48,46 +48,6 @@ contains
       call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
       call add_column(table, 'status', status_label(summary%status), '', 'how the contact ended')
    end subroutine summary_table
-
-   !> Move outcomes to their table once more, to write some of its rows
-   subroutine lend_rows(table, summary, first, last)
-      !> The table, from which they were taken back
-      type(table_t), intent(inout) :: table
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-      !> First row
-      integer, intent(in) :: first
-      !> Last row
-      integer, intent(in) :: last
-
-      integer :: i
-
-      do i = 1, size(quantities)
-         call move_alloc(summary%values(i)%at, table%columns(i)%reals)
-      end do
-      call move_alloc(summary%steps, table%columns(size(quantities) + 1)%integers)
-      associate (column => table%columns(size(quantities) + 2))
-         do i = first, last
-            column%texts((i - 1)*column%width + 1:i*column%width) &
-               = status_label(summary%status(i))
-         end do
-      end associate
-   end subroutine lend_rows
-
-   !> Move outcomes from their table back
-   pure subroutine take_back(table, summary)
-      !> The table, as `summary_table` or `lend_rows` left it
-      type(table_t), intent(inout) :: table
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-
-      integer :: i
-
-      do i = 1, size(quantities)
-         call move_alloc(table%columns(i)%reals, summary%values(i)%at)
-      end do
-      call move_alloc(table%columns(size(quantities) + 1)%integers, summary%steps)
-   end subroutine take_back
 
    !> Unit as tables have it
    pure function unit_of(unit) result(name)

@@ -1,6 +1,7 @@
 !> Points without a result, grouped by the reason, and those whose result is not what was asked for
 module vcor_sweep_failures
    use vcor_kinds, only : wp
+   use vcor_sweep_mpi, only : numbers_of, text_of
    implicit none
    private
 
@@ -111,8 +112,8 @@ contains
       end associate
    end subroutine note_points
 
-   !> All reasons as numbers: inexact points, the first of them, number of reasons, then for each
-   !> count, first point, letters, text
+   !> All reasons as numbers: for each count, first point, numbers of its text, text; that of inexact
+   !> points has no text
    pure function pack_reasons(self) result(numbers)
       !> The reasons
       class(failures_t), intent(in) :: self
@@ -121,49 +122,36 @@ contains
 
       integer :: i
 
-      numbers = [real(self%inexact, wp), real(self%first_inexact, wp), real(self%reasons, wp)]
+      numbers = real([self%inexact, self%first_inexact, 0], wp)
       do i = 1, self%reasons
-         associate (reason => self%reason(i))
-            numbers = [numbers, real(reason%count, wp), real(reason%first, wp), &
-               real(len(reason%message), wp), &
-               transfer(reason%message//repeat(' ', padding(len(reason%message))), [0.0_wp])]
+         associate (reason => self%reason(i), text => numbers_of(self%reason(i)%message))
+            numbers = [numbers, real([reason%count, reason%first, size(text)], wp), text]
          end associate
       end do
    end function pack_reasons
-
-   !> Blanks that make a text fill whole numbers
-   pure function padding(length) result(blanks)
-      !> Letters of the text
-      integer, intent(in) :: length
-      !> Number of blanks
-      integer :: blanks
-
-      integer, parameter :: bytes = storage_size(1.0_wp)/8
-
-      blanks = modulo(-length, bytes)
-   end function padding
 
    !> Add reasons from numbers
    pure subroutine add_packed(self, numbers)
       !> The reasons
       class(failures_t), intent(inout) :: self
-      !> Numbers, as `pack` made them, shape (n)
+      !> Numbers, as `pack` made them, any number of times, shape (n)
       real(wp), intent(in) :: numbers(:)
 
-      character(len=:), allocatable :: message
-      integer :: i, at, length
+      integer :: at, count, first, length
 
-      call note_inexact_points(self, nint(numbers(1)), nint(numbers(2)))
-      at = 3
-      do i = 1, nint(numbers(3))
+      at = 0
+      do while (at < size(numbers))
+         count = nint(numbers(at + 1))
+         first = nint(numbers(at + 2))
          length = nint(numbers(at + 3))
-         message = repeat(' ', length)
-         message = transfer(numbers(at + 4:), message)
-         call note_points(self, nint(numbers(at + 1)), nint(numbers(at + 2)), message)
-         at = at + 3 + (length + padding(length))*8/storage_size(1.0_wp)
+         if (length == 0) then
+            call note_inexact_points(self, count, first)
+         else
+            call note_points(self, count, first, trim(text_of(numbers(at + 4:at + 3 + length))))
+         end if
+         at = at + 3 + length
       end do
    end subroutine add_packed
-
    !> Order the reasons by their first point
    pure subroutine sort(self)
       !> The reasons

@@ -1,221 +1,268 @@
-!> The points of a sweep, or of a part of it, as a task of all ranks and their threads
+!> The points of a sweep, or of a part of it, solved by all ranks and their threads
+!>
+!> The work goes in rounds. In a round each rank solves its part of the next points, the first rank
+!> takes the outcomes of all, and all agree on how long the next round is and whether there is one.
+!> Outcomes are kept by the place of their point, so they are the same bits for any number of ranks
+!> and threads.
 module vcor_sweep_points
+   use, intrinsic :: iso_fortran_env, only : int64
+!$ use omp_lib, only : omp_get_max_threads
    use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking
    use vcor_kinds, only : wp
-   use vcor_impact_trajectory, only : contact_lasting, contact_sticking
-   use vcor_sweep_aside, only : aside_t
    use vcor_sweep_failures, only : failures_t
-   use vcor_sweep_monitor, only : monitor_t
-   use vcor_sweep_mpi, only : rank_count
-   use vcor_sweep_partition, only : new_todo, part_t, todo_t
-   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending
-   use vcor_sweep_summary, only : new_summary, numbers_per_point, summary_t
-   use vcor_sweep_sweep, only : lacking, solve_points, sweep_t
-   use vcor_sweep_team, only : task_t, work_together
+   use vcor_sweep_mpi, only : gathered, largest, of_first, rank_count, this_rank
+   use vcor_sweep_part, only : new_part, part_t
+   use vcor_sweep_quantity, only : point_pending
+   use vcor_sweep_summary, only : numbers_per_point, row_of, status_place, summary_t
+   use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
    implicit none
    private
 
-   public :: solve_part
+   public :: solve_points, monitor_t, default_threads, most_threads
 
-   !> Outcomes that the first rank has to keep
-   type, extends(aside_t) :: keeping_t
-      !> First place
-      integer :: first = 0
-      !> Last place
-      integer :: last = 0
-      !> Outcomes of these places as `solve` made them, shape (n); not allocated: there are none
-      real(wp), allocatable :: result(:)
-      !> Where they are kept, all places of the part
-      type(summary_t), pointer :: summary => null()
-      !> What has no result and why
-      type(failures_t), pointer :: failures => null()
-      !> Who watches
-      class(monitor_t), pointer :: monitor => null()
-      !> What ends the sweep
-      type(error_t), allocatable :: error
-   contains
-      !> Keep them
-      procedure :: run
-   end type keeping_t
+   !> Most threads that can be asked for
+   integer, parameter :: most_threads = 1024
+   !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
+   !> and threads wait for each other at its end
+   real(wp), parameter :: round_time = 0.2_wp
+   !> Fewest points of a round for each thread: so many of them end at about the same time
+   integer, parameter :: fewest = 4
+   !> How much longer than the one before a round may be
+   integer, parameter :: growth = 4
+   !> Most points that a thread takes at a time
+   integer, parameter :: longest_chunk = 16
 
-   !> Points as a task
-   type, extends(task_t) :: points_t
-      !> The sweep
-      type(sweep_t), pointer :: sweep => null()
-      !> Part of its points
-      type(part_t) :: part
-      !> Threads of this rank
-      integer :: threads = 1
-      !> What is to be kept, on the first rank
-      type(keeping_t) :: keeping
-      !> Whether a thread keeps outcomes while others solve the next ones: where there are threads,
-      !> and no other ranks that wait for this one
-      logical :: overlaps = .false.
+   !> Who watches a sweep: keeps what is finished, shows how far it is, says when to stop
+   type, abstract :: monitor_t
    contains
-      !> Solve places
-      procedure :: solve
-      !> Take their outcomes
-      procedure :: take
-      !> Whether to stop
-      procedure :: stop_code
-   end type points_t
+      !> Points are finished
+      procedure(finished_i), deferred :: finished
+      !> Whether the sweep has to stop
+      procedure(stop_code_i), deferred, nopass :: stop_code
+   end type monitor_t
+
+   abstract interface
+      !> Points are finished; called on the first rank only
+      subroutine finished_i(self, first, last, count, summary, error)
+         import :: error_t, monitor_t, summary_t
+         !> The watch
+         class(monitor_t), intent(inout) :: self
+         !> First place that may have changed
+         integer, intent(in) :: first
+         !> Last place that may have changed
+         integer, intent(in) :: last
+         !> Number of points between them that are new
+         integer, intent(in) :: count
+         !> Outcomes of all places
+         type(summary_t), intent(inout) :: summary
+         !> What ends the sweep: its results cannot be kept, say; unallocated on success
+         type(error_t), allocatable, intent(out) :: error
+      end subroutine finished_i
+
+      !> Whether the sweep has to stop, after the points that are at work
+      function stop_code_i() result(code)
+         !> 0 to go on; whatever else is handed to who has begun the sweep
+         integer :: code
+      end function stop_code_i
+   end interface
 
 contains
 
+   !> Threads where none are asked for: the cores that the process may use, or what the environment
+   !> variable OMP_NUM_THREADS says
+   function default_threads() result(threads)
+      !> Number, at least 1; without OpenMP 1
+      integer :: threads
+
+      threads = 1
+!$    threads = min(omp_get_max_threads(), most_threads)
+   end function default_threads
+
    !> Solve what is pending of a part of a sweep; all ranks call this
-   !>
-   !> Reasons are not kept in files. A failure that comes from there is solved once more for its
-   !> reason: the status stays, since the same point gives the same bits.
-   subroutine solve_part(sweep, part, threads, monitor, summary, failures, stopped, error)
+   subroutine solve_points(sweep, part, threads, summary, failures, error, monitor, stopped)
       !> The sweep
-      type(sweep_t), intent(in), target :: sweep
+      type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part
-      !> Threads of this rank, > 0
+      !> Threads of this rank, > 0; without OpenMP there is one
       integer, intent(in) :: threads
-      !> Who watches
-      class(monitor_t), intent(inout), target :: monitor
       !> Outcomes of all places of the part, those that are there already included; on the first
       !> rank
-      type(summary_t), intent(inout), target :: summary
+      type(summary_t), intent(inout) :: summary
       !> What points have no result and why; on the first rank
-      type(failures_t), intent(out), target :: failures
-      !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
-      integer, intent(out) :: stopped
-      !> What ended the sweep; unallocated on success
+      type(failures_t), intent(out) :: failures
+      !> What ended the sweep; unallocated on success. Ranks may have different ones
       type(error_t), allocatable, intent(out) :: error
+      !> Who watches, if anyone
+      class(monitor_t), intent(inout), optional :: monitor
+      !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
+      integer, intent(out), optional :: stopped
 
-      type(points_t) :: task
-      type(todo_t) :: todo
-      integer :: i
+      integer, allocatable :: pending(:)
+      real(wp), allocatable :: numbers(:)
+      real(wp) :: start
+      integer :: agreed(3), done, length, i
 
-      task%sweep => sweep
-      task%part = part
-      task%threads = threads
-      task%least = 2*threads
-      if (threads == 1) task%least = 1
-      task%overlaps = threads > 1 .and. rank_count() == 1
-      task%keeping%summary => summary
-      task%keeping%failures => failures
-      task%keeping%monitor => monitor
-      if (allocated(summary%status)) then
-         do i = 1, size(summary%status)
+      pending = [integer ::]
+      if (this_rank() == 0) then
+         pending = pack([(i, i=1, part%count())], summary%status == point_pending)
+         do i = 1, part%count()
             if (any(summary%status(i) == [contact_lasting, contact_sticking])) &
                call failures%note(part%point(i), lacking(summary%status(i)))
          end do
-         call new_todo(todo, .not. (summary%status == point_pending &
-            .or. summary%status == point_invalid .or. summary%status == point_failed))
       end if
-      call work_together(task, todo, stopped, error)
-      if (.not. allocated(error)) then
-         call task%keeping%run()
-         call move_alloc(task%keeping%error, error)
-      end if
-      call failures%sort()
-   end subroutine solve_part
-
-   !> Solve places
-   subroutine solve(self, first, last, result, error)
-      !> The points
-      class(points_t), intent(inout) :: self
-      !> First place
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
-      !> Outcomes, then what has none and why, shape (n)
-      real(wp), allocatable, intent(out) :: result(:)
-      !> Error of code `error_internal` if there is not enough memory; unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(summary_t) :: summary
-      type(failures_t) :: failures
-      integer :: n
-
-      n = last - first + 1
-      call new_summary(summary, n, error, before=first - 1)
-      if (allocated(error)) return
-      if (self%overlaps) then
-         call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part, &
-            self%keeping)
-         call move_alloc(self%keeping%error, error)
-         if (allocated(error)) return
+      pending = of_first(pending)
+      done = 0
+      length = fewest*threads*rank_count()
+      do
+         ! the first rank's length, and any rank's wish to stop
+         agreed = [merge(length, 0, this_rank() == 0), stop_code(monitor), &
+            merge(1, 0, allocated(error))]
+         agreed = largest(agreed)
+         if (done == size(pending) .or. any(agreed(2:) /= 0)) exit
+         start = clock()
+         length = min(agreed(1), size(pending) - done)
+         call solve_round(sweep, part, pending(done + 1:done + length), threads, summary, &
+            failures, error, monitor)
+         done = done + length
+         length = max(fewest*threads*rank_count(), min(growth*length, &
+            int(real(length, wp)*round_time/max(clock() - start, epsilon(start)))))
+      end do
+      if (agreed(3) /= 0) return
+      if (this_rank() > 0) then
+         numbers = failures%pack()
       else
-         call solve_points(self%sweep, first, last, self%threads, summary, failures, self%part)
+         allocate (numbers(0))
       end if
-      associate (reasons => failures%pack())
-         allocate (result(n*numbers_per_point + size(reasons)))
-         result(n*numbers_per_point + 1:) = reasons
-      end associate
-      call pack_into(result)
-
-   contains
-
-      !> Outcomes as the first of so many numbers
-      subroutine pack_into(numbers)
-         !> Numbers, by point and quantity
-         real(wp), intent(inout) :: numbers(n, numbers_per_point)
-
-         call summary%pack(numbers)
-      end subroutine pack_into
-   end subroutine solve
-
-   !> Take the outcomes of places; with threads they are kept along with the next ones at work
-   subroutine take(self, first, last, result, error)
-      !> The points
-      class(points_t), intent(inout) :: self
-      !> First place
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
-      !> Outcomes, as `solve` made them, shape (n)
-      real(wp), intent(in) :: result(:)
-      !> What ends the sweep; unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      self%keeping%first = first
-      self%keeping%last = last
-      self%keeping%result = result
-      if (self%overlaps) return
-      call self%keeping%run()
-      call move_alloc(self%keeping%error, error)
-   end subroutine take
-
-   !> Keep outcomes
-   subroutine run(self)
-      !> The outcomes; none afterwards
-      class(keeping_t), intent(inout) :: self
-
-      integer :: n
-
-      if (.not. allocated(self%result)) return
-      n = self%last - self%first + 1
-      call unpack_from(self%result)
-      ! other threads may be noting theirs: one at a time, see vcor_sweep_sweep
-!$omp critical (vcor_failures)
-      call self%failures%add_packed(self%result(n*numbers_per_point + 1:))
-!$omp end critical (vcor_failures)
-      call self%monitor%finished(self%first, self%last, self%summary, self%error)
-      deallocate (self%result)
-
-   contains
-
-      !> Outcomes from the first of so many numbers
-      subroutine unpack_from(numbers)
-         !> Numbers, by point and quantity
-         real(wp), intent(in) :: numbers(n, numbers_per_point)
-
-         call self%summary%unpack(self%first, numbers)
-      end subroutine unpack_from
-   end subroutine run
+      numbers = gathered(numbers)
+      call failures%add_packed(numbers)
+      call failures%sort()
+      if (.not. present(stopped)) return
+      stopped = agreed(2)
+      ! what came too late to end anything
+      if (this_rank() == 0) then
+         if (.not. any(summary%status == point_pending)) stopped = 0
+      end if
+   end subroutine solve_points
 
    !> Whether to stop
-   function stop_code(self) result(code)
-      !> The points
-      class(points_t), intent(in) :: self
+   function stop_code(monitor) result(code)
+      !> Who watches, if anyone
+      class(monitor_t), intent(in), optional :: monitor
       !> 0 to go on
       integer :: code
 
-      code = self%keeping%monitor%stop_code()
+      code = 0
+      if (present(monitor)) code = monitor%stop_code()
    end function stop_code
+
+   !> Solve the points of a round: this rank its part of them
+   subroutine solve_round(sweep, part, places, threads, summary, failures, error, monitor)
+      !> The sweep
+      type(sweep_t), intent(in) :: sweep
+      !> Part of its points
+      type(part_t), intent(in) :: part
+      !> Places of the points of the round
+      integer, intent(in) :: places(:)
+      !> Threads of this rank
+      integer, intent(in) :: threads
+      !> Outcomes of all places; on the first rank
+      type(summary_t), intent(inout) :: summary
+      !> What points have no result and why
+      type(failures_t), intent(inout) :: failures
+      !> What ends the sweep; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> Who watches, if anyone
+      class(monitor_t), intent(inout), optional :: monitor
+
+      type(part_t) :: own
+      real(wp), allocatable :: rows(:, :), numbers(:)
+      integer :: team, chunk, count, i, j, k
+
+      own = new_part(size(places), this_rank() + 1, rank_count())
+      allocate (rows(numbers_per_point, own%count()))
+      team = max(1, min(threads, own%count()))
+      ! short enough that all threads end at about the same time
+      chunk = max(1, min(longest_chunk, own%count()/(8*team)))
+!$omp parallel default(none) num_threads(team) &
+!$omp shared(sweep, part, own, places, chunk, rows, failures, monitor)
+      call work_off(sweep, part, own, places, chunk, rows, failures, monitor)
+!$omp end parallel
+      numbers = gathered(reshape(rows, [size(rows)]))
+      if (this_rank() > 0) return
+      count = 0
+      k = 0
+      do i = 1, rank_count()
+         own = new_part(size(places), i, rank_count())
+         do j = 1, own%count()
+            call summary%put(places(own%point(j)), numbers(k + 1:k + numbers_per_point))
+            if (nint(numbers(k + status_place)) /= point_pending) count = count + 1
+            k = k + numbers_per_point
+         end do
+      end do
+      if (present(monitor)) call monitor%finished(places(1), places(size(places)), count, &
+         summary, error)
+   end subroutine solve_round
+
+   !> What one thread of a team does
+   subroutine work_off(sweep, part, own, places, chunk, rows, failures, monitor)
+      !> The sweep
+      type(sweep_t), intent(in) :: sweep
+      !> Part of its points
+      type(part_t), intent(in) :: part
+      !> Part of the round that this rank solves
+      type(part_t), intent(in) :: own
+      !> Places of the points of the round
+      integer, intent(in) :: places(:)
+      !> Points that a thread takes at a time
+      integer, intent(in) :: chunk
+      !> Outcomes as numbers, a column for each point of `own`
+      real(wp), intent(inout) :: rows(:, :)
+      !> What points have no result and why
+      type(failures_t), intent(inout) :: failures
+      !> Who watches, if anyone
+      class(monitor_t), intent(in), optional :: monitor
+
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      integer :: i, point
+
+!$omp do schedule(dynamic, chunk)
+      do i = 1, size(rows, 2)
+         if (stop_code(monitor) /= 0) then
+            outcome%status = point_pending
+            rows(:, i) = row_of(outcome)
+            cycle
+         end if
+         point = part%point(places(own%point(i)))
+         call solve_point(sweep, point, worker, outcome, error)
+         rows(:, i) = row_of(outcome)
+         if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
+!$omp critical (vcor_failures)
+         if (outcome%status == contact_separated) then
+            call failures%note_inexact(point)
+         else if (allocated(error)) then
+            call failures%note(point, error%message)
+         else
+            call failures%note(point, lacking(outcome%status))
+         end if
+!$omp end critical (vcor_failures)
+      end do
+!$omp end do
+   end subroutine work_off
+
+   !> Time by the clock on the wall
+   function clock() result(time)
+      !> Time since some moment [s]
+      real(wp) :: time
+
+      integer(int64) :: count, rate
+
+      call system_clock(count, rate)
+      time = real(count, wp)/real(rate, wp)
+   end function clock
 
 end module vcor_sweep_points

@@ -9,10 +9,12 @@ module vcor_sweep_summary
    implicit none
    private
 
-   public :: summary_t, new_summary, numbers_per_point
+   public :: summary_t, new_summary, row_of, numbers_per_point, status_place
 
    !> Numbers that an outcome is packed into
    integer, parameter :: numbers_per_point = size(quantities) + 2
+   !> Place of the status among them
+   integer, parameter :: status_place = numbers_per_point
 
    !> Values of one quantity
    type :: values_t
@@ -23,8 +25,6 @@ module vcor_sweep_summary
 
    !> Outcomes
    type :: summary_t
-      !> Places before the first one that is kept here
-      integer :: before = 0
       !> Quantities, in the order of `quantities`
       type(values_t) :: values(size(quantities))
       !> Time steps, shape (points)
@@ -34,31 +34,23 @@ module vcor_sweep_summary
    contains
       !> Keep the outcome of a point
       procedure :: put
-      !> All outcomes as numbers
-      procedure :: pack => pack_outcomes
-      !> Take outcomes from numbers
-      procedure :: unpack => unpack_outcomes
       !> NaN for the values of pending points
       procedure :: blank_pending
    end type summary_t
 
 contains
 
-   !> Make room; all points are pending. Their values are not touched: to fill those of a million
-   !> takes longer than to solve ten thousand, and the other ranks wait for it
-   subroutine new_summary(self, points, error, before)
+   !> Make room; all points are pending, and have no values yet
+   subroutine new_summary(self, points, error)
       !> The summary
       type(summary_t), intent(out) :: self
       !> Number of points
       integer, intent(in) :: points
       !> Error of code `error_file` if there is not enough memory, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Places before the first one; 0 if it is not given
-      integer, intent(in), optional :: before
 
       integer :: i, status
 
-      if (present(before)) self%before = before
       allocate (self%steps(points), stat=status)
       if (status == 0) allocate (self%status(points), stat=status)
       do i = 1, size(quantities)
@@ -84,61 +76,32 @@ contains
       end do
    end subroutine blank_pending
 
-   !> Keep the outcome of a point. Points that differ may be put at the same time
-   pure subroutine put(self, point, outcome)
+   !> An outcome as numbers
+   pure function row_of(outcome) result(row)
+      !> The outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Quantities, steps, status
+      real(wp) :: row(numbers_per_point)
+
+      row = [quantity_values(outcome), real([outcome%steps, outcome%status], wp)]
+   end function row_of
+
+   !> Keep the outcome of a point
+   pure subroutine put(self, place, row)
       !> The summary
       class(summary_t), intent(inout) :: self
-      !> Its place: its number where all points of a sweep are kept, > `before`
-      integer, intent(in) :: point
-      !> Its outcome
-      type(outcome_t), intent(in) :: outcome
-
-      real(wp) :: values(size(quantities))
-      integer :: i, place
-
-      place = point - self%before
-      values = quantity_values(outcome)
-      do i = 1, size(quantities)
-         self%values(i)%at(place) = values(i)
-      end do
-      self%steps(place) = outcome%steps
-      self%status(place) = outcome%status
-   end subroutine put
-
-   !> All outcomes as numbers
-   pure subroutine pack_outcomes(self, numbers)
-      !> The summary
-      class(summary_t), intent(in) :: self
-      !> Numbers, shape (points, numbers_per_point)
-      real(wp), intent(out) :: numbers(:, :)
+      !> Its place
+      integer, intent(in) :: place
+      !> The outcome as numbers, as `row_of` made them
+      real(wp), intent(in) :: row(numbers_per_point)
 
       integer :: i
 
       do i = 1, size(quantities)
-         numbers(:, i) = self%values(i)%at
+         self%values(i)%at(place) = row(i)
       end do
-      numbers(:, size(quantities) + 1) = real(self%steps, wp)
-      numbers(:, size(quantities) + 2) = real(self%status, wp)
-   end subroutine pack_outcomes
-
-   !> Take outcomes from numbers
-   pure subroutine unpack_outcomes(self, first, numbers)
-      !> The summary
-      class(summary_t), intent(inout) :: self
-      !> Place of the first of them, > `before`
-      integer, intent(in) :: first
-      !> Numbers, as `pack` made them, shape (points, numbers_per_point)
-      real(wp), intent(in) :: numbers(:, :)
-
-      integer :: i, a, b
-
-      a = first - self%before
-      b = a + size(numbers, 1) - 1
-      do i = 1, size(quantities)
-         self%values(i)%at(a:b) = numbers(:, i)
-      end do
-      self%steps(a:b) = nint(numbers(:, size(quantities) + 1))
-      self%status(a:b) = nint(numbers(:, size(quantities) + 2))
-   end subroutine unpack_outcomes
+      self%steps(place) = nint(row(status_place - 1))
+      self%status(place) = nint(row(status_place))
+   end subroutine put
 
 end module vcor_sweep_summary

@@ -13,31 +13,21 @@ module vcor_sweep_sweep
    use vcor_error, only : error_input, error_internal, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
-      trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_sweep_aside, only : aside_t
    use vcor_case_axes, only : new_grid
    use vcor_case_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
    use vcor_case_build, only : locate
    use vcor_case_case, only : case_t
-   use vcor_sweep_failures, only : failures_t
    use vcor_case_grid, only : grid_t
    use vcor_case_interval, only : contains_number, interval_t
    use vcor_case_catalogue, only : catalogue, row_for_model, wanted
-   use vcor_sweep_partition, only : new_part, part_t
    use vcor_sweep_quantity, only : point_failed, point_invalid
-   use vcor_sweep_summary, only : summary_t
    implicit none
    private
 
-   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, solve_points, &
-      lacking
-
-   !> Most points that a thread takes at a time: a line of the cache has eight numbers, and what a
-   !> thread waits for another at the end is half of them on average
-   integer, parameter :: longest_chunk = 16
+   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, lacking
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t
@@ -235,110 +225,6 @@ contains
          call new_solver(worker%solver, new, error)
       end associate
    end subroutine prepare_solver
-
-   !> Solve points of a sweep, by several threads
-   subroutine solve_points(self, first, last, threads, summary, failures, part, aside)
-      !> The sweep
-      type(sweep_t), intent(in) :: self
-      !> First point; with `part`, first place in it
-      integer, intent(in) :: first
-      !> Last point; with `part`, last place in it
-      integer, intent(in) :: last
-      !> Number of threads, > 0; without OpenMP there is one
-      integer, intent(in) :: threads
-      !> Outcomes of the points of the sweep or its part, or of some places that include these
-      type(summary_t), intent(inout) :: summary
-      !> What points have no result, and why
-      type(failures_t), intent(inout) :: failures
-      !> Part of the sweep; all of it where there is none
-      type(part_t), intent(in), optional :: part
-      !> What one of the threads does first
-      class(aside_t), intent(inout), optional :: aside
-
-      type(part_t) :: places
-      integer :: team
-
-      places = new_part(self%grid%count(), 1, 1)
-      if (present(part)) places = part
-      team = max(1, min(threads, last - first + 1))
-!$omp parallel default(none) shared(self, places, first, last, team, summary, failures, aside) &
-!$omp num_threads(team)
-!$omp single
-      if (present(aside)) call aside%run()
-!$omp end single nowait
-      call work_off(self, places, first, last, team, summary, failures)
-!$omp end parallel
-      call failures%sort()
-   end subroutine solve_points
-
-   !> What one thread of a team does: chunk after chunk of the places, as long as there are any
-   subroutine work_off(self, part, first, last, team, summary, failures)
-      !> The sweep
-      type(sweep_t), intent(in) :: self
-      !> Part of the sweep
-      type(part_t), intent(in) :: part
-      !> First place of the team
-      integer, intent(in) :: first
-      !> Last place of the team
-      integer, intent(in) :: last
-      !> Number of threads of the team
-      integer, intent(in) :: team
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-      !> What points have no result, and why
-      type(failures_t), intent(inout) :: failures
-
-      type(worker_t) :: worker
-      integer :: chunk, length, start
-
-      ! short enough that all threads end at about the same time
-      length = max(1, min(longest_chunk, (last - first + 1)/(8*team)))
-!$omp do schedule(dynamic)
-      do chunk = 0, (last - first)/length
-         start = first + chunk*length
-         call solve_chunk(self, part, start, min(last, start + length - 1), worker, summary, &
-            failures)
-      end do
-!$omp end do
-   end subroutine work_off
-
-   !> Solve points one after the other
-   subroutine solve_chunk(self, part, first, last, worker, summary, failures)
-      !> The sweep
-      type(sweep_t), intent(in) :: self
-      !> Part of the sweep
-      type(part_t), intent(in) :: part
-      !> First place
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
-      !> What the thread works with
-      type(worker_t), intent(inout) :: worker
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-      !> What points have no result, and why
-      type(failures_t), intent(inout) :: failures
-
-      type(outcome_t) :: outcome
-      type(error_t), allocatable :: error
-      integer :: place, point
-
-      do place = first, last
-         point = part%point(place)
-         call solve_point(self, point, worker, outcome, error)
-         call summary%put(place, outcome)
-         if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
-!$omp critical (vcor_failures)
-         if (outcome%status == contact_separated) then
-            call failures%note_inexact(point)
-         else if (allocated(error)) then
-            call failures%note(point, error%message)
-         else
-            call failures%note(point, lacking(outcome%status))
-         end if
-!$omp end critical (vcor_failures)
-      end do
-   end subroutine solve_chunk
 
    !> Why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)
