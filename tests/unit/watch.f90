@@ -9,7 +9,7 @@ module vcor_test_watch
    public :: watch_t, stops
 
    !> Code that ends the sweep
-   integer, save :: stops = 0
+   integer :: stops = 0
 
    !> The watch
    type, extends(monitor_t) :: watch_t

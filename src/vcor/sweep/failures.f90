@@ -112,8 +112,8 @@ contains
       end associate
    end subroutine note_points
 
-   !> All reasons as numbers: for each count, first point, numbers of its text, text; that of inexact
-   !> points has no text
+   !> All reasons as numbers: for each count, first point, numbers of its text, text; that of
+   !> inexact points has no text
    pure function pack_reasons(self) result(numbers)
       !> The reasons
       class(failures_t), intent(in) :: self

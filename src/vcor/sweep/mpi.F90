@@ -1,7 +1,7 @@
 !> Ranks, the only module that knows of MPI
 !>
-!> Built with the macro `VCOR_MPI` there is MPI, without it there is one rank. All ranks call the same
-!> procedures in the same order; only the thread that called `join_ranks` calls any of them.
+!> Built with the macro `VCOR_MPI` there is MPI, without it there is one rank. All ranks call the
+!> same procedures in the same order; only the thread that called `join_ranks` calls any of them.
 module vcor_sweep_mpi
 #ifdef VCOR_MPI
    use mpi_f08, only : mpi_allreduce, mpi_bcast, mpi_comm_rank, mpi_comm_size, mpi_comm_world, &
@@ -126,8 +126,8 @@ contains
 
    !> An error of one rank becomes that of all: that of the lowest rank that has one
    subroutine share_error(error)
-      !> Error of this rank; on return that of all, or unallocated if no rank has one. Its message is
-      !> known to the first rank
+      !> Error of this rank; on return that of all, or unallocated if no rank has one. Its message
+      !> is known to the first rank
       type(error_t), allocatable, intent(inout) :: error
 
       ! more than the largest code

@@ -1,9 +1,9 @@
 !> A part of a list of points: what a shard of a sweep solves, and what a rank solves of a round
 !>
-!> Part I of N has one of each N points that follow one another: the I-th of the first N, the next of
-!> the next N, and so on around. So all parts take about the same time, whatever is swept and wherever
-!> its impacts are slowest. (Always the I-th would be the same value of the last parameter where N
-!> points make a row of the grid.) Within its part a point has a place.
+!> Part I of N has one of each N points that follow one another: the I-th of the first N, the next
+!> of the next N, and so on around. So all parts take about the same time, whatever is swept and
+!> wherever its impacts are slowest. (Always the I-th would be the same value of the last parameter
+!> where N points make a row of the grid.) Within its part a point has a place.
 module vcor_sweep_part
    implicit none
    private
