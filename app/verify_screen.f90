@@ -103,7 +103,7 @@ contains
 
       waves = 'waves'
       law = 'law'
-      text = '  what the choice of model is worth; * that of the case'//nl &
+      text = '  effect of the choice of model; * marks that of the case'//nl &
          //'  '//waves//'  '//law//right('cor', 16)//right('cor_sphere', 16) &
          //right('contact_time [s]', 18)//right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
