@@ -4,15 +4,13 @@ program test_numeric
    use vcor_constants, only : pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : collocation_t, linear, new_collocation, panel_map_t, &
-      width
    use vcor_numeric_crc, only : crc_t, new_crc
    use vcor_numeric_dot, only : dot
    use vcor_numeric_legendre, only : gauss_nodes, legendre, radau_nodes
-   use vcor_numeric_linear, only : apply, invert
-   use vcor_numeric_pairs, only : ratio, times
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
-   use vcor_numeric_settling, only : new_settling, settling_t
+   use vcor_numeric_radau_algebra, only : apply, invert, ratio, times, width
+   use vcor_numeric_radau_collocation, only : collocation_t, linear, new_collocation, panel_map_t
+   use vcor_numeric_radau_settling, only : new_settling, settling_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : random_t, success
    implicit none

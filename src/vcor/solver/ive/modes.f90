@@ -5,17 +5,15 @@
 !> p = (1 + l_k H)^-1 (u - u_n + p_n) with the integration matrix H of the panel, known through its
 !> eigenvalues. A kernel may have a hundred modes: the loops over the eigenvalues are the innermost
 !> ones, which the compiler turns into vector instructions.
-module vcor_solver_modes
-   use vcor_impact_problem, only : hertz
+module vcor_solver_ive_modes
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : pairs, panel_map_t, width
-   use vcor_numeric_linear, only : apply
-   use vcor_numeric_pairs, only : constant, ratio, times
+   use vcor_numeric_radau_algebra, only : apply, constant, pairs, times, width
+   use vcor_numeric_radau_collocation, only : panel_map_t
    implicit none
    private
 
-   public :: modes_t, start_t, resolve, resolve_contact, advance_lags
+   public :: modes_t, resolve, advance_lags
 
    !> Sums of exponentials that the hereditary integrals of an impact are made of
    type :: modes_t
@@ -25,28 +23,6 @@ module vcor_solver_modes
       !> without terms for other plates
       type(exponential_sum_t) :: plate
    end type modes_t
-
-   !> State at the start of a panel
-   type :: start_t
-      !> Time [s]
-      real(wp) :: time = 0.0_wp
-      !> Indentation s [m]
-      real(wp) :: indentation = 0.0_wp
-      !> Force F [N]
-      real(wp) :: force = 0.0_wp
-      !> Impulse I [N s]
-      real(wp) :: impulse = 0.0_wp
-      !> Integral of the impulse J [N s2]
-      real(wp) :: second_impulse = 0.0_wp
-      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
-      real(wp) :: deflection = 0.0_wp
-      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
-      real(wp) :: drift = 0.0_wp
-      !> What the internal variables fall behind, u - q_k [m^1.5], shape (modes)
-      real(wp), allocatable :: lag(:)
-      !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate)
-      real(wp), allocatable :: p(:)
-   end type start_t
 
 contains
 
@@ -91,28 +67,6 @@ contains
       response = r
       past = times(square, c, map%left_one)
    end subroutine resolve
-
-   !> S and b of F = S (u - u_n) + b as functions of the eigenvalues of H. Stiff modes and dashpots
-   !> are given what u gains in the panel, which keeps its digits
-   pure subroutine resolve_contact(contact, start, map, lambda, stiffness, memory)
-      !> Kernel of the contact
-      type(exponential_sum_t), intent(in) :: contact
-      !> State at the start of the panel
-      type(start_t), intent(in) :: start
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Eigenvalues of H [s]
-      real(wp), intent(in) :: lambda(width)
-      !> S [N/m^1.5]
-      real(wp), intent(out) :: stiffness(width)
-      !> b, the vector of ones in it [N]
-      real(wp), intent(out) :: memory(width)
-
-      call resolve(contact, start%lag, map, lambda, stiffness, memory)
-      memory = memory + contact%equilibrium*hertz(start%indentation)*map%left_one
-      if (contact%viscosity > 0.0_wp) &
-         stiffness = stiffness + ratio(map%square, constant(contact%viscosity), lambda)
-   end subroutine resolve_contact
 
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
    !> stage for x = 0 at the start
@@ -165,4 +119,4 @@ contains
       end function at_end
    end subroutine advance_lags
 
-end module vcor_solver_modes
+end module vcor_solver_ive_modes

@@ -1,4 +1,4 @@
-!> Dense linear algebra of the size of a collocation panel
+!> Linear algebra of the size of a collocation panel: dense matrices, and functions of them
 !>
 !> For the eight equations of a panel, solved some dozen times per impact, the call of a library
 !> routine would cost more than the elimination; loops over columns of a length that the compiler
@@ -9,13 +9,24 @@
 !> Rows are not interchanged: the matrices are Jacobians of Newton's method, unit matrix plus
 !> collocation matrix, whose residuals are evaluated afresh in each iteration. That makes it an
 !> iterative refinement, to which some lost digits of the inverse do no harm.
-module vcor_numeric_linear
+!>
+!> A function of a diagonalised matrix is one number a + b j per pair of its eigenvalues, with
+!> j^2 = -1 for complex and +1 for real ones, stored as a vector: the parts without j, then those
+!> with j (`panel_map_t` of `vcor_numeric_radau_collocation`).
+module vcor_numeric_radau_algebra
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : width
    implicit none
    private
 
-   public :: invert, apply
+   public :: width, pairs
+   public :: invert, apply, constant, times, ratio
+
+   !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
+   !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
+   !> The eigenvectors' condition grows tenfold per stage; with eight, they cost four digits
+   integer, parameter :: width = 8
+   !> Number of pairs of eigenvalues of as many stages
+   integer, parameter :: pairs = width/2
 
    integer :: i_row, i_column
    !> 0 on the diagonal, 1 elsewhere
@@ -70,4 +81,57 @@ contains
       end do
    end function apply
 
-end module vcor_numeric_linear
+   !> The same real number for all pairs
+   pure function constant(value) result(c)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Vector of it
+      real(wp) :: c(width)
+
+      c(:pairs) = value
+      c(pairs + 1:) = 0.0_wp
+   end function constant
+
+   !> Products
+   pure function times(square, a, b) result(c)
+      !> j^2
+      real(wp), intent(in) :: square(pairs)
+      !> Factors
+      real(wp), intent(in) :: a(width)
+      !> Factors
+      real(wp), intent(in) :: b(width)
+      !> Products
+      real(wp) :: c(width)
+
+      integer :: i
+
+      do i = 1, pairs
+         c(i) = a(i)*b(i) + square(i)*a(pairs + i)*b(pairs + i)
+      end do
+      do i = 1, pairs
+         c(pairs + i) = a(i)*b(pairs + i) + a(pairs + i)*b(i)
+      end do
+   end function times
+
+   !> Quotients
+   pure function ratio(square, a, b) result(c)
+      !> j^2
+      real(wp), intent(in) :: square(pairs)
+      !> Numerators
+      real(wp), intent(in) :: a(width)
+      !> Denominators, the product of whose eigenvalues is not 0
+      real(wp), intent(in) :: b(width)
+      !> Quotients
+      real(wp) :: c(width)
+
+      real(wp) :: norm
+      integer :: i
+
+      do i = 1, pairs
+         norm = b(i)**2 - square(i)*b(pairs + i)**2
+         c(i) = (a(i)*b(i) - square(i)*a(pairs + i)*b(pairs + i))/norm
+         c(pairs + i) = (a(pairs + i)*b(i) - a(i)*b(pairs + i))/norm
+      end do
+   end function ratio
+
+end module vcor_numeric_radau_algebra

@@ -9,16 +9,17 @@
 !>
 !> and the condition is that N is the same integral over all the past, int_0^t k(t - x) s'(x) dx. As
 !> dF/dt1 = k(t - t1) u'(t1) and dN/dt1 = k(t - t1) s'(t1), F is a function of N with the slope
-!> dF/dN = u'/s' = 1.5 sqrt(s(t1)), which is regular where s' is zero. It goes to zero as N^1.5,
-!> where t1 gets to 0, and is continued as an odd function: as if s = v0 t1 before first contact.
-module vcor_solver_approach
-   use vcor_impact_problem, only : hertz
+!> dF/dN = du/ds at s(t1), which is regular where s' is zero. It goes to zero as u(N), where t1
+!> gets to 0, and is continued as an odd function: as if s = v0 t1 before first contact.
+module vcor_solver_ive_approach
+   use vcor_impact_law, only : contact_law_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_collocation, only : collocation_t, panel_map_t, width
-   use vcor_numeric_linear, only : apply
-   use vcor_numeric_pairs, only : constant, ratio, times
-   use vcor_solver_panel, only : panel_t
+   use vcor_numeric_radau_algebra, only : apply, constant, ratio, times, width
+   use vcor_numeric_radau_collocation, only : collocation_t
+   use vcor_solver_ive_panel, only : panel_t
+   use vcor_solver_ive_step, only : step_t
+   use vcor_solver_ive_tuning, only : closest_to_vertex, farthest_back, gone
    implicit none
    private
 
@@ -38,13 +39,13 @@ module vcor_solver_approach
       real(wp), allocatable :: past(:, :)
    end type stretch_t
 
-   !> exp(-this) is nothing
-   real(wp), parameter :: nothing = 42.0_wp
    !> Number of points of a panel
    integer, parameter :: points = width + 1
 
    !> The approach
    type :: approach_t
+      !> Contact law
+      type(contact_law_t), private :: law
       !> Time of its end, the largest indentation [s]
       real(wp) :: end = 0.0_wp
       !> w_k at its end [m], shape (modes)
@@ -76,15 +77,15 @@ module vcor_solver_approach
 contains
 
    !> Add a panel
-   subroutine add(self, rule, map, scale, contact, panel, start_rate, rate)
+   subroutine add(self, law, rule, step, contact, panel, start_rate, rate)
       !> The approach
       class(approach_t), intent(inout) :: self
+      !> Contact law
+      type(contact_law_t), intent(in) :: law
       !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Map of the panel
-      type(panel_map_t), intent(in) :: map
-      !> Scale of the map [s]
-      real(wp), intent(in) :: scale
+      !> Step of the panel
+      type(step_t), intent(in) :: step
       !> Kernel of the contact
       type(exponential_sum_t), intent(in) :: contact
       !> The panel
@@ -94,16 +95,18 @@ contains
       !> Rate of the indentation at the stages [m/s]
       real(wp), intent(in) :: rate(:)
 
-      integer, parameter :: usual = 8
+      integer, parameter :: usual_panels = 8
       type(stretch_t), allocatable :: longer(:)
       real(wp), dimension(width) :: s, u, lambda, lag
       integer :: k, stages
 
       stages = rule%stages
       if (.not. allocated(self%stretch)) then
+         self%law = law
          self%point = rule%point
          self%barycentric = rule%barycentric
-         allocate (self%stretch(usual), self%w(size(contact%rates)), self%p(size(contact%rates)))
+         allocate (self%stretch(usual_panels))
+         allocate (self%w(size(contact%rates)), self%p(size(contact%rates)))
          self%w = 0.0_wp
          self%p = 0.0_wp
          self%moduli = in_pairs(contact%moduli)
@@ -115,7 +118,7 @@ contains
       end if
       self%count = self%count + 1
       self%end = panel%time(stages)
-      associate (stretch => self%stretch(self%count))
+      associate (stretch => self%stretch(self%count), map => rule%map(step%index))
          stretch%start = panel%time(0)
          stretch%map = panel%map
          stretch%s = panel%indentation
@@ -125,8 +128,9 @@ contains
          stretch%past(:, size(self%w) + 1:) = 0.0_wp
          ! from what is gained in the panel: the modes that settle at once leave no digits of s
          s = apply(map%left, panel%indentation(1:) - panel%indentation(0))
-         u = apply(map%left, hertz(panel%indentation(1:)) - hertz(panel%indentation(0)))
-         lambda = scale*map%eigenvalue
+         call law%secants(width, panel%indentation(1:), u)
+         u = apply(map%left, panel%indentation(1:)*u - law%u(panel%indentation(0)))
+         lambda = step%map_scale()*map%eigenvalue
          do k = 1, size(self%w)
             lag = ratio(map%square, constant(1.0_wp), constant(1.0_wp) + contact%rates(k)*lambda)
             stretch%past(1, k) = self%w(k)
@@ -174,7 +178,8 @@ contains
       real(wp), intent(out) :: rate(width)
 
       real(wp) :: theta(width), basis(width, points), past(2*points)
-      real(wp) :: offset, elapsed, s, root, velocity, stiffness, n_past, f_past
+      real(wp), dimension(width) :: s, root, velocity, stiffness, n_past, f_past
+      real(wp) :: offset, elapsed
       integer :: panel(width), i, j, active
 
       theta = 0.0_wp
@@ -190,50 +195,44 @@ contains
          end associate
       end do
       basis = basis_at(self, theta)
-      condition = 0.0_wp
-      force = 0.0_wp
-      slope = 0.0_wp
-      rate = 0.0_wp
-
+      s = 0.0_wp
+      velocity = 0.0_wp
+      stiffness = equilibrium
+      n_past = 0.0_wp
+      f_past = 0.0_wp
       do i = 1, stages
          ! an iteration on its way may be anywhere
          elapsed = max(t(i) - max(t1(i), 0.0_wp), 0.0_wp)
          do active = size(self%w), 1, -1
-            if (self%rates(active)*elapsed <= nothing) exit
+            if (self%rates(active)*elapsed <= gone) exit
          end do
          associate (stretch => self%stretch(panel(i)))
-            stiffness = equilibrium
-            if (active > 0) then
-               call add_modes(active + modulo(active, 2), self%moduli, self%rates, stretch%past, &
-                  elapsed, stiffness, past)
-            else
-               past = 0.0_wp
-            end if
+            past = 0.0_wp
+            if (active > 0) call add_modes(active + modulo(active, 2), self%moduli, self%rates, &
+               stretch%past, elapsed, stiffness(i), past)
             if (t1(i) > 0.0_wp) then
-               s = 0.0_wp
-               velocity = 0.0_wp
-               n_past = 0.0_wp
-               f_past = 0.0_wp
                do j = 1, points
-                  s = s + basis(i, j)*stretch%s(j - 1)
-                  velocity = velocity + basis(i, j)*stretch%rate(j - 1)
-                  n_past = n_past + basis(i, j)*past(j)
-                  f_past = f_past + basis(i, j)*past(points + j)
+                  s(i) = s(i) + basis(i, j)*stretch%s(j - 1)
+                  velocity(i) = velocity(i) + basis(i, j)*stretch%rate(j - 1)
+                  n_past(i) = n_past(i) + basis(i, j)*past(j)
+                  f_past(i) = f_past(i) + basis(i, j)*past(points + j)
                end do
-               root = sqrt(abs(s))
-               condition(i) = equilibrium*s + n_past
-               force(i) = equilibrium*(s*root) + f_past
             else
-               velocity = stretch%rate(0)
-               s = velocity*t1(i)
-               root = sqrt(abs(s))
-               condition(i) = stiffness*s
-               force(i) = stiffness*(s*root)
+               velocity(i) = stretch%rate(0)
+               s(i) = velocity(i)*t1(i)
             end if
          end associate
-         slope(i) = 1.5_wp*root
-         rate(i) = stiffness*velocity
       end do
+      call self%law%secants(width, s, root)
+      where (t1 > 0.0_wp)
+         condition = equilibrium*s + n_past
+         force = equilibrium*(s*root) + f_past
+      else where
+         condition = stiffness*s
+         force = stiffness*(s*root)
+      end where
+      slope = self%law%exponent*root
+      rate = stiffness*velocity
    end subroutine evaluate
 
    !> What has not relaxed yet, summed over the modes
@@ -250,8 +249,8 @@ contains
       real(wp), intent(in) :: elapsed
       !> Stiffness, to which the moduli that are left are added [N/m^1.5]
       real(wp), intent(inout) :: stiffness
-      !> Sum of what is remembered
-      real(wp), intent(out) :: total(2*points)
+      !> What is remembered, to which theirs is added
+      real(wp), intent(inout) :: total(2*points)
 
       ! exponentials in one go, which spares an allocation; even
       integer, parameter :: block = 64
@@ -264,16 +263,10 @@ contains
          end do
          do k = 1, min(block, n - first), 2
             stiffness = stiffness + (share(k) + share(k + 1))
-            if (first + k == 1) then
-               do i = 1, 2*points
-                  total(i) = share(1)*past(i, 1) + share(2)*past(i, 2)
-               end do
-            else
-               do i = 1, 2*points
-                  total(i) = total(i) + (share(k)*past(i, first + k) &
-                     + share(k + 1)*past(i, first + k + 1))
-               end do
-            end if
+            do i = 1, 2*points
+               total(i) = total(i) + (share(k)*past(i, first + k) &
+                  + share(k + 1)*past(i, first + k + 1))
+            end do
          end do
       end do
    end subroutine add_modes
@@ -320,23 +313,20 @@ contains
       !> Other t1 [s], less than the end
       real(wp) :: other
 
-      ! share of the way to the vertex that is gone at most, and the longest way back over the
-      ! time of the approach
-      real(wp), parameter :: closest = 0.9_wp, farthest = 1.0e3_wp
       real(wp) :: way, whole
 
       way = self%end - t1
       whole = rate*way
       if (.not. whole > 0.0_wp) then
          other = self%end - 2.0_wp*abs(way)
-      else if (2.0_wp*change >= (1.0_wp - (1.0_wp - closest)**2)*whole) then
-         other = t1 + closest*way
-      else if (.not. t1 > 0.0_wp .or. -change > farthest*whole) then
-         other = t1 - farthest*self%end
-         if (-change < farthest*self%end*rate) other = t1 + change/rate
+      else if (2.0_wp*change >= (1.0_wp - (1.0_wp - closest_to_vertex)**2)*whole) then
+         other = t1 + closest_to_vertex*way
+      else if (.not. t1 > 0.0_wp .or. -change > farthest_back*whole) then
+         other = t1 - farthest_back*self%end
+         if (-change < farthest_back*self%end*rate) other = t1 + change/rate
       else
          other = t1 + way*(1.0_wp - sqrt(1.0_wp - 2.0_wp*change/whole))
       end if
    end function moved
 
-end module vcor_solver_approach
+end module vcor_solver_ive_approach

@@ -1,15 +1,17 @@
 !> Steps of the internal-variable method: in x = sqrt(t) next to first contact, in t beyond
-module vcor_solver_step
+module vcor_solver_ive_step
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : linear
+   use vcor_numeric_radau_collocation, only : linear
+   use vcor_solver_ive_tuning, only : owed_length
    implicit none
    private
 
-   public :: step_t, step_to
+   public :: step_t, step_to, step_of
 
    !> One step
    type :: step_t
-      !> The step in x starts at x = index*length; `linear` for a step in t
+      !> Index of its map: the step in x starts at x = index*length; `linear` for a step in t,
+      !> `closing` for one in the square root of the time that is left
       integer :: index = 0
       !> Length in x [s^0.5] or in t [s]
       real(wp) :: length = 0.0_wp
@@ -38,14 +40,22 @@ contains
       !> Step
       type(step_t) :: step
 
-      if (start > 0.0_wp) then
-         step%index = linear
-         step%length = time
-      else
-         step%index = 0
-         step%length = sqrt(time)
-      end if
+      step = step_of(merge(linear, 0, start > 0.0_wp), time)
    end function step_to
+
+   !> The step of given duration and kind
+   pure function step_of(kind, time) result(step)
+      !> Index of the map, 0 or negative
+      integer, intent(in) :: kind
+      !> Duration [s]
+      real(wp), intent(in) :: time
+      !> Step
+      type(step_t) :: step
+
+      step%index = kind
+      step%length = time
+      if (kind == 0) step%length = sqrt(time)
+   end function step_of
 
    !> Scale of the map of the panel [s]
    pure function map_scale(self) result(scale)
@@ -55,7 +65,7 @@ contains
       real(wp) :: scale
 
       scale = self%length
-      if (self%index /= linear) scale = self%length**2
+      if (self%index >= 0) scale = self%length**2
    end function map_scale
 
    !> Duration [s]
@@ -66,7 +76,7 @@ contains
       real(wp) :: duration
 
       duration = self%length
-      if (self%index /= linear) duration = self%length**2*real(2*self%index + 1, wp)
+      if (self%index >= 0) duration = self%length**2*real(2*self%index + 1, wp)
    end function duration
 
    !> Cut the step. Steps in x can only be halved, so that the next ones still start at multiples
@@ -103,7 +113,7 @@ contains
       else
          self%index = self%index + 1
          if (mod(self%index, 2) == 0 .and. &
-             (growth >= 2.0_wp .or. self%length < 0.6_wp*self%reach)) then
+             (growth >= 2.0_wp .or. self%length < owed_length*self%reach)) then
             self%index = self%index/2
             self%length = 2.0_wp*self%length
          end if
@@ -114,4 +124,4 @@ contains
       end if
    end subroutine proceed
 
-end module vcor_solver_step
+end module vcor_solver_ive_step

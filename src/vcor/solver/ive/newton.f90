@@ -1,14 +1,14 @@
 !> Newton's iteration on the equations of a panel, with the Jacobian kept while it serves
-module vcor_solver_newton
+module vcor_solver_ive_newton
    use vcor_kinds, only : wp
-   use vcor_numeric_collocation, only : width
-   use vcor_numeric_linear, only : apply, invert
+   use vcor_numeric_radau_algebra, only : apply, invert, width
+   use vcor_solver_ive_tuning, only : newton_close, newton_slow, newton_wildest
    implicit none
    private
 
    public :: newton_t, most_iterations, largest
 
-   !> Iterations after which there is no hope
+   !> Maximum iterations
    integer, parameter :: most_iterations = 40
 
    !> State of the iteration
@@ -19,9 +19,6 @@ module vcor_solver_newton
       real(wp) :: unit = 0.0_wp
       !> Correction over that which ends the iteration once it does not fall any more: rounding
       real(wp) :: noise = 0.0_wp
-      !> Share of a correction that may be left, where the way from the guess is wanted rather than
-      !> the solution
-      real(wp) :: share = 0.0_wp
       !> Size of the last correction
       real(wp) :: last = 0.0_wp
       !> Whether the equations are solved
@@ -50,10 +47,6 @@ contains
       !> Wanted error over the largest component
       real(wp), intent(in) :: tolerance
 
-      ! a Jacobian made this close contracts the error at least tenfold
-      real(wp), parameter :: close = 0.05_wp, slow = 0.1_wp
-      ! a correction over the solution that leads nowhere
-      real(wp), parameter :: wildest = 1.0e6_wp
       real(wp) :: unit, size, rate, left
       logical :: regular
 
@@ -66,19 +59,18 @@ contains
       s = s + residual
       unit = self%unit
       if (.not. unit > 0.0_wp) unit = largest(s)
-      self%failed = .not. largest(residual) < wildest*unit
+      self%failed = .not. largest(residual) < newton_wildest*unit
       if (self%failed) return
       size = largest(residual)/unit
       if (self%stale) then
          left = size*sqrt(size)
-         self%stale = size > close
+         self%stale = size > newton_close
       else
          rate = min(1.0_wp, size/self%last)
          left = size*rate/(1.0_wp - 0.5_wp*rate)
-         self%stale = rate > slow
+         self%stale = rate > newton_slow
       end if
-      self%converged = left <= max(tolerance, self%share*size) &
-         .or. size <= self%noise .and. .not. size < 0.5_wp*self%last
+      self%converged = left <= tolerance .or. size <= self%noise .and. .not. size < 0.5_wp*self%last
       self%last = size
    end subroutine correct
 
@@ -98,4 +90,4 @@ contains
       largest = max(max(half(1), half(2)), max(half(3), half(4)))
    end function largest
 
-end module vcor_solver_newton
+end module vcor_solver_ive_newton

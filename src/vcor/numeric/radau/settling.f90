@@ -17,7 +17,7 @@
 !>
 !> The powers of y come from Legendre polynomials. In one step from the values they would have
 !> errors of their own, five digits of the 16; so they have those of a polynomial next to this one.
-module vcor_numeric_settling
+module vcor_numeric_radau_settling
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
    use vcor_numeric_legendre, only : gauss_nodes, legendre
@@ -186,4 +186,4 @@ contains
       end if
    end subroutine find_moments
 
-end module vcor_numeric_settling
+end module vcor_numeric_radau_settling

@@ -12,24 +12,19 @@
 !>
 !> Radau IIA: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996),
 !> section IV.5.
-module vcor_numeric_collocation
+module vcor_numeric_radau_collocation
    use vcor_error, only : error_internal, error_t, raise
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgeev, dgesv
    use vcor_numeric_legendre, only : legendre, radau_nodes
-   use vcor_numeric_settling, only : new_settling, settling_t
+   use vcor_numeric_radau_algebra, only : pairs, width
+   use vcor_numeric_radau_settling, only : new_settling, settling_t
    implicit none
    private
 
    public :: collocation_t, panel_map_t, new_collocation
-   public :: closing, linear, width, pairs
+   public :: closing, linear
 
-   !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
-   !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
-   !> The eigenvectors' condition grows tenfold per stage; with eight, they cost four digits
-   integer, parameter :: width = 8
-   !> Number of pairs of eigenvalues of as many stages
-   integer, parameter :: pairs = width/2
    !> Index of the map of a step in t
    integer, parameter :: linear = -1
    !> Index of the map of a step in the square root of the time that is left at its end
@@ -40,8 +35,8 @@ module vcor_numeric_collocation
    !> Eigenvalues are kept as pairs a + b j and a - b j: complex ones with j^2 = -1, real ones two
    !> by two with j^2 = +1. So a function of B is one number f = a + b j per pair, stored as a
    !> vector of `width`: the parts without j, then those with j. `right` and `left` are real
-   !> matrices: f(B) u is the product of `right` with the products (those of `vcor_numeric_pairs`)
-   !> of f and the numbers `left` u
+   !> matrices: f(B) u is the product of `right` with the products, those of
+   !> `vcor_numeric_radau_algebra`, of f and the numbers `left` u
    type :: panel_map_t
       !> Linear coefficient of the map
       real(wp) :: slope = 0.0_wp
@@ -87,6 +82,8 @@ module vcor_numeric_collocation
       !> `closing` for one in sqrt(time left), shape (closing:)
       type(panel_map_t), allocatable :: map(:)
    contains
+      !> Times of the stages of a panel
+      procedure :: times
       !> Value of a polynomial given at the points
       procedure :: interpolate
       !> About the values of such a polynomial at as many arguments as a panel has stages
@@ -320,6 +317,22 @@ contains
       end do
    end function differentiation_matrix
 
+   !> Times of the stages of a panel since its start
+   pure function times(self, index, scale)
+      !> The rule
+      class(collocation_t), intent(in) :: self
+      !> Index of the map
+      integer, intent(in) :: index
+      !> Scale of the map [s]
+      real(wp), intent(in) :: scale
+      !> Times [s]
+      real(wp) :: times(width)
+
+      associate (map => self%map(index))
+         times = scale*self%node*(map%slope + map%bend*self%node)
+      end associate
+   end function times
+
    !> Value of the polynomial that takes the given values at the points
    pure function interpolate(self, value, theta) result(y)
       !> The rule
@@ -471,4 +484,4 @@ contains
       end function at
    end function crossing
 
-end module vcor_numeric_collocation
+end module vcor_numeric_radau_collocation

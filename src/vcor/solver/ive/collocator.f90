@@ -1,0 +1,95 @@
+!> The two collocation rules of the internal-variable method, that of the solution and that of its
+!> companion, and what Newton's method may leave of an error
+module vcor_solver_ive_collocator
+   use vcor_error, only : error_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : apply, width
+   use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
+   use vcor_solver_ive_tuning, only : companion_tolerance, landing_tolerance, least_tolerance, &
+      most_steps, newton_tolerance
+   implicit none
+   private
+
+   public :: collocator_t, new_collocator
+
+   !> Stages of the solution: enough that three panels make an impact, few enough that the
+   !> eigenvectors of the integration matrices cost four digits only
+   integer, parameter :: stages = width
+   !> Stages of its companion
+   integer, parameter :: fewer_stages = stages - 1
+
+   !> Collocation rules; immutable once built
+   type :: collocator_t
+      !> Rule of the panels
+      type(collocation_t) :: rule
+      !> Rule of the companion
+      type(collocation_t) :: coarse
+      !> Interpolation from the points of `rule` to the nodes of `coarse`
+      real(wp) :: to_coarse(width, 0:width) = 0.0_wp
+      !> Interpolation from the nodes of `coarse` to those of `rule`, of what is zero at the start
+      real(wp) :: from_coarse(width, width) = 0.0_wp
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> Error that Newton's method may leave in the indentation, over its largest value
+      real(wp) :: tolerance = 0.0_wp
+      !> The same at the end of a panel that is solved with the Jacobian of another one, where the
+      !> error falls slowly
+      real(wp) :: near_tolerance = 0.0_wp
+      !> The same for the companion, whose difference to the solution is wanted to two digits only
+      real(wp) :: coarse_tolerance = 0.0_wp
+   contains
+      !> Values of a polynomial at the nodes of `coarse`
+      procedure :: coarsened
+   end type collocator_t
+
+contains
+
+   !> Build the rules
+   subroutine new_collocator(self, accuracy, error)
+      !> The rules
+      type(collocator_t), intent(out) :: self
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: unit(0:stages)
+      integer :: i, j
+
+      self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
+      self%near_tolerance = max(least_tolerance, landing_tolerance*accuracy)
+      self%coarse_tolerance = max(least_tolerance, companion_tolerance*accuracy)
+      call new_collocation(self%rule, stages, most_steps, error)
+      if (allocated(error)) return
+      call new_collocation(self%coarse, fewer_stages, most_steps, error)
+      if (allocated(error)) return
+
+      do j = 0, stages
+         unit = 0.0_wp
+         unit(j) = 1.0_wp
+         do i = 1, fewer_stages
+            self%to_coarse(i, j) = self%rule%interpolate(unit, self%coarse%node(i))
+         end do
+      end do
+      do j = 1, fewer_stages
+         unit = 0.0_wp
+         unit(j) = 1.0_wp
+         do i = 1, stages
+            self%from_coarse(i, j) = self%coarse%interpolate(unit, self%rule%node(i))
+         end do
+      end do
+   end subroutine new_collocator
+
+   !> Values of a polynomial at the nodes of `coarse`
+   pure function coarsened(self, value) result(coarse)
+      !> The rules
+      class(collocator_t), intent(in) :: self
+      !> Values at the points of `rule`
+      real(wp), intent(in) :: value(0:width)
+      !> Values at the nodes of `coarse`
+      real(wp) :: coarse(width)
+
+      coarse = self%to_coarse(:, 0)*value(0) + apply(self%to_coarse(:, 1:), value(1:))
+   end function coarsened
+
+end module vcor_solver_ive_collocator

@@ -1,0 +1,459 @@
+!> The contact in the internal-variable method, from first touch to its end, or to the largest
+!> indentation where the contact recedes from there on
+!>
+!> Close to first contact the panels are steps in x = sqrt(t), in which the solution is analytic
+!> from the start, u(s) included; later, where the branch point at t = 0 has become remote, steps
+!> in t. Each is solved with eight stages and with seven by its companion, and what the two differ
+!> by decides whether the panel is accepted or halved. The last one is solved anew until it ends
+!> where the force is zero: the end of a panel is where collocation is most accurate
+!> (order 2 n - 1), and all integrals over the contact are then sums over whole panels. Towards the
+!> end of a nearly elastic contact, where s goes to zero as well and u(s) loses its derivatives, the
+!> panels shrink geometrically.
+module vcor_solver_ive_contact
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_solver_ive_approach, only : approach_t
+   use vcor_solver_ive_collocator, only : collocator_t
+   use vcor_solver_ive_course, only : course_t, share, share_of_difference
+   use vcor_solver_ive_landing, only : end_at_zero, first_without_force, land_on_largest, &
+      land_on_zero, slope_at_end
+   use vcor_solver_ive_modes, only : modes_t
+   use vcor_solver_ive_panel, only : panel_t, relative_velocity
+   use vcor_solver_ive_problem, only : new_panel_problem
+   use vcor_solver_ive_rebound, only : follow_rebound
+   use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
+   use vcor_solver_ive_step, only : step_to
+   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, first_growth_fast, &
+      first_growth_slow, first_longest, first_receding, first_receding_growth, first_short, &
+      first_slow, first_three, force_share, frozen_first, inner_allowed, inner_felt, levels_base, &
+      levels_error, most_ahead, most_steps, next_to_branch, order_at_branch, panel_share, &
+      peak_share, rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
+      share_of_growth, tolerable, usual_accuracy, usually_better
+   implicit none
+   private
+
+   public :: follow
+
+   !> Trials of panels after which it is given up
+   integer, parameter :: most_trials = 20000
+
+   !> The contact until it ends
+   type, extends(course_t) :: contact_t
+      !> Whether the contact recedes after the largest indentation, and whether that is in the panel
+      logical :: recedes = .false., turns = .false.
+      !> Rate of the indentation at the start of the panel [m/s]
+      real(wp) :: velocity = 0.0_wp
+      !> The panel before
+      type(forerunner_t) :: before
+      !> Difference of the force to that of the companion at the end of the panel [N]
+      real(wp) :: doubt = 0.0_wp
+      !> Largest force so far [N]
+      real(wp) :: largest_force = 0.0_wp
+      !> What the panel adds to the error of the impulse, and the most that one has added [-]
+      real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
+      !> What a rebound feels of the difference of the two solutions inside the panel, and the most
+      !> that it has felt [-]
+      real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
+      !> Whether the panel ends next to s = 0, and with it next to the branch point of u(s)
+      logical :: shallow = .false., branches = .false.
+      !> End of the contact that was refused [s], and panels to come before it is tried again
+      real(wp) :: end_found = 0.0_wp
+      integer :: ahead = 0
+   end type contact_t
+
+contains
+
+   !> Follow the contact with the kernel as a sum of exponentials
+   subroutine follow(collocator, impact, modes, accuracy, time_scale, end_time, ghost_end, window, &
+                     trajectory, complete, error)
+      !> The collocation
+      type(collocator_t), intent(in), target :: collocator
+      !> The impact
+      type(impact_t), intent(in), target :: impact
+      !> Modes of contact and plate
+      type(modes_t), intent(in), target :: modes
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      !> Time scale of the contact [s]
+      real(wp), intent(in) :: time_scale
+      !> End of the computation if the contact lasts [s]
+      real(wp), intent(in) :: end_time
+      !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
+      real(wp), intent(in) :: ghost_end
+      !> Time up to which the sum holds [s]
+      real(wp), intent(in) :: window
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Whether the window was long enough
+      logical, intent(out) :: complete
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(contact_t) :: contact
+      type(approach_t), target :: approach
+      integer :: trial
+
+      contact%problem = new_panel_problem(collocator, impact, modes)
+      contact%accuracy = accuracy
+      contact%time_scale = time_scale
+      contact%end_time = end_time
+      call start(contact)
+      call begin(collocator%rule, impact, trajectory)
+      complete = .true.
+      do trial = 1, most_trials
+         call solve_panel(contact, trajectory)
+         if (.not. (contact%panel%converged .and. contact%coarse%converged)) then
+            call contact%step%shorten(0.5_wp*contact%step%duration())
+            cycle
+         end if
+         call judge(contact, trajectory)
+         if (is_refused(contact)) cycle
+         call accept(contact, approach, trajectory)
+         complete = .not. contact%panel%time(contact%panel%stages) > window
+         if (.not. complete) return
+         if (is_over(contact, ghost_end, trajectory)) return
+         if (contact%turns) then
+            call turn_round(contact, approach, trajectory, error)
+            complete = .not. trajectory%state(col_time, trajectory%final) > window
+            return
+         end if
+         call go_on(contact)
+      end do
+      call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
+         //'of the contact: the accuracy asked for is out of reach')
+   end subroutine follow
+
+   !> First step: the square root of some part of the expected contact time, in x = sqrt(t)
+   subroutine start(self)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+
+      real(wp) :: reach, finer
+      logical :: continuous, signed, relaxes
+
+      associate (contact => self%problem%modes%contact, impact => self%problem%impact)
+         continuous = contact%error > 0.0_wp
+         signed = any(contact%moduli < 0.0_wp)
+         ! the noise of moduli of both signs is not to be resolved
+         if (signed) self%accuracy = max(self%accuracy, error_of_kernel*contact%error)
+         finer = self%accuracy/usual_accuracy
+         self%recedes = impact%law%receding
+         self%velocity = impact%velocity
+         self%start%alpha = impact%plate%alpha(0.0_wp)
+         allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
+         allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
+         self%coarse_start = self%start
+
+         relaxes = any(contact%rates*self%time_scale > fast)
+         if (relaxes) then
+            reach = first_short*finer**first_growth_fast
+            if (levels(self%accuracy) == 0 .and. .not. (self%recedes .or. signed)) &
+               reach = first_three
+         else if (self%recedes) then
+            reach = first_receding*first_slow*finer**first_growth_fast
+         else
+            reach = min(first_longest, first_slow*finer**first_growth_slow)
+         end if
+         if (self%recedes .and. finer < 1.0_wp) reach = reach*finer**first_receding_growth
+         self%step%reach = reach*sqrt(impact%law%contact_time*self%time_scale)
+         self%step%length = self%step%reach
+         if (continuous) self%step%length = self%step%reach*0.5_wp**levels(self%accuracy)
+         ! alpha' of a frozen plate is infinite at first contact, and enters by a quadrature
+         if (continuous .and. impact%plate%frozen()) &
+            self%step%length = frozen_first*self%step%length
+      end associate
+   end subroutine start
+
+   !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
+   !> collocation does not resolve the internal variables that settle within the step
+   pure function levels(accuracy)
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      !> Number
+      integer :: levels
+
+      levels = max(0, ceiling(log(levels_error/accuracy)/log(levels_base)))
+   end function levels
+
+   !> Solve the next panel, up to the end of the contact or the largest indentation if that is in
+   !> it, and its companion
+   subroutine solve_panel(self, trajectory)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+      !> Course up to the panel
+      type(trajectory_t), intent(in) :: trajectory
+
+      associate (problem => self%problem, rule => self%problem%collocator%rule)
+         self%last = self%start%time + self%step%duration() >= self%end_time
+         if (self%last) self%step = step_to(self%start%time, self%end_time - self%start%time)
+         call problem%guess(self%previous, self%step, self%start, self%panel)
+         call problem%solve(rule, self%step, self%start, self%panel, self%inverse)
+         self%turns = .false.
+         self%ends = .false.
+         if (self%panel%converged .and. self%recedes) then
+            self%turns = is_turning(problem%impact, self%panel)
+            if (self%turns) call land_on_largest(problem, self%start, self%velocity, self%step, &
+               self%panel, self%inverse)
+         else if (self%panel%converged .and. trajectory%status /= contact_separated) then
+            self%ends = first_without_force(self%panel) > 0
+            if (self%ends) call land_on_zero(problem, self%start, self%accuracy, &
+               shallow_end*trajectory%max_indentation, self%step, self%panel, self%inverse)
+         end if
+         if (.not. self%panel%converged) return
+         self%previous = self%panel
+         call problem%accompany(self%step, self%coarse_start, self%panel, self%inverse, &
+            self%coarse)
+      end associate
+   end subroutine solve_panel
+
+   !> Whether the indentation has begun to fall
+   pure function is_turning(impact, panel)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Whether it has
+      logical :: is_turning
+
+      integer :: j
+
+      is_turning = .false.
+      do j = 1, panel%stages
+         is_turning = relative_velocity(impact, panel, j) < 0.0_wp
+         if (is_turning) return
+      end do
+   end function is_turning
+
+   !> Error of the panel over what it may be: that of the motion, and of the force where it has its
+   !> maximum and at the end; elsewhere it is what is left of transients that the impulse does not
+   !> feel
+   subroutine judge(self, trajectory)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+      !> Course up to the panel
+      type(trajectory_t), intent(in) :: trajectory
+
+      real(wp) :: force_error, allowed
+      integer :: n
+
+      n = self%panel%stages
+      associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact, &
+                 collocator => self%problem%collocator)
+         self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
+         self%growth = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity)
+         self%excess = self%motion_error()/(panel_share*self%accuracy)
+         self%doubt = abs(panel%force(n) - coarse%force(n - 1))
+         force_error = max(0.0_wp, min(self%growth_of(panel%force, coarse%force), self%doubt) &
+            - rounding_of_force*self%largest_force)
+         allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
+         if (self%ends) then
+            ! next to u(s) = 0 both solutions err in the same direction
+            self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
+            if (self%shallow) force_error = shallow_factor*force_error
+            self%branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
+            if (self%branches) self%excess = usually_better*self%excess
+            allowed = abs(slope_at_end(collocator%rule, panel, panel%force)) &
+               *panel%time(n)*self%time_tolerance()
+         else if (.not. maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
+            allowed = force_share*allowed
+         end if
+         self%excess = max(self%excess, share(force_error, allowed))
+         if (self%recedes) then
+            ! the rebound feels the solution between the ends of the panels, too
+            self%inner = inner_felt*maxval(abs(collocator%coarsened(panel%indentation) &
+               - coarse%indentation(1:)))/(impact%velocity*self%time_scale)
+            self%excess = max(self%excess, self%inner/(inner_allowed*self%accuracy))
+         end if
+      end associate
+   end subroutine judge
+
+   !> Whether the panel is refused; it is shortened then
+   function is_refused(self)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+      !> Whether it is
+      logical :: is_refused
+
+      ! what a shorter panel did not reduce has been handed down by the panels before
+      is_refused = .not. (self%excess <= 1.0_wp &
+         .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
+      if (.not. is_refused) then
+         self%refused = huge(1.0_wp)
+         return
+      end if
+      self%refused = self%excess
+      if (self%ends) then
+         ! the error falls with a power of its length only: panels that lead to the end come first
+         self%end_found = self%start%time + self%step%duration()
+         self%ahead = 0
+         if (self%branches) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
+            /(order_at_branch*log(1.0_wp - cut_at_end)))) - 1
+      end if
+      call self%step%shorten(merge(cut_at_end, 0.5_wp, self%ends)*self%step%duration())
+   end function is_refused
+
+   !> Make the panel a part of the course
+   subroutine accept(self, approach, trajectory)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+      !> The approach of a contact that recedes
+      type(approach_t), intent(inout) :: approach
+      !> The course
+      type(trajectory_t), intent(inout) :: trajectory
+
+      type(panel_t) :: recorded
+      integer :: n
+
+      n = self%panel%stages
+      associate (problem => self%problem, rule => self%problem%collocator%rule)
+         recorded = self%panel
+         self%largest_growth = max(self%largest_growth, self%growth)
+         if (self%ends) then
+            call estimate_errors(self, trajectory%steps + 1, trajectory%cor_error, &
+               trajectory%cor_sphere_error)
+            if (self%shallow) then
+               recorded%force(n) = 0.0_wp
+            else
+               call end_at_zero(rule, problem%impact, recorded)
+            end if
+         end if
+         call record(rule, problem%impact, recorded, trajectory)
+         if (trajectory%status /= contact_separated) then
+            trajectory%last = trajectory%final
+            call find_peaks(problem, self%start, recorded, self%doubt, self%before, &
+               self%accuracy, trajectory)
+         end if
+         if (self%recedes) then
+            self%largest_inner = max(self%largest_inner, self%inner)
+            call approach%add(problem%impact%law, rule, self%step, problem%modes%contact, &
+               self%panel, self%velocity, &
+               trajectory%state(col_velocity, trajectory%final - n + 1:trajectory%final))
+         end if
+         self%velocity = trajectory%state(col_velocity, trajectory%final)
+         self%before%panel = self%panel
+         self%before%start = self%start
+         self%before%doubt = self%doubt
+      end associate
+   end subroutine accept
+
+   !> Whether the computation has come to its end with the panel
+   function is_over(self, ghost_end, trajectory)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+      !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
+      real(wp), intent(in) :: ghost_end
+      !> The course
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Whether it has
+      logical :: is_over
+
+      is_over = self%last
+      if (trajectory%status == contact_separated) then
+         is_over = self%panel%time(self%panel%stages) >= self%end_time
+      else if (trajectory%is_stuck(self%problem%impact)) then
+         trajectory%status = contact_sticking
+         is_over = .true.
+      else if (self%ends) then
+         trajectory%status = contact_separated
+         self%ahead = 0
+         self%end_time = ghost_end
+         if (.not. abs(ghost_end) > 0.0_wp) &
+            self%end_time = 2.0_wp*trajectory%state(col_time, trajectory%last)
+         is_over = self%panel%time(self%panel%stages) >= self%end_time
+      end if
+   end function is_over
+
+   !> Go on to the next step: to an end that was refused not before the panels that lead to it
+   subroutine go_on(self)
+      !> The contact
+      type(contact_t), intent(inout) :: self
+
+      associate (problem => self%problem)
+         call problem%advance(problem%collocator%rule, self%step, self%panel, self%start)
+         call problem%advance(problem%collocator%coarse, self%step, self%coarse, &
+            self%coarse_start)
+      end associate
+      if (self%ahead > 0) then
+         self%ahead = self%ahead - 1
+         self%step = step_to(self%start%time, cut_at_end*(self%end_found - self%start%time))
+      else
+         call self%step%proceed(self%growth_of_step(), most_steps)
+      end if
+   end subroutine go_on
+
+   !> Go on with the rebound of a contact that recedes
+   subroutine turn_round(self, approach, trajectory, error)
+      !> The contact, at its largest indentation
+      type(contact_t), intent(inout) :: self
+      !> The approach
+      type(approach_t), intent(in), target :: approach
+      !> Course up to there
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: left, sphere_error, cor_error
+
+      associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
+                 impact => self%problem%impact)
+         left = share_of_difference(trajectory%steps)
+         sphere_error = self%largest_inner &
+            + left*abs(panel%impulse(n) - coarse%impulse(n - 1))/(impact%mass*impact%velocity)
+         cor_error = sphere_error &
+            + left*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
+      end associate
+      call self%problem%advance(self%problem%collocator%rule, self%step, self%panel, self%start)
+      call follow_rebound(self%course_t, approach, trajectory, error)
+      trajectory%cor_sphere_error = trajectory%cor_sphere_error + sphere_error
+      trajectory%cor_error = trajectory%cor_error + cor_error
+   end subroutine turn_round
+
+   !> Errors of the coefficients of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I and
+   !> z' = v0 - I/m. The companion reaches F = 0 a little earlier or later, which only alpha' and
+   !> the drift feel
+   pure subroutine estimate_errors(self, panels, cor_error, cor_sphere_error)
+      !> The contact, at its end
+      type(contact_t), intent(in) :: self
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Error of that by the relative velocity [-]
+      real(wp), intent(out) :: cor_error
+      !> Error of that of the sphere alone [-]
+      real(wp), intent(out) :: cor_sphere_error
+
+      real(wp) :: impulse_error, time_error, alpha_rate, fall, moved, plate, least, part
+
+      associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
+                 impact => self%problem%impact, rule => self%problem%collocator%rule)
+         impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         ! what this panel adds may cancel what the companion owes to the panels before
+         if (self%branches) impulse_error = max(impulse_error, abs((panel%impulse(n) &
+            - panel%impulse(0)) - (coarse%impulse(n - 1) - coarse%impulse(0))))
+         fall = slope_at_end(rule, panel, panel%force)
+         time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
+         alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
+         ! of the velocity of the plate
+         moved = panel%force(n)/fall
+         plate = impact%velocity*panel%time(n) - panel%second_impulse(n)/impact%mass &
+            - panel%indentation(n)
+         least = rounding_per_panel*real(panels, wp) &
+            + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
+         ! where alpha' of a frozen plate is infinite at first contact, neither solution is better
+         part = merge(1.0_wp, share_of_difference(panels), &
+            self%branches .or. impact%plate%frozen())/impact%velocity
+         cor_sphere_error = least + part*impulse_error/impact%mass
+         cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
+            *(moved/panel%time(n))**2 + part*(impulse_error*alpha_rate &
+            + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            + abs(slope_at_end(rule, panel, panel%drift))) &
+            + abs(panel%drift(n) - coarse%drift(n - 1)))
+      end associate
+      cor_error = max(share_of_growth*self%largest_growth, cor_error)
+      cor_sphere_error = max(share_of_growth*self%largest_growth, cor_sphere_error)
+   end subroutine estimate_errors
+
+end module vcor_solver_ive_contact

@@ -1,0 +1,138 @@
+!> The course of an impact while it is followed panel by panel: what its approach, contact and
+!> rebound have in common
+module vcor_solver_ive_course
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
+   use vcor_solver_ive_panel, only : panel_t, start_t
+   use vcor_solver_ive_problem, only : panel_problem_t
+   use vcor_solver_ive_step, only : step_t
+   use vcor_solver_ive_tuning, only : best_time, few_panels, finer, immense, longest_growth, &
+      panel_share, time_share, time_share_power, usual_accuracy
+   implicit none
+   private
+
+   public :: course_t, share, share_of_difference
+
+   !> Where the course has come to
+   type :: course_t
+      !> Equations of its panels
+      type(panel_problem_t) :: problem
+      !> The panel that is tried, and its companion
+      type(panel_t) :: panel, coarse
+      !> State at the start of the panel, and of its companion
+      type(start_t) :: start, coarse_start
+      !> Step of the panel
+      type(step_t) :: step
+      !> Inverse of the Jacobian of the panel
+      real(wp) :: inverse(width, width) = 0.0_wp
+      !> The panel solved last, accepted or not
+      type(panel_t) :: previous
+      !> Accuracy of the coefficient of restitution that is worked to [-]
+      real(wp) :: accuracy = 0.0_wp
+      !> Time scale of the contact [s]
+      real(wp) :: time_scale = 0.0_wp
+      !> End of the computation if the contact lasts [s]
+      real(wp) :: end_time = 0.0_wp
+      !> Error of the panel over what it may be, and that of the one refused before
+      real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp)
+      !> Whether the contact ends with the panel, and whether the computation does
+      logical :: ends = .false., last = .false.
+   contains
+      !> Error of the motion that a panel adds
+      procedure :: motion_error
+      !> By how much a difference grows over it
+      procedure :: growth_of
+      !> Factor by which the next panel can be longer
+      procedure :: growth_of_step
+      !> Error that the contact time may have
+      procedure :: time_tolerance
+   end type course_t
+
+contains
+
+   !> By how much the difference of a panel and its companion grows over the panel
+   pure function growth_of(self, one, other) result(difference)
+      !> The course
+      class(course_t), intent(in) :: self
+      !> Values of the solution at the points of the panel
+      real(wp), intent(in) :: one(0:width)
+      !> Values of the companion
+      real(wp), intent(in) :: other(0:width)
+      !> Growth
+      real(wp) :: difference
+
+      associate (n => self%panel%stages)
+         difference = abs((one(n) - other(n - 1)) - (one(0) - other(0)))
+      end associate
+   end function growth_of
+
+   !> What a panel adds to the error of the coefficient of restitution, by its companion: through
+   !> the impulse, the indentation and the velocity of a plate that drifts
+   pure function motion_error(self) result(error)
+      !> The course
+      class(course_t), intent(in) :: self
+      !> Error [-]
+      real(wp) :: error
+
+      associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
+         error = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity) &
+            + self%growth_of(panel%indentation, coarse%indentation) &
+            /(impact%velocity*self%time_scale)
+         if (impact%plate%drifts()) &
+            error = error + self%growth_of(panel%drift, coarse%drift)/impact%velocity
+      end associate
+   end function motion_error
+
+   !> Factor by which the next panel can be longer than an accepted one
+   pure function growth_of_step(self) result(factor)
+      !> The course
+      class(course_t), intent(in) :: self
+      !> Factor
+      real(wp) :: factor
+
+      factor = min(longest_growth, max(self%excess, tiny(1.0_wp)) &
+         **(-1.0_wp/real(2*self%panel%stages - 2, wp)))
+   end function growth_of_step
+
+   !> Relative difference of the contact times of the two solutions that is let pass. With panels as
+   !> short as at the usual accuracy the one that counts is better by an order, unless modes of a
+   !> continuous spectrum settle within the last panel, which neither of them resolves
+   pure function time_tolerance(self) result(tolerance)
+      !> The course
+      class(course_t), intent(in) :: self
+      !> Tolerance [-]
+      real(wp) :: tolerance
+
+      tolerance = self%accuracy
+      if (.not. self%problem%modes%contact%error > 0.0_wp) tolerance = time_share*self%accuracy &
+         *min(1.0_wp, (usual_accuracy/self%accuracy)**time_share_power)
+      tolerance = max(tolerance, best_time)
+   end function time_tolerance
+
+   !> Error over what it may be, at most `immense`: the forces of a fluid may be next to nothing
+   pure function share(actual, allowed)
+      !> Error, >= 0
+      real(wp), intent(in) :: actual
+      !> What it may be, >= 0
+      real(wp), intent(in) :: allowed
+      !> Ratio
+      real(wp) :: share
+
+      share = 0.0_wp
+      if (actual > 0.0_wp) share = immense
+      if (actual < immense*allowed) share = actual/allowed
+   end function share
+
+   !> Error of the solution over its difference to the companion. The difference is the error of the
+   !> companion: that of the solution is less, where the solution is smooth by orders, where it is
+   !> not by a factor of some size; with few panels it is anybody's guess
+   pure function share_of_difference(panels) result(share)
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Share
+      real(wp) :: share
+
+      share = merge(1.0_wp, finer, panels <= few_panels)
+   end function share_of_difference
+
+end module vcor_solver_ive_course

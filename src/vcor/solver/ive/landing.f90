@@ -1,0 +1,288 @@
+!> End of the contact in the internal-variable method
+module vcor_solver_ive_landing
+   use vcor_impact_law, only : contact_law_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
+   use vcor_numeric_radau_collocation, only : collocation_t
+   use vcor_solver_ive_newton, only : most_iterations
+   use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
+   use vcor_solver_ive_problem, only : panel_problem_t
+   use vcor_solver_ive_step, only : step_t, step_to
+   use vcor_solver_ive_tuning, only : landing_share, noticeable_fall, noticeable_time, &
+      share_of_square
+   implicit none
+   private
+
+   public :: first_without_force, land_on_zero, land_on_largest, end_at_zero, slope_at_end
+
+contains
+
+   !> First stage of a panel at which the force is gone; 0 if there is none. While the indentation
+   !> grows, or stands still, the force is positive: what is not is rounding
+   pure function first_without_force(panel) result(stage)
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage
+      integer :: stage
+
+      do stage = 1, panel%stages
+         if (panel%force(stage) <= 0.0_wp .and. panel%indentation(stage - 1) &
+             - panel%indentation(stage) > noticeable_fall*abs(panel%indentation(stage - 1))) return
+      end do
+      stage = 0
+   end function first_without_force
+
+   !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by
+   !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
+   !> power of the time since the maximum
+   subroutine land_on_largest(problem, start, start_velocity, step, panel, inverse)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Rate of the indentation there [m/s]
+      real(wp), intent(in) :: start_velocity
+      !> The step, on return the one that ends at the maximum
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the maximum; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Inverse of its Jacobian
+      real(wp), intent(inout) :: inverse(width, width)
+
+      real(wp), parameter :: closest = 1.0e-8_wp
+      type(panel_t) :: longer
+      real(wp) :: velocity(0:width), theta
+      integer :: j
+
+      longer = panel
+      velocity = 0.0_wp
+      velocity(0) = start_velocity
+      do j = 1, panel%stages
+         velocity(j) = relative_velocity(problem%impact, panel, j)
+      end do
+      do j = 1, panel%stages - 1
+         if (velocity(j) < 0.0_wp) exit
+      end do
+      associate (rule => problem%collocator%rule)
+         theta = rule%crossing(velocity, rule%point(j - 1), rule%point(j), closest)
+      end associate
+      step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
+      call solve_cut(problem, longer, start, step, panel, inverse)
+   end subroutine land_on_largest
+
+   !> Solve a panel that is cut from another one
+   subroutine solve_cut(problem, longer, start, step, panel, inverse)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> The panel that it is cut from
+      type(panel_t), intent(in) :: longer
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The step
+      type(step_t), intent(in) :: step
+      !> The panel; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Inverse of the Jacobian of the other panel, on return of one that serves
+      real(wp), intent(inout) :: inverse(width, width)
+
+      associate (collocator => problem%collocator)
+         call problem%guess(longer, step, start, panel)
+         call problem%solve_near(collocator%rule, step, start, collocator%near_tolerance, inverse, &
+            panel)
+         if (panel%converged) return
+         call problem%guess(longer, step, start, panel)
+         call problem%solve(collocator%rule, step, start, panel, inverse)
+      end associate
+   end subroutine solve_cut
+
+   !> Cut a panel in which the force changes its sign so that it ends where the force is zero
+   subroutine land_on_zero(problem, start, accuracy, shallow, step, panel, inverse)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
+      !> Indentation above which the force is about linear in time next to its zero [m]
+      real(wp), intent(in) :: shallow
+      !> The step, on return the one that ends at the zero, or so close to it that its square does
+      !> not count where the force is linear
+      type(step_t), intent(inout) :: step
+      !> The panel, on return the one that ends at the zero; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Inverse of its Jacobian
+      real(wp), intent(inout) :: inverse(width, width)
+
+      type(panel_t) :: last
+      real(wp) :: time, correction, last_correction, tolerance, kappa, memory_rate, old_memory, &
+         memory
+      integer :: iteration, n
+
+      n = panel%stages
+      last = panel
+      associate (contact => problem%modes%contact, law => problem%impact%law)
+         ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
+         ! left out: the indentation s and the memory M are smooth in time, u(s) where s goes to
+         ! zero is not. So Newton's method is put on kappa u(s) = M with s and M linear in time, the
+         ! slope of M from the polynomials of the panel and then from the last two iterations
+         kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*step%duration()))
+         call look_for_zero(problem%collocator%rule, law, kappa, panel, time, memory_rate)
+         panel%converged = .false.
+         tolerance = landing_share*accuracy
+         old_memory = 0.0_wp
+         correction = 0.0_wp
+         do iteration = 1, most_iterations
+            if (.not. time > 0.0_wp) return
+            step = step_to(start%time, time)
+            call solve_cut(problem, last, start, step, panel, inverse)
+            if (.not. panel%converged) return
+            last = panel
+            memory = kappa*law%u(panel%indentation(n)) - panel%force(n)
+            if (abs(correction) > noticeable_time*time) &
+               memory_rate = (memory - old_memory)/correction
+            old_memory = memory
+            last_correction = correction
+            call look_ahead(law, kappa, panel%indentation(n), &
+               relative_velocity(problem%impact, panel, n), memory, memory_rate, correction, &
+               panel%converged)
+            if (.not. panel%converged) return
+            if (abs(correction) <= (start%time + time)*merge(sqrt(share_of_square*tolerance), &
+               tolerance, panel%indentation(n) >= shallow)) return
+            ! rounding in the force of a dashpot or of stiff internal variables ends it, too
+            if (iteration > 3 .and. abs(correction) <= noticeable_time*(start%time + time) &
+                .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
+            time = time + correction
+         end do
+      end associate
+      panel%converged = .false.
+   end subroutine land_on_zero
+
+   !> Zero of the force in a panel by its polynomials, and the slope there of the memory
+   !> M = kappa u - F
+   subroutine look_for_zero(rule, law, kappa, panel, time, memory_rate)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Contact law
+      type(contact_law_t), intent(in) :: law
+      !> Stiffness kappa [N/m^1.5]
+      real(wp), intent(in) :: kappa
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Time of the zero since the start of the panel [s]; 0 where a panel is so crude that its
+      !> force is negative while the indentation grows
+      real(wp), intent(out) :: time
+      !> Slope of M [N/s]
+      real(wp), intent(out) :: memory_rate
+
+      real(wp) :: theta
+      integer :: k
+
+      time = 0.0_wp
+      memory_rate = 0.0_wp
+      k = first_without_force(panel)
+      if (panel%force(k - 1) <= 0.0_wp) return
+      theta = rule%crossing(panel%force, rule%point(k - 1), rule%point(k), noticeable_time)
+      time = theta*(panel%map(1) + panel%map(2)*theta)
+      memory_rate = rule%interpolate(rule%slopes(kappa*law%u(panel%indentation) - panel%force), &
+         theta)/(panel%map(1) + 2.0_wp*panel%map(2)*theta)
+   end subroutine look_for_zero
+
+   !> Solve kappa u(s + v x) = memory + rate x for x near 0 by Newton's method
+   pure subroutine look_ahead(law, kappa, s, v, memory, rate, x, found)
+      !> Contact law
+      type(contact_law_t), intent(in) :: law
+      !> Stiffness kappa [N/m^1.5], > 0
+      real(wp), intent(in) :: kappa
+      !> Indentation [m]
+      real(wp), intent(in) :: s
+      !> Its rate [m/s]
+      real(wp), intent(in) :: v
+      !> Memory [N]
+      real(wp), intent(in) :: memory
+      !> Its rate [N/s]
+      real(wp), intent(in) :: rate
+      !> Time [s]
+      real(wp), intent(out) :: x
+      !> Whether the force falls to zero there
+      logical, intent(out) :: found
+
+      real(wp) :: correction, slope
+      integer :: iteration
+
+      x = 0.0_wp
+      found = .false.
+      do iteration = 1, most_iterations
+         slope = kappa*law%slope(s + v*x)*v - rate
+         if (.not. slope < 0.0_wp) return
+         correction = (memory + rate*x - kappa*law%u(s + v*x))/slope
+         x = x + correction
+         found = abs(correction) <= 1.0e-3_wp*abs(x)
+         if (found) return
+      end do
+   end subroutine look_ahead
+
+   !> Let the last panel end where its force is zero, which is next to where it ends: its
+   !> polynomials go on up to there, and all values move with their nodes, so that integrals stay
+   !> sums over them
+   pure subroutine end_at_zero(rule, impact, panel)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The last panel
+      type(panel_t), intent(inout) :: panel
+
+      real(wp), dimension(0:width) :: shift, plate
+      real(wp) :: growth
+
+      associate (n => rule%stages, theta => rule%point, map => panel%map)
+         growth = -panel%force(n)/slope_at_end(rule, panel, panel%force)/sum(map)
+         ! in theta; the time of the nodes grows by this share
+         shift = growth*theta*(map(1) + map(2)*theta) &
+            /max(map(1) + 2.0_wp*map(2)*theta, tiny(1.0_wp))
+         plate = impact%velocity*panel%time - panel%second_impulse/impact%mass - panel%indentation
+         map = (1.0_wp + growth)*map
+         panel%time = panel%time(0) + (1.0_wp + growth)*(panel%time - panel%time(0))
+         call move(panel%force)
+         call move(panel%impulse)
+         call move(panel%second_impulse)
+         if (.not. impact%plate%hereditary()) &
+            call impact%plate%alpha_at(panel%time(1:n), panel%alpha(1:n))
+         if (impact%plate%drifts()) then
+            call move(panel%drift)
+            call move(plate)
+         else
+            plate(1:n) = panel%alpha(1:n)*panel%impulse(1:n)
+         end if
+         panel%indentation(1:n) = impact%velocity*panel%time(1:n) &
+            - panel%second_impulse(1:n)/impact%mass - plate(1:n)
+         panel%force(n) = 0.0_wp
+      end associate
+
+   contains
+
+      !> Move the values
+      pure subroutine move(value)
+         !> Values at the points
+         real(wp), intent(inout) :: value(0:width)
+
+         value = value + shift*rule%slopes(value)
+      end subroutine move
+   end subroutine end_at_zero
+
+   !> Rate of a value at the end of a panel
+   pure function slope_at_end(rule, panel, value) result(slope)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Its values at the points of the panel
+      real(wp), intent(in) :: value(0:width)
+      !> Rate [1/s]
+      real(wp) :: slope
+
+      slope = sum(rule%derivative(rule%stages, :)*value)/panel%pace_at_end()
+   end function slope_at_end
+
+end module vcor_solver_ive_landing

@@ -1,0 +1,191 @@
+!> Solution of the internal-variable method on a panel of time, and the state that it starts from
+module vcor_solver_ive_panel
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
+   implicit none
+   private
+
+   public :: panel_t, start_t
+   public :: move_to_end, plate_velocity, relative_velocity
+
+   !> State at the start of a panel
+   type :: start_t
+      !> Time [s]
+      real(wp) :: time = 0.0_wp
+      !> Indentation s [m]
+      real(wp) :: indentation = 0.0_wp
+      !> Force F [N]
+      real(wp) :: force = 0.0_wp
+      !> Impulse I [N s]
+      real(wp) :: impulse = 0.0_wp
+      !> Integral of the impulse J [N s2]
+      real(wp) :: second_impulse = 0.0_wp
+      !> Plate parameter alpha [m/(N s)]
+      real(wp) :: alpha = 0.0_wp
+      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
+      real(wp) :: deflection = 0.0_wp
+      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
+      real(wp) :: drift = 0.0_wp
+      !> Condition N of a receding contact [N/m^0.5]
+      real(wp) :: condition = 0.0_wp
+      !> Its time t1 [s]
+      real(wp) :: t1 = 0.0_wp
+      !> What has not relaxed of u [m^1.5], or of the indentation while the contact recedes [m],
+      !> shape (modes)
+      real(wp), allocatable :: lag(:)
+      !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate)
+      real(wp), allocatable :: p(:)
+   end type start_t
+
+   !> Solution on a panel; index 0 is its start
+   type :: panel_t
+      !> Number of stages
+      integer :: stages = 0
+      !> Time in the panel: start + map(1) theta + map(2) theta^2 [s]
+      real(wp) :: map(2) = 0.0_wp
+      !> Times of the stages [s]
+      real(wp) :: time(0:width) = 0.0_wp
+      !> Indentation [m]
+      real(wp) :: indentation(0:width) = 0.0_wp
+      !> Force [N]
+      real(wp) :: force(0:width) = 0.0_wp
+      !> Impulse [N s]
+      real(wp) :: impulse(0:width) = 0.0_wp
+      !> Integral of the impulse [N s2]
+      real(wp) :: second_impulse(0:width) = 0.0_wp
+      !> Plate parameter alpha [m/(N s)]
+      real(wp) :: alpha(0:width) = 0.0_wp
+      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
+      real(wp) :: deflection(0:width) = 0.0_wp
+      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
+      real(wp) :: drift(0:width) = 0.0_wp
+      !> Condition N of a receding contact [N/m^0.5]
+      real(wp) :: condition(0:width) = 0.0_wp
+      !> Its time t1 [s]
+      real(wp) :: t1(0:width) = 0.0_wp
+      !> Whether Newton's iteration converged
+      logical :: converged = .false.
+   contains
+      !> Set what is known before the panel is solved
+      procedure :: begin
+      !> Positions of times in the panel
+      procedure :: theta
+      !> Rate of a value at its end
+      procedure :: pace_at_end
+   end type panel_t
+
+contains
+
+   !> Set all values at the start of a panel, and its times
+   pure subroutine begin(self, stages, node, map, start, elapsed)
+      !> The panel
+      class(panel_t), intent(inout) :: self
+      !> Number of stages
+      integer, intent(in) :: stages
+      !> Their positions
+      real(wp), intent(in) :: node(width)
+      !> Coefficients of theta and theta^2 in time [s]
+      real(wp), intent(in) :: map(2)
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Times of the stages since the start [s]
+      real(wp), intent(out) :: elapsed(width)
+
+      self%stages = stages
+      self%map = map
+      elapsed = node*(map(1) + map(2)*node)
+      self%time(0) = start%time
+      self%time(1:) = start%time + elapsed
+      self%indentation(0) = start%indentation
+      self%force(0) = start%force
+      self%impulse(0) = start%impulse
+      self%second_impulse(0) = start%second_impulse
+      self%alpha(0) = start%alpha
+      self%deflection(0) = start%deflection
+      self%drift(0) = start%drift
+      self%condition(0) = start%condition
+      self%t1(0) = start%t1
+   end subroutine begin
+
+   !> Position of times in the panel: the root of the quadratic map in its stable form
+   pure function theta(self, time)
+      !> The panel
+      class(panel_t), intent(in) :: self
+      !> Times [s], not before the panel's start
+      real(wp), intent(in) :: time(width)
+      !> Positions, 0 at the start and 1 at the end
+      real(wp) :: theta(width)
+
+      theta = max(time - self%time(0), 0.0_wp)
+      theta = 2.0_wp*theta/max(tiny(1.0_wp), self%map(1) &
+         + sqrt(max(self%map(1)**2 + 4.0_wp*self%map(2)*theta, 0.0_wp)))
+   end function theta
+
+   !> dt/dtheta at the end of a panel [s]
+   pure function pace_at_end(self) result(pace)
+      !> The panel
+      class(panel_t), intent(in) :: self
+      !> dt/dtheta [s]
+      real(wp) :: pace
+
+      pace = self%map(1) + 2.0_wp*self%map(2)
+   end function pace_at_end
+
+   !> Make the end of a panel the start of the next one, internal variables aside
+   pure subroutine move_to_end(panel, start)
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> State at the start of the panel, on return that at its end
+      type(start_t), intent(inout) :: start
+
+      associate (n => panel%stages)
+         start%time = panel%time(n)
+         start%indentation = panel%indentation(n)
+         start%force = panel%force(n)
+         start%impulse = panel%impulse(n)
+         start%second_impulse = panel%second_impulse(n)
+         start%alpha = panel%alpha(n)
+         start%deflection = panel%deflection(n)
+         start%drift = panel%drift(n)
+         start%condition = panel%condition(n)
+         start%t1 = panel%t1(n)
+      end associate
+   end subroutine move_to_end
+
+   !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
+   !> drift of a frozen or hereditary plate
+   pure function plate_velocity(impact, panel, j) result(velocity)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = panel%alpha(j)*panel%force(j)
+      if (impact%plate%drifts()) then
+         velocity = velocity - panel%drift(j)
+      else
+         velocity = velocity + panel%impulse(j) &
+            *impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
+      end if
+   end function plate_velocity
+
+   !> Rate of the indentation at a stage of a panel: s' = v0 - I/m - U'
+   pure function relative_velocity(impact, panel, j) result(velocity)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Stage, > 0
+      integer, intent(in) :: j
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = impact%velocity - panel%impulse(j)/impact%mass - plate_velocity(impact, panel, j)
+   end function relative_velocity
+
+end module vcor_solver_ive_panel

@@ -1,0 +1,415 @@
+!> Rebound of a receding contact in the internal-variable method, from the largest indentation on
+!>
+!> Next to the end at t0 the force goes to zero as u(t0 - t), and the motion is analytic in
+!> sqrt(t0 - t). So the last panel has the map t = t0 - D (1 - theta)^2 of its length D, which is
+!> found so that the condition N is zero at its end. Before it come as many panels in t as the
+!> accuracy takes; from a kernel that is infinite at first, or has a dashpot, the first one is in
+!> the square root of the time since the largest indentation.
+module vcor_solver_ive_rebound
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
+   use vcor_numeric_radau_collocation, only : closing, linear
+   use vcor_solver_ive_approach, only : approach_t
+   use vcor_solver_ive_course, only : course_t
+   use vcor_solver_ive_panel, only : panel_t
+   use vcor_solver_ive_recording, only : record
+   use vcor_solver_ive_step, only : step_of
+   use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
+      cut_most, end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, &
+      end_slow, enough_closings, expected_rebound, farthest_rebound, fast, finer, first_rate, &
+      largest_share, margin_of_rest, near_vertex, order_at_end, rebound_fast, rebound_growth, &
+      rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, slowest_fall, &
+      smallest_share, tolerable, tolerable_end, unreliable_kernel, usual_accuracy
+   use vcor_solver_receding, only : refuse_growth
+   implicit none
+   private
+
+   public :: follow_rebound
+
+   !> Trials of panels after which it is given up
+   integer, parameter :: most_trials = 400
+
+   !> The rebound until the contact ends
+   type, extends(course_t) :: rebound_t
+      !> The approach
+      type(approach_t), pointer :: approach => null()
+      !> Index of the map of the next panel but the last one
+      integer :: kind = linear
+      !> Time that such a panel may take, and the last one [s]
+      real(wp) :: length = 0.0_wp, end_length = 0.0_wp
+      !> Time that the panel takes, and time left to the end of the contact [s]
+      real(wp) :: taken = 0.0_wp, rest = 0.0_wp
+      !> End of the contact, once it was found [s]
+      real(wp) :: end_found = 0.0_wp
+      !> Rate of t1 and its rate [1/s], for a guess
+      real(wp) :: rate = 0.0_wp, bend = 0.0_wp
+      !> Length of the panel refused before [s], and excess of the last panel refused before
+      real(wp) :: refused_length = huge(1.0_wp), refused_end = huge(1.0_wp)
+      !> How often the last panel was solved
+      integer :: closings = 0
+      !> Whether the panel only said where the contact ends
+      logical :: misled = .false.
+      !> Errors of the coefficients of restitution, by the relative velocity and of the sphere, that
+      !> the panel adds, and of those before [-]
+      real(wp) :: error(2) = 0.0_wp, error_sum(2) = 0.0_wp
+   end type rebound_t
+
+contains
+
+   !> Follow the rebound
+   subroutine follow_rebound(course, approach, trajectory, error)
+      !> The course up to the largest indentation
+      type(course_t), intent(in) :: course
+      !> The approach
+      type(approach_t), intent(in), target :: approach
+      !> Course of the impact, on entry its approach
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(rebound_t) :: rebound
+      integer :: trial
+
+      rebound%course_t = course
+      call start(rebound, approach)
+      do trial = 1, most_trials
+         call choose_length(rebound)
+         if (.not. rebound%taken > shortest_panel*rebound%start%time) exit
+         call solve_panel(rebound)
+         if (rebound%misled) cycle
+         if (.not. (rebound%panel%converged .and. rebound%coarse%converged)) then
+            rebound%length = 0.5_wp*min(rebound%taken, rebound%rest)
+            rebound%end_length = min(rebound%end_length, rebound%length)
+            cycle
+         end if
+         call judge(rebound)
+         if (is_refused(rebound)) cycle
+         if (is_growing(rebound)) then
+            ! it may be the error of the kernel that makes it grow
+            if (rebound%problem%modes%contact%error > unreliable_kernel) exit
+            call refuse_growth(rebound%problem%impact, error)
+            return
+         end if
+         call accept(rebound, trajectory)
+         if (is_over(rebound, trajectory)) return
+         call go_on(rebound)
+      end do
+      call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
+         //'of the contact: the accuracy asked for is out of reach')
+   end subroutine follow_rebound
+
+   !> Lengths of the first panel, of the last one and of the rebound to begin with
+   subroutine start(self, approach)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+      !> The approach
+      type(approach_t), intent(in), target :: approach
+
+      real(wp) :: finer
+      logical :: relaxes, continuous
+
+      self%approach => approach
+      call self%problem%turn_round(approach, self%start)
+      self%previous = panel_t()
+      self%refused = huge(1.0_wp)
+      associate (contact => self%problem%modes%contact, time => approach%end)
+         continuous = contact%error > 0.0_wp
+         if (continuous .or. contact%viscosity > 0.0_wp) self%kind = 0
+         relaxes = any(contact%rates*time > fast)
+         finer = self%accuracy/usual_accuracy
+         self%rate = first_rate
+         self%rest = expected_rebound*time
+         self%length = merge(rebound_fast, rebound_slow, relaxes)*time*finer**rebound_growth
+         self%end_length = merge(end_fast, end_slow, relaxes)*time*finer**end_growth
+         ! of a continuous spectrum, in contact or plate, the collocation of a panel does not
+         ! resolve the modes that settle next to its end
+         if (continuous) self%end_length = end_continuous*time*finer**end_growth
+         if (continuous .and. self%problem%impact%plate%hereditary()) then
+            self%length = rebound_hereditary*time*finer**rebound_growth
+            self%end_length = end_hereditary*time*finer**end_hereditary_growth
+         end if
+      end associate
+   end subroutine start
+
+   !> Choose the length of the next panel. Some equal ones leave what is for the last panel: the end
+   !> is a branch point, from which panels keep away
+   subroutine choose_length(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+
+      real(wp) :: part, left
+      integer :: panels
+
+      if (self%end_found > self%start%time) self%rest = self%end_found - self%start%time
+      self%ends = self%rest <= self%end_length
+      self%taken = self%rest
+      if (.not. self%ends) then
+         part = largest_share
+         left = margin_of_rest*self%end_length/self%rest
+         if (left > 1.0e-3_wp) then
+            panels = ceiling(log(left)/log(1.0_wp - largest_share))
+            part = max(smallest_share, 1.0_wp - left**(1.0_wp/real(panels, wp)))
+         end if
+         self%taken = min(self%length, part*self%rest)
+      end if
+      self%last = self%start%time + self%taken >= self%end_time
+      if (self%last) then
+         self%ends = .false.
+         self%taken = self%end_time - self%start%time
+      end if
+   end subroutine choose_length
+
+   !> Solve the next panel and its companion
+   subroutine solve_panel(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+
+      real(wp) :: theta
+      integer :: n, j
+
+      self%misled = .false.
+      self%coarse%converged = .false.
+      associate (problem => self%problem, rule => self%problem%collocator%rule, &
+                 panel => self%panel)
+         n = rule%stages
+         self%step = step_of(merge(closing, self%kind, self%ends), self%taken)
+         call guess(self)
+         if (self%ends) then
+            call problem%close(self%start, max(closest_end &
+               *min(self%accuracy, usual_accuracy), 1.0e-13_wp), self%taken, panel, self%inverse)
+            self%step = step_of(closing, self%taken)
+         else
+            call problem%solve(rule, self%step, self%start, panel, self%inverse)
+         end if
+         if (.not. panel%converged) return
+         self%previous = panel
+         if (self%ends) then
+            ! rounding in a condition next to zero is no end: t1 has to get there, too
+            panel%converged = abs(panel%t1(n)) <= close_to_zero*self%start%t1
+            if (.not. panel%converged) return
+            self%end_found = self%start%time + self%taken
+            self%misled = self%end_found > self%end_time
+         else if (panel%condition(n) <= 0.0_wp) then
+            ! the end is closer than expected
+            j = findloc(panel%condition(1:n) <= 0.0_wp, .true., 1)
+            theta = rule%crossing(panel%condition, rule%point(j - 1), rule%point(j), 1.0e-3_wp)
+            self%rest = theta*(panel%map(1) + panel%map(2)*theta)
+            self%refused = huge(1.0_wp)
+            self%refused_length = huge(1.0_wp)
+            self%misled = .true.
+         end if
+         if (self%misled) return
+         call problem%accompany(self%step, self%start, panel, self%inverse, self%coarse)
+      end associate
+   end subroutine solve_panel
+
+   !> Guess t1 in the next panel
+   subroutine guess(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+
+      real(wp), dimension(width) :: theta, time
+
+      associate (t1 => self%panel%t1(1:), start => self%start, vertex => self%approach%end, &
+                 rule => self%problem%collocator%rule)
+         time = rule%times(self%step%index, self%step%map_scale())
+         t1 = start%t1 + time*(self%rate + 0.5_wp*self%bend*time)
+         ! which is zero at the end of the contact
+         if (self%ends) t1 = t1 - (start%t1 &
+            + self%taken*(self%rate + 0.5_wp*self%bend*self%taken))*(time/self%taken)**2
+         if (self%previous%stages > 0) then
+            theta = self%previous%theta(start%time + time)
+            t1 = merge(rule%extend(self%previous%t1, min(theta, farthest_rebound)), t1, &
+               theta <= farthest_rebound)
+         end if
+         ! next to the largest indentation t1 falls at least as fast as time grows
+         t1 = min(t1, vertex - slowest_fall*min(start%time + time - vertex, near_vertex*vertex))
+      end associate
+   end subroutine guess
+
+   !> Error of the panel over what it may be: that of the motion and, at the end, that of the
+   !> contact time
+   subroutine judge(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+
+      real(wp) :: alpha_rate, impulse_error, time_error
+      integer :: n
+
+      n = self%panel%stages
+      associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
+         alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
+         self%error = finer*(impulse_error/impact%mass &
+            + abs(panel%indentation(n) - coarse%indentation(n - 1))/self%start%t1)/impact%velocity
+         self%error(1) = self%error(1) + finer*(impulse_error*alpha_rate &
+            + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
+         time_error = 0.0_wp
+         if (self%ends) then
+            ! the companion ends a little earlier or later, which changes the velocity of the plate
+            time_error = abs(panel%condition(n) - coarse%condition(n - 1))/self%start%condition &
+               *self%taken
+            self%error(1) = self%error(1) + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+               + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
+               /impact%velocity
+         end if
+         self%excess = self%error(1)/(0.45_wp*self%accuracy)
+      end associate
+   end subroutine judge
+
+   !> Whether the panel is refused; its length is cut then
+   function is_refused(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+      !> Whether it is
+      logical :: is_refused
+
+      real(wp) :: order, cut
+      logical :: halved
+
+      ! what half the panel does not reduce by half is handed down by the panels before, or rounding
+      ! in stiff internal variables
+      halved = self%taken <= 0.5_wp*self%refused_length
+      is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= tolerable .and. halved &
+         .and. self%excess > 0.5_wp*self%refused)
+      order = real(2*self%panel%stages - 2, wp)
+      if (self%ends) then
+         self%closings = self%closings + 1
+         is_refused = is_refused .and. .not. (self%excess <= tolerable_end .and. &
+            (self%excess > 0.5_wp*self%refused_end .or. self%closings >= enough_closings))
+         order = order_at_end
+      end if
+      if (.not. is_refused) then
+         self%refused = huge(1.0_wp)
+         self%refused_length = huge(1.0_wp)
+         return
+      end if
+      if (halved) then
+         self%refused = self%excess
+         self%refused_length = self%taken
+      end if
+      cut = min(cut_least, max(cut_most, (self%excess/aim)**(-1.0_wp/order)))
+      if (self%ends) then
+         self%refused_end = self%excess
+         self%end_length = cut*self%taken
+      else
+         self%length = cut*self%taken
+      end if
+   end function is_refused
+
+   !> Whether t1 rises somewhere in the panel. It does where its slope is positive in the solution
+   !> and in its companion, by more than the two differ anywhere in the panel
+   pure function is_growing(self) result(grows)
+      !> The rebound
+      type(rebound_t), intent(in) :: self
+      !> Whether it does
+      logical :: grows
+
+      real(wp), parameter :: roughly = 1.0e-3_wp
+      real(wp), dimension(0:width) :: slope, bend, other
+      real(wp) :: same(width), theta, doubt
+      integer :: n, j, points
+
+      associate (collocator => self%problem%collocator, rule => self%problem%collocator%rule)
+         n = rule%stages
+         slope = rule%slopes(self%panel%t1)
+         other = collocator%coarse%slopes(self%coarse%t1)
+         same = collocator%coarsened(slope)
+         ! at the end of the contact time stands still in the map, and t1 with it
+         points = merge(n - 2, n - 1, self%ends)
+         doubt = maxval(abs(same(1:points) - other(1:points)))
+         grows = any(min(same(1:points), other(1:points)) > doubt)
+         ! and where the slope is largest between them
+         j = maxloc(slope(0:n), 1) - 1
+         if (grows .or. j == 0 .or. j == n) return
+         bend = rule%slopes(slope)
+         if (bend(j) < 0.0_wp) j = j - 1
+         theta = rule%crossing(bend, rule%point(j), rule%point(j + 1), roughly)
+         grows = min(rule%interpolate(slope, theta), &
+            collocator%coarse%interpolate(other, theta)) > doubt
+      end associate
+   end function is_growing
+
+   !> Make the panel a part of the course
+   subroutine accept(self, trajectory)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+      !> The course
+      type(trajectory_t), intent(inout) :: trajectory
+
+      if (self%ends) self%panel%force(self%panel%stages) = 0.0_wp
+      self%error_sum = self%error_sum + self%error
+      call record(self%problem%collocator%rule, self%problem%impact, self%panel, trajectory)
+      trajectory%last = trajectory%final
+   end subroutine accept
+
+   !> Whether the computation has come to its end with the panel
+   function is_over(self, trajectory)
+      !> The rebound
+      type(rebound_t), intent(in) :: self
+      !> The course
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Whether it has
+      logical :: is_over
+
+      is_over = self%last
+      if (trajectory%is_stuck(self%problem%impact)) then
+         trajectory%status = contact_sticking
+         is_over = .true.
+      else if (self%ends) then
+         trajectory%status = contact_separated
+         trajectory%cor_error = self%error_sum(1) + 2*rounding_per_panel*real(trajectory%steps, wp)
+         trajectory%cor_sphere_error = self%error_sum(2) &
+            + 2*rounding_per_panel*real(trajectory%steps, wp)
+         is_over = .true.
+      end if
+   end function is_over
+
+   !> Go on to the next panel, with the end and t1 up to there by the parabolas that go on where
+   !> this one ends. While the condition grows nothing tells when the contact ends
+   subroutine go_on(self)
+      !> The rebound
+      type(rebound_t), intent(inout) :: self
+
+      real(wp) :: fall, fall_rate
+
+      associate (panel => self%panel, rule => self%problem%collocator%rule, n => self%panel%stages)
+         call end_rates(panel%t1, self%rate, self%bend)
+         ! which becomes less and less
+         self%bend = bend_kept*self%bend
+         call end_rates(panel%condition, fall, fall_rate)
+         fall = -fall
+         self%rest = huge(1.0_wp)
+         if (panel%condition(n) < 1.0e3_wp*self%approach%end*fall) self%rest = &
+            2.0_wp*panel%condition(n)/(fall + sqrt(max(0.0_wp, &
+            fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
+         call self%problem%advance(rule, self%step, panel, self%start)
+      end associate
+      self%kind = linear
+      self%length = self%taken*self%growth_of_step()
+
+   contains
+
+      !> First and second derivative by time of a value at the end of the panel
+      subroutine end_rates(value, first, second)
+         !> Its values at the points of the panel
+         real(wp), intent(in) :: value(0:width)
+         !> Its rate
+         real(wp), intent(out) :: first
+         !> Rate of that
+         real(wp), intent(out) :: second
+
+         real(wp) :: slope(0:width)
+
+         associate (rule => self%problem%collocator%rule, panel => self%panel)
+            slope = rule%slopes(value)
+            first = slope(panel%stages)/panel%pace_at_end()
+            second = (sum(rule%derivative(panel%stages, :)*slope) - 2.0_wp*panel%map(2)*first) &
+               /panel%pace_at_end()**2
+         end associate
+      end subroutine end_rates
+   end subroutine go_on
+
+end module vcor_solver_ive_rebound

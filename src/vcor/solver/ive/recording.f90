@@ -1,0 +1,271 @@
+!> Panels of the internal-variable method as a trajectory
+module vcor_solver_ive_recording
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, &
+      contact_separated, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
+   use vcor_numeric_radau_collocation, only : collocation_t
+   use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
+   use vcor_solver_ive_problem, only : panel_problem_t
+   use vcor_solver_ive_step, only : step_t, step_to
+   use vcor_solver_ive_tuning, only : flat_end, force_better, force_better_inside, &
+      next_to_start, peak_position
+   implicit none
+   private
+
+   public :: forerunner_t
+   public :: begin, record, find_peaks
+
+   !> The panel before the one that is recorded
+   type :: forerunner_t
+      !> The panel; without stages if there is none
+      type(panel_t) :: panel
+      !> State at its start
+      type(start_t) :: start
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp) :: doubt = 0.0_wp
+   end type forerunner_t
+
+contains
+
+   !> First node of a trajectory
+   subroutine begin(rule, impact, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer, parameter :: usual_panels = 8
+
+      call trajectory%reserve(usual_panels*rule%stages)
+      trajectory%state(:, 0) = 0.0_wp
+      trajectory%state(col_velocity, 0) = impact%velocity
+      trajectory%state(col_sphere_velocity, 0) = impact%velocity
+      trajectory%weight(0) = 0.0_wp
+      trajectory%stages = rule%stages
+      allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))
+      allocate (trajectory%barycentric(0:rule%stages), source=rule%barycentric(0:rule%stages))
+   end subroutine begin
+
+   !> Add the nodes of a panel to the trajectory
+   subroutine record(rule, impact, panel, trajectory)
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      integer :: n, first, j
+
+      n = panel%stages
+      call trajectory%reserve(trajectory%final + n)
+      call trajectory%add_map(panel%map)
+      first = trajectory%final + 1
+      trajectory%final = trajectory%final + n
+      trajectory%steps = trajectory%steps + 1
+      trajectory%weight(first:trajectory%final) = rule%weight(1:n) &
+         *(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
+      do j = 1, n
+         associate (state => trajectory%state(:, first + j - 1))
+            state(col_time) = panel%time(j)
+            state(col_indentation) = panel%indentation(j)
+            state(col_force) = panel%force(j)
+            state(col_impulse) = panel%impulse(j)
+            state(col_sphere) = impact%velocity*panel%time(j) &
+               - panel%second_impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
+            state(col_plate) = state(col_sphere) - panel%indentation(j)
+            state(col_plate_velocity) = plate_velocity(impact, panel, j)
+            state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)
+         end associate
+      end do
+   end subroutine record
+
+   !> Largest indentation and force so far
+   subroutine find_peaks(problem, start, panel, doubt, before, accuracy, trajectory)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp), intent(in) :: doubt
+      !> The panel before it
+      type(forerunner_t), intent(in) :: before
+      !> Wanted relative accuracy of the maxima
+      real(wp), intent(in) :: accuracy
+      !> The trajectory, the panel added
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: peak, time
+
+      associate (n => panel%stages)
+         call find_peak(problem, start, panel, panel%indentation, .true., accuracy, peak, time)
+         if (peak > trajectory%max_indentation &
+             .or. panel%indentation(0) >= trajectory%max_indentation) then
+            trajectory%max_indentation = peak
+            trajectory%time_of_max_indentation = time
+         end if
+         call find_peak(problem, start, panel, panel%force, .false., accuracy, peak, time)
+         if (peak > trajectory%max_force .or. panel%force(0) >= trajectory%max_force) then
+            ! where it rises up to the end of the panel, the end is none yet
+            if (time < panel%time(n)) &
+               call refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+            trajectory%max_force = peak
+            trajectory%time_of_max_force = time
+         end if
+      end associate
+   end subroutine find_peaks
+
+   !> Maximum in a panel, by improving the panel up to there: the polynomials of the panel are less
+   !> accurate inside of it than at its end
+   subroutine find_peak(problem, start, panel, value, of_indentation, accuracy, peak, time)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Values at its points
+      real(wp), intent(in) :: value(0:width)
+      !> Whether they are those of the indentation, otherwise of the force
+      logical, intent(in) :: of_indentation
+      !> Wanted relative accuracy of the maximum
+      real(wp), intent(in) :: accuracy
+      !> Maximum
+      real(wp), intent(out) :: peak
+      !> Its time [s]
+      real(wp), intent(out) :: time
+
+      type(panel_t) :: cut
+      type(step_t) :: step
+      real(wp) :: slope, theta
+      integer :: n, j, other, first
+
+      n = panel%stages
+      ! a maximum is next to the largest of the values, on the side to which they rise there
+      j = maxloc(value(0:n), 1) - 1
+      peak = value(j)
+      time = panel%time(j)
+      associate (rule => problem%collocator%rule)
+         slope = sum(rule%derivative(j, :)*value)
+         other = j + merge(1, -1, slope > 0.0_wp)
+         if (other < 0 .or. other > n .or. .not. abs(slope) > flat_end*value(j)) return
+         first = min(j, other)
+         theta = rule%crossing(rule%slopes(value), rule%point(first), rule%point(first + 1), &
+            peak_position)
+         time = theta*(panel%map(1) + panel%map(2)*theta)
+         step = step_to(start%time, time)
+         call problem%guess(panel, step, start, cut)
+         call problem%improve(step, start, accuracy, cut)
+         peak = rule%interpolate(value, theta)
+         if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
+         time = start%time + time
+      end associate
+   end subroutine find_peak
+
+   !> Largest force anew with the panel halved that decides it, where it is not accurate enough.
+   !> The force of modes that settle at once follows the rate of u, and that is the derivative of
+   !> a polynomial: the impulse hardly feels its error but the force does, next to the start of a
+   !> panel still that of the panel before. And a panel in t that begins next to the branch point
+   !> at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
+   subroutine refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Difference of its force from that of its companion, at its end [N]
+      real(wp), intent(in) :: doubt
+      !> The panel before it
+      type(forerunner_t), intent(in) :: before
+      !> Wanted relative accuracy
+      real(wp), intent(in) :: accuracy
+      !> Time of the largest force [s]
+      real(wp), intent(in) :: time
+      !> Largest force [N]
+      real(wp), intent(inout) :: peak
+
+      type(start_t) :: now
+      type(panel_t) :: last
+      real(wp) :: root, branch
+      logical :: early
+
+      associate (n => panel%stages)
+         early = before%panel%stages > 0 .and. before%doubt > force_better*accuracy*peak &
+            .and. time - start%time < next_to_start*(panel%time(n) - start%time)
+         if (early) then
+            now = before%start
+            last = before%panel
+            call solve_halves(problem, start%time, now, last)
+            if (last%converged .and. time > start%time) &
+               call solve_on(problem, step_to(now%time, time - now%time), now, last)
+         else
+            root = sqrt(start%time/time)
+            branch = 0.0_wp
+            if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
+            if (max(doubt/(force_better_inside*peak), branch) <= accuracy) return
+            now = start
+            last = panel
+            call solve_halves(problem, time, now, last)
+         end if
+         if (last%converged) peak = last%force(n)
+      end associate
+   end subroutine refine_force
+
+   !> Go on to a time by two panels: halves in x from first contact, otherwise in time
+   subroutine solve_halves(problem, time, now, last)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> The time [s]
+      real(wp), intent(in) :: time
+      !> State at the start, on return that at the end
+      type(start_t), intent(inout) :: now
+      !> A panel next to the start, on return that at the end; not converged on failure
+      type(panel_t), intent(inout) :: last
+
+      type(step_t) :: step
+
+      step = step_to(now%time, merge(0.5_wp, 0.25_wp, now%time > 0.0_wp)*(time - now%time))
+      call solve_on(problem, step, now, last)
+      if (.not. last%converged) return
+      if (step%index == 0) then
+         step%index = 1
+      else
+         step = step_to(now%time, time - now%time)
+      end if
+      call solve_on(problem, step, now, last)
+   end subroutine solve_halves
+
+   !> Go on by one panel
+   subroutine solve_on(problem, step, now, last)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> The step
+      type(step_t), intent(in) :: step
+      !> State at its start, on return that at its end
+      type(start_t), intent(inout) :: now
+      !> A panel next to it, on return its own; not converged on failure
+      type(panel_t), intent(inout) :: last
+
+      type(panel_t) :: next
+      real(wp) :: inverse(width, width)
+
+      associate (rule => problem%collocator%rule)
+         call problem%guess(last, step, now, next)
+         call problem%solve(rule, step, now, next, inverse)
+         if (next%converged) call problem%advance(rule, step, next, now)
+      end associate
+      last = next
+   end subroutine solve_on
+
+end module vcor_solver_ive_recording
