@@ -118,8 +118,8 @@ contains
 
       text = ''
       if (fit%data%model /= 'prony') return
-      text = ', '//integer_text(size(fit%data%moduli))//' terms'
-      if (size(fit%data%moduli) == 1) text = ', 1 term'
+      text = ', '//integer_text(size(fit%data%list('moduli')))//' terms'
+      if (size(fit%data%list('moduli')) == 1) text = ', 1 term'
    end function terms_of
 
    !> Where the largest misfit is

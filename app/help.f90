@@ -1,7 +1,7 @@
 !> Screens of help: the commands, and the words of the input and the output
 module vcor_app_help
    use vcor_app_commands, only : commands, entry_t, get_page, texts_of
-   use vcor_case_catalogue, only : catalogue, groups, key_t, range_text
+   use vcor_case_catalogue, only : described_keys, groups, key_t, range_text
    use vcor_error, only : code_names, error_t, error_usage, raise
    use vcor_nearest, only : nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
@@ -154,18 +154,20 @@ contains
       !> The page; empty if the word is unknown
       character(len=:), allocatable :: text
 
+      type(key_t), allocatable :: rows(:)
       character(len=:), allocatable :: keys
       integer :: i, j
 
+      allocate (rows, source=described_keys())
       text = ""
       do i = 1, size(groups)
          keys = ""
-         do j = 1, size(catalogue)
-            if (catalogue(j)%group /= groups(i)%name) cycle
+         do j = 1, size(rows)
+            if (rows(j)%group /= groups(i)%name) cycle
             if (present(word)) then
-               if (.not. is_about(word, catalogue(j))) cycle
+               if (.not. is_about(word, rows(j))) cycle
             end if
-            keys = keys//item("   "//catalogue(j)%name, about(catalogue(j)))
+            keys = keys//item("   "//rows(j)%name, about(rows(j)))
          end do
          if (keys == "") cycle
          if (text /= "") text = text//nl
@@ -289,12 +291,14 @@ contains
       !> The words
       character(len=:), allocatable :: words
 
+      type(key_t), allocatable :: rows(:)
       integer :: i
 
+      allocate (rows, source=described_keys())
       words = " "//quantity_names()
-      do i = 1, size(catalogue)
-         words = words//" "//trim(catalogue(i)%group)//" "//trim(catalogue(i)%name)
-         if (catalogue(i)%choices /= "") words = words//" "//trim(catalogue(i)%choices)
+      do i = 1, size(rows)
+         words = words//" "//trim(rows(i)%group)//" "//trim(rows(i)%name)
+         if (rows(i)%choices /= "") words = words//" "//trim(rows(i)%choices)
       end do
       do i = 1, size(statuses)
          words = words//" "//trim(statuses(i)%name)

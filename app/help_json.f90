@@ -3,9 +3,9 @@
 module vcor_app_help_json
    use vcor_app_commands, only : commands, entry_t, get_page, options_of, texts_of
    use vcor_app_help, only : screen_meanings, screen_words
-   use vcor_case_catalogue, only : catalogue, groups, integer_key, key_t, kind_name, logical_key, &
-      real_key, text_key
-   use vcor_case_interval, only : interval_text
+   use vcor_case_catalogue, only : described_keys, groups, integer_key, key_t, kind_name, &
+      logical_key, real_key, text_key
+   use vcor_interval, only : interval_text
    use vcor_error, only : code_meanings, code_names
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_t, statuses
    use vcor_text, only : integer_text
@@ -25,9 +25,11 @@ contains
       !> JSON, UTF-8, ends with a line feed
       character(len=:), allocatable :: text
 
+      type(key_t), allocatable :: rows(:)
       character(len=:), allocatable :: list, words
       integer :: i, j, first, last
 
+      allocate (rows, source=described_keys())
       text = "{"//member("program", "vcor")//", "//member("version", version)//","//nl
 
       words = ""
@@ -42,8 +44,8 @@ contains
       words = ""
       do i = 1, size(groups)
          list = ""
-         do j = 1, size(catalogue)
-            if (catalogue(j)%group == groups(i)%name) call add(list, key_object(catalogue(j)))
+         do j = 1, size(rows)
+            if (rows(j)%group == groups(i)%name) call add(list, key_object(rows(j)))
          end do
          call add(words, "{"//member("name", groups(i)%name)//", " &
             //member("meaning", groups(i)%meaning)//", "//flag("required", groups(i)%required) &

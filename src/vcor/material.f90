@@ -1,148 +1,247 @@
-!> Materials by the name of their model
+!> Materials by the name of their model. A new model is a file of its own under material/ and its
+!> lines here: its name, its parameters, and how it is built from values
 module vcor_material
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_material_cerf, only : cerf_t, new_cerf
-   use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
-   use vcor_material_power_law, only : new_power_law, power_law_t
-   use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
-   use vcor_material_table, only : new_tabulated, tabulated_t
+   use vcor_material_cerf, only : cerf_parameters, cerf_t, new_cerf
+   use vcor_material_mittag_leffler, only : mittag_leffler_parameters, mittag_leffler_t, &
+      new_mittag_leffler
+   use vcor_material_parameter, only : density, parameter_t
+   use vcor_material_power_law, only : new_power_law, power_law_parameters, power_law_t
+   use vcor_material_prony, only : elastic_parameters, new_elastic, new_prony, new_rigid, new_sls, &
+      prony_parameters, prony_t, rigid_parameters, sls_parameters
+   use vcor_material_table, only : new_tabulated, table_parameters, tabulated_t
    use vcor_material_type, only : material_t
+   use vcor_words, only : join_words
    implicit none
    private
 
    public :: material_t, material_data_t, new_material
+   public :: models, identifiable_models, model_parameter_t, model_parameters, parameters_of
 
-   !> What describes a material of any model; a model looks at its own components only
+   !> Names of the models, separated by blanks
+   character(len=*), parameter :: models = &
+      'rigid elastic sls prony power_law cerf mittag_leffler table'
+   !> Those that can be fitted to data
+   character(len=*), parameter :: identifiable_models = 'prony sls power_law cerf mittag_leffler'
+
+   !> A parameter and its model
+   type :: model_parameter_t
+      !> Name of the model
+      character(len=56) :: model = ''
+      !> The parameter
+      type(parameter_t) :: parameter
+   end type model_parameter_t
+
+   integer :: i
+   !> The parameters of all models
+   type(model_parameter_t), parameter :: model_parameters(*) = [ &
+      (model_parameter_t('elastic', elastic_parameters(i)), i=1, size(elastic_parameters)), &
+      (model_parameter_t('sls', sls_parameters(i)), i=1, size(sls_parameters)), &
+      (model_parameter_t('prony', prony_parameters(i)), i=1, size(prony_parameters)), &
+      (model_parameter_t('power_law', power_law_parameters(i)), i=1, size(power_law_parameters)), &
+      (model_parameter_t('cerf', cerf_parameters(i)), i=1, size(cerf_parameters)), &
+      (model_parameter_t('mittag_leffler', mittag_leffler_parameters(i)), &
+      i=1, size(mittag_leffler_parameters)), &
+      (model_parameter_t('table', table_parameters(i)), i=1, size(table_parameters)), &
+      (model_parameter_t('rigid', rigid_parameters(i)), i=1, size(rigid_parameters))]
+
+   !> Most values of a description: more than there are names
+   integer, parameter :: most_values = size(model_parameters) + 1
+
+   !> A value, or a list of them
+   type :: value_t
+      !> Name of the parameter
+      character(len=len(density%name)) :: name = ''
+      !> Number
+      real(wp) :: number = 0.0_wp
+      !> List, shape (n)
+      real(wp), allocatable :: list(:)
+   end type value_t
+
+   !> What describes a material of any model: values by the names of its parameters
    type :: material_data_t
       !> Name that cases call it by
       character(len=:), allocatable :: name
-      !> One of rigid, elastic, sls, prony, power_law, cerf, mittag_leffler, table
+      !> One of `models`
       character(len=:), allocatable :: model
-      !> Mass density [kg/m3]; 0: not known
-      real(wp) :: density = 0.0_wp
-      !> Poisson's ratio [-]
-      real(wp) :: poisson_ratio = 0.5_wp
-      !> elastic: Young's modulus [Pa]
-      real(wp) :: modulus = 0.0_wp
-      !> sls: glassy modulus [Pa]
-      real(wp) :: glassy_modulus = 0.0_wp
-      !> sls: parameter alpha [1/s]
-      real(wp) :: alpha = 0.0_wp
-      !> sls: rate of relaxation [1/s]; cerf: its root [s^(-1/2)]
-      real(wp) :: beta = 0.0_wp
-      !> prony, power_law, cerf, mittag_leffler: equilibrium modulus [Pa]
-      real(wp) :: equilibrium_modulus = 0.0_wp
-      !> prony: moduli of the terms; table: of the points [Pa], shape (n)
-      real(wp), allocatable :: moduli(:)
-      !> prony: rates of the terms [1/s], shape (n)
-      real(wp), allocatable :: rates(:)
-      !> prony: viscosity of a dashpot in parallel [Pa s]
-      real(wp) :: viscosity = 0.0_wp
-      !> power_law: coefficient [Pa s^a]
-      real(wp) :: coefficient = 0.0_wp
-      !> power_law, mittag_leffler: exponent a [-]
-      real(wp) :: exponent = 0.5_wp
-      !> cerf, mittag_leffler: relaxing modulus [Pa]
-      real(wp) :: relaxing_modulus = 0.0_wp
-      !> mittag_leffler: relaxation time [s]
-      real(wp) :: time = 0.0_wp
-      !> table: times of the points [s], shape (n)
-      real(wp), allocatable :: times(:)
+      !> The first name that no model has a parameter of; not allocated if there is none
+      character(len=:), allocatable, private :: unknown
+      !> Number of values
+      integer, private :: n = 0
+      !> The values
+      type(value_t), private :: value(most_values)
    contains
       !> Set a number by its name
       procedure :: set
+      !> Set a list by its name
+      procedure :: set_list
+      !> A number by its name
+      procedure :: number
+      !> A list by its name
+      procedure :: list
       !> Whether another one has the same modulus
       procedure :: deforms_as
+      procedure, private :: place_of
+      procedure, private :: find
    end type material_data_t
 
 contains
+
+   !> Parameters of a model
+   pure function parameters_of(model) result(parameters)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Its parameters; none where there is no such model
+      type(parameter_t), allocatable :: parameters(:)
+
+      allocate (parameters, source=pack(model_parameters%parameter, &
+         model_parameters%model == model))
+   end function parameters_of
+
+   !> Place of a value
+   pure function place_of(self, name) result(place)
+      !> The description
+      class(material_data_t), intent(in) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Place, 0 where there is none
+      integer :: place
+
+      do place = self%n, 1, -1
+         if (self%value(place)%name == name) return
+      end do
+   end function place_of
+
+   !> Find the place of a value, a new one where there is none yet
+   pure subroutine find(self, name, place)
+      !> The description
+      class(material_data_t), intent(inout) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Place, 0 where no model has such a parameter
+      integer, intent(out) :: place
+
+      place = self%place_of(name)
+      if (place > 0) return
+      if (name == density%name .or. any(model_parameters%parameter%name == name)) then
+         self%n = self%n + 1
+         place = self%n
+         self%value(place)%name = name
+      else if (.not. allocated(self%unknown)) then
+         self%unknown = name
+      end if
+   end subroutine find
+
+   !> Set a number by the name of its parameter
+   pure subroutine set(self, name, value, is_taken)
+      !> The description
+      class(material_data_t), intent(inout) :: self
+      !> `density`, or a parameter of any model; otherwise `new_material` fails
+      character(len=*), intent(in) :: name
+      !> Its value, in the unit of the parameter
+      real(wp), intent(in) :: value
+      !> Whether it is one of this model: what is not is no failure then
+      logical, intent(out), optional :: is_taken
+
+      integer :: place
+
+      if (present(is_taken)) then
+         is_taken = name == density%name .or. &
+            any(model_parameters%model == self%model .and. model_parameters%parameter%name == name)
+         if (.not. is_taken) return
+      end if
+      call self%find(name, place)
+      if (place > 0) self%value(place)%number = value
+   end subroutine set
+
+   !> Set a list by the name of its parameter; the points of a table are lists `times` and `moduli`
+   pure subroutine set_list(self, name, list)
+      !> The description
+      class(material_data_t), intent(inout) :: self
+      !> A parameter of any model; otherwise `new_material` fails
+      character(len=*), intent(in) :: name
+      !> Its values, shape (n)
+      real(wp), intent(in) :: list(:)
+
+      integer :: place
+
+      call self%find(name, place)
+      if (place > 0) self%value(place)%list = list
+   end subroutine set_list
+
+   !> A number by the name of its parameter
+   pure function number(self, name, default)
+      !> The description
+      class(material_data_t), intent(in) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Value where none was set; absent: 0
+      real(wp), intent(in), optional :: default
+      !> Its value
+      real(wp) :: number
+
+      integer :: place
+
+      number = 0.0_wp
+      if (present(default)) number = default
+      place = self%place_of(name)
+      if (place > 0) number = self%value(place)%number
+   end function number
+
+   !> A list by the name of its parameter
+   pure function list(self, name)
+      !> The description
+      class(material_data_t), intent(in) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Its values, none where it was not set
+      real(wp), allocatable :: list(:)
+
+      integer :: place
+
+      place = self%place_of(name)
+      if (place > 0) then
+         if (allocated(self%value(place)%list)) list = self%value(place)%list
+      end if
+      if (.not. allocated(list)) allocate (list(0))
+   end function list
 
    !> Whether two descriptions are of one and the same modulus, whatever their names and densities
    pure function deforms_as(self, other) result(is_same)
       !> The description
       class(material_data_t), intent(in) :: self
       !> The other one
-      type(material_data_t), intent(in) :: other
+      class(material_data_t), intent(in) :: other
       !> Whether they are
       logical :: is_same
 
-      is_same = self%model == other%model
-      if (.not. is_same) return
-      is_same = is_equal(numbers(self), numbers(other)) .and. is_equal(self%moduli, other%moduli) &
-         .and. is_equal(self%rates, other%rates) .and. is_equal(self%times, other%times)
-
-   contains
-
-      !> The numbers of a description that are part of its modulus
-      pure function numbers(data)
-         !> The description
-         type(material_data_t), intent(in) :: data
-         !> Numbers
-         real(wp) :: numbers(11)
-
-         numbers = [data%poisson_ratio, data%modulus, data%glassy_modulus, data%alpha, data%beta, &
-            data%equilibrium_modulus, data%viscosity, data%coefficient, data%exponent, &
-            data%relaxing_modulus, data%time]
-      end function numbers
-
-      !> Whether two lists are equal, or both not there
-      pure function is_equal(one, another)
-         !> A list
-         real(wp), intent(in), optional :: one(:)
-         !> Another one
-         real(wp), intent(in), optional :: another(:)
-         !> Whether they are
-         logical :: is_equal
-
-         is_equal = present(one) .eqv. present(another)
-         if (.not. (is_equal .and. present(one))) return
-         is_equal = size(one) == size(another)
-         if (is_equal) is_equal = .not. any(abs(one - another) > 0.0_wp)
-      end function is_equal
+      is_same = self%model == other%model .and. has_all_of(self, other) &
+         .and. has_all_of(other, self)
    end function deforms_as
 
-   !> Set a number by its name, that of the component
-   pure subroutine set(self, name, value, is_taken)
+   !> Whether a description has all values of another but its density
+   pure function has_all_of(self, other) result(yes)
       !> The description
-      class(material_data_t), intent(inout) :: self
-      !> Name of a number
-      character(len=*), intent(in) :: name
-      !> Its value, in the unit of the component
-      real(wp), intent(in) :: value
-      !> Whether there is a number of this name; otherwise nothing changes
-      logical, intent(out) :: is_taken
+      class(material_data_t), intent(in) :: self
+      !> The other one
+      class(material_data_t), intent(in) :: other
+      !> Whether it has
+      logical :: yes
 
-      is_taken = .true.
-      select case (name)
-      case ('density')
-         self%density = value
-      case ('poisson_ratio')
-         self%poisson_ratio = value
-      case ('modulus')
-         self%modulus = value
-      case ('glassy_modulus')
-         self%glassy_modulus = value
-      case ('alpha')
-         self%alpha = value
-      case ('beta')
-         self%beta = value
-      case ('equilibrium_modulus')
-         self%equilibrium_modulus = value
-      case ('viscosity')
-         self%viscosity = value
-      case ('coefficient')
-         self%coefficient = value
-      case ('exponent')
-         self%exponent = value
-      case ('relaxing_modulus')
-         self%relaxing_modulus = value
-      case ('time')
-         self%time = value
-      case default
-         is_taken = .false.
-      end select
-   end subroutine set
+      integer :: i
+
+      yes = .true.
+      do i = 1, other%n
+         associate (value => other%value(i))
+            if (value%name == density%name) cycle
+            yes = yes .and. .not. abs(self%number(value%name) - value%number) > 0.0_wp
+            if (.not. (yes .and. allocated(value%list))) cycle
+            yes = size(self%list(value%name)) == size(value%list)
+            if (yes) yes = .not. any(abs(self%list(value%name) - value%list) > 0.0_wp)
+         end associate
+      end do
+   end function has_all_of
 
    !> Build a material
    subroutine new_material(material, data, error)
@@ -158,47 +257,54 @@ contains
       type(cerf_t) :: cerf
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: table
+      real(wp) :: exponent, time
 
+      if (allocated(data%unknown)) then
+         call raise(error, error_input, "a material has no parameter '"//data%unknown//"'")
+         return
+      end if
       select case (data%model)
       case ('rigid')
          call new_rigid(prony)
          call accept(prony)
       case ('elastic')
-         call new_elastic(prony, data%modulus, error)
+         call new_elastic(prony, data%number('modulus'), error)
          call accept(prony)
       case ('sls')
-         call new_sls(prony, data%glassy_modulus, data%alpha, data%beta, error)
+         call new_sls(prony, data%number('glassy_modulus'), data%number('alpha'), &
+            data%number('beta'), error)
          call accept(prony)
       case ('prony')
-         call new_prony(prony, data%equilibrium_modulus, data%moduli, data%rates, &
-            data%viscosity, error)
+         call new_prony(prony, data%number('equilibrium_modulus'), data%list('moduli'), &
+            data%list('rates'), data%number('viscosity'), error)
          call accept(prony)
       case ('power_law')
-         call new_power_law(power_law, data%equilibrium_modulus, data%coefficient, &
-            data%exponent, error)
+         call new_power_law(power_law, data%number('equilibrium_modulus'), &
+            data%number('coefficient'), data%number('exponent'), error)
          call accept(power_law)
       case ('cerf')
-         call new_cerf(cerf, data%equilibrium_modulus, data%relaxing_modulus, data%beta, error)
+         call new_cerf(cerf, data%number('equilibrium_modulus'), data%number('relaxing_modulus'), &
+            data%number('beta'), error)
          call accept(cerf)
       case ('mittag_leffler')
-         if (data%exponent < 1.0_wp .or. data%exponent > 1.0_wp &
-            .or. .not. data%time > tiny(1.0_wp)) then
-            call new_mittag_leffler(mittag_leffler, data%equilibrium_modulus, &
-               data%relaxing_modulus, data%exponent, data%time, error)
+         exponent = data%number('exponent')
+         time = data%number('time')
+         if (exponent < 1.0_wp .or. exponent > 1.0_wp .or. .not. time > tiny(time)) then
+            call new_mittag_leffler(mittag_leffler, data%number('equilibrium_modulus'), &
+               data%number('relaxing_modulus'), exponent, time, error)
             call accept(mittag_leffler)
          else
             ! the standard linear solid, a sum of one exponential
-            call new_prony(prony, data%equilibrium_modulus, [data%relaxing_modulus], &
-               [1.0_wp/data%time], 0.0_wp, error)
+            call new_prony(prony, data%number('equilibrium_modulus'), &
+               [data%number('relaxing_modulus')], [1.0_wp/time], 0.0_wp, error)
             call accept(prony)
          end if
       case ('table')
-         call new_tabulated(table, data%times, data%moduli, error)
+         call new_tabulated(table, data%list('times'), data%list('moduli'), error)
          call accept(table)
       case default
-         call raise(error, error_input, "unknown model '"//data%model &
-            //"'; known: rigid, elastic, sls, prony, power_law, cerf, " &
-            //'mittag_leffler, table')
+         call raise(error, error_input, "unknown model '"//data%model//"'; known: " &
+            //join_words(models))
       end select
 
    contains
@@ -211,8 +317,8 @@ contains
          if (allocated(error)) return
          allocate (material, source=built)
          material%name = data%name
-         material%density = data%density
-         material%poisson_ratio = data%poisson_ratio
+         material%density = data%number('density')
+         material%poisson_ratio = data%number('poisson_ratio', default=0.5_wp)
          call material%check_constants(error)
          if (allocated(error)) deallocate (material)
       end subroutine accept

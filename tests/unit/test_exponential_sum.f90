@@ -40,13 +40,13 @@ contains
 
       data%name = "material"
       data%model = model
-      data%density = 1100.0_wp
-      data%equilibrium_modulus = 0.0_wp
-      data%coefficient = 1.0e6_wp
-      data%exponent = exponent
-      data%relaxing_modulus = 1.0e8_wp
-      data%beta = 700.0_wp
-      data%time = 1.0e-4_wp
+      call data%set('density', 1100.0_wp)
+      call data%set('equilibrium_modulus', 0.0_wp)
+      call data%set('coefficient', 1.0e6_wp)
+      call data%set('exponent', exponent)
+      call data%set('relaxing_modulus', 1.0e8_wp)
+      call data%set('beta', 700.0_wp)
+      call data%set('time', 1.0e-4_wp)
       call new_material(material, data, error)
       call check(.not. allocated(error), model//" is built")
    end subroutine make

@@ -69,17 +69,16 @@ contains
 
       data%name = 'truth'
       data%model = model
-      data%glassy_modulus = 15.0e6_wp
-      data%alpha = 300.0_wp
-      data%beta = merge(700.0_wp, 1200.0_wp, model == 'cerf')
-      data%equilibrium_modulus = 2.28e6_wp
-      data%relaxing_modulus = 676.5e6_wp
-      data%coefficient = 8.85e5_wp
-      data%exponent = merge(0.62_wp, 0.5_wp, model == 'mittag_leffler')
-      data%time = 2.0e-6_wp
-      allocate (data%moduli(3), data%rates(3))
-      data%moduli = [20.181e6_wp, 38.204e6_wp, 87.344e6_wp]
-      data%rates = [972.0_wp, 6426.0_wp, 34221.0_wp]
+      call data%set('glassy_modulus', 15.0e6_wp)
+      call data%set('alpha', 300.0_wp)
+      call data%set('beta', merge(700.0_wp, 1200.0_wp, model == 'cerf'))
+      call data%set('equilibrium_modulus', 2.28e6_wp)
+      call data%set('relaxing_modulus', 676.5e6_wp)
+      call data%set('coefficient', 8.85e5_wp)
+      call data%set('exponent', merge(0.62_wp, 0.5_wp, model == 'mittag_leffler'))
+      call data%set('time', 2.0e-6_wp)
+      call data%set_list('moduli', [20.181e6_wp, 38.204e6_wp, 87.344e6_wp])
+      call data%set_list('rates', [972.0_wp, 6426.0_wp, 34221.0_wp])
    end function truth
 
    !> Samples of a material
@@ -137,24 +136,7 @@ contains
       !> Its value
       real(wp) :: value
 
-      select case (name)
-      case ('glassy_modulus')
-         value = data%glassy_modulus
-      case ('alpha')
-         value = data%alpha
-      case ('beta')
-         value = data%beta
-      case ('equilibrium_modulus')
-         value = data%equilibrium_modulus
-      case ('relaxing_modulus')
-         value = data%relaxing_modulus
-      case ('coefficient')
-         value = data%coefficient
-      case ('exponent')
-         value = data%exponent
-      case default
-         value = data%time
-      end select
+      value = data%number(name)
    end function parameter_of
 
    !> Exact data give their parameters back
@@ -339,24 +321,24 @@ contains
 
       data%name = 'truth'
       data%model = 'mittag_leffler'
-      data%equilibrium_modulus = 2.06e6_wp
-      data%relaxing_modulus = 1.11e8_wp
-      data%exponent = 0.218_wp
-      data%time = 1.0e-3_wp
+      call data%set('equilibrium_modulus', 2.06e6_wp)
+      call data%set('relaxing_modulus', 1.11e8_wp)
+      call data%set('exponent', 0.218_wp)
+      call data%set('time', 1.0e-3_wp)
       call fit_noisy(data, sampled(data, 1.0e-6_wp, 1.0e-1_wp, 40, .false.), &
          'a small equilibrium modulus', spread, 3)
 
       data%model = 'cerf'
-      data%equilibrium_modulus = 3.5e5_wp
-      data%relaxing_modulus = 1.67e7_wp
-      data%beta = 6.0_wp
+      call data%set('equilibrium_modulus', 3.5e5_wp)
+      call data%set('relaxing_modulus', 1.67e7_wp)
+      call data%set('beta', 6.0_wp)
       call fit_noisy(data, sampled(data, 2.1e-7_wp, 2.7e-3_wp, 56, .false.), &
          'a CERF that has hardly begun', spread, 3)
 
       data%model = 'sls'
-      data%glassy_modulus = 2.26e7_wp
-      data%alpha = 195.0_wp
-      data%beta = 338.0_wp
+      call data%set('glassy_modulus', 2.26e7_wp)
+      call data%set('alpha', 195.0_wp)
+      call data%set('beta', 338.0_wp)
       call fit_noisy(data, sampled(data, 1.9e-7_wp, 3.0e-4_wp, 86, .false.), &
          'a solid that looks like a fluid', spread, 1)
    end subroutine materials_at_bounds
@@ -375,9 +357,9 @@ contains
       integer :: k
 
       data = truth('power_law')
-      data%equilibrium_modulus = 0.0_wp
+      call data%set('equilibrium_modulus', 0.0_wp)
       fixed%name = [character(len=20) :: 'coefficient', 'exponent']
-      fixed%value = [data%coefficient, data%exponent]
+      fixed%value = [data%number('coefficient'), data%number('exponent')]
       samples = sampled(data, 1.0e-7_wp, 1.0e-1_wp, 61, .false.)
       expected = 1.0_wp/norm2(1.0_wp/samples%modulus)
       ! 1 % of the modulus to and fro, and a little less than there is
@@ -398,24 +380,27 @@ contains
       type(error_t), allocatable :: error
 
       data = truth('power_law')
-      data%equilibrium_modulus = 0.0_wp
+      call data%set('equilibrium_modulus', 0.0_wp)
       call fit_material(fit, 'power_law', 0, none, &
          sampled(data, 1.0e-7_wp, 1.0e-1_wp, 61, .false.), error)
       call check(.not. allocated(error), 'a power law alone is fitted')
       if (allocated(error)) return
       call check_close(fit%parameters(1)%value, 0.0_wp, 0.0_wp, 'its equilibrium modulus is 0')
       call check(fit%parameters(1)%state == state_bound, 'and at its bound')
-      call check_relative(fit%parameters(2)%value, data%coefficient, exact, 'the coefficient')
-      call check_relative(fit%parameters(3)%value, data%exponent, exact, 'the exponent')
+      call check_relative(fit%parameters(2)%value, data%number('coefficient'), exact, &
+         'the coefficient')
+      call check_relative(fit%parameters(3)%value, data%number('exponent'), exact, &
+         'the exponent')
 
       data = truth('sls')
-      data%alpha = 0.0_wp
+      call data%set('alpha', 0.0_wp)
       call fit_material(fit, 'sls', 0, none, &
          sampled(data, 1.0e-5_wp, 1.0e-2_wp, 61, .false.), error)
       call check(.not. allocated(error), 'a Maxwell fluid is fitted')
       if (allocated(error)) return
       call check_close(fit%parameters(2)%value, 0.0_wp, 0.0_wp, 'its alpha is 0')
-      call check_relative(fit%parameters(3)%value, data%beta, exact, 'its rate comes back')
+      call check_relative(fit%parameters(3)%value, data%number('beta'), exact, &
+         'its rate comes back')
    end subroutine vanishing_modulus
 
    !> A standard linear solid is a Mittag-Leffler material of exponent 1
@@ -456,18 +441,21 @@ contains
       integer :: k
 
       data = truth('prony')
-      data%equilibrium_modulus = 10.421e6_wp
+      call data%set('equilibrium_modulus', 10.421e6_wp)
       call fit_material(fit, 'prony', 0, none, &
          sampled(data, 1.0e-6_wp, 1.0e-1_wp, 101, dynamic), error)
       call check(.not. allocated(error), 'a series of three terms is fitted')
       if (allocated(error)) return
-      call check(size(fit%data%moduli) == 3, 'with three terms')
-      if (size(fit%data%moduli) /= 3) return
-      do k = 1, 3
-         call check_relative(fit%data%moduli(k), data%moduli(4 - k), exact, 'a modulus comes back')
-         call check_relative(fit%data%rates(k), data%rates(4 - k), exact, 'a rate comes back')
-      end do
-      call check_relative(fit%data%equilibrium_modulus, 10.421e6_wp, exact, &
+      call check(size(fit%data%list('moduli')) == 3, 'with three terms')
+      if (size(fit%data%list('moduli')) /= 3) return
+      associate (moduli => fit%data%list('moduli'), rates => fit%data%list('rates'), &
+         true_moduli => data%list('moduli'), true_rates => data%list('rates'))
+         do k = 1, 3
+            call check_relative(moduli(k), true_moduli(4 - k), exact, 'a modulus comes back')
+            call check_relative(rates(k), true_rates(4 - k), exact, 'a rate comes back')
+         end do
+      end associate
+      call check_relative(fit%data%number('equilibrium_modulus'), 10.421e6_wp, exact, &
          'the equilibrium modulus comes back')
    end subroutine exact_series
 
@@ -487,7 +475,7 @@ contains
          sampled(truth('power_law'), first, 1.0e-2_wp, n, .false.), error)
       call check(.not. allocated(error), 'BUTYL is fitted by a series')
       if (allocated(error)) return
-      call check(size(fit%data%moduli) <= most, 'with no more terms than needed')
+      call check(size(fit%data%list('moduli')) <= most, 'with no more terms than needed')
       call check(abs(fit%largest) <= 1.0e-3_wp, 'to 0.1 %')
       call check_sound(fit)
    end subroutine butyl_series
@@ -499,11 +487,12 @@ contains
 
       integer :: n
 
-      n = size(fit%data%moduli)
-      call check(all(fit%data%moduli > 0.0_wp) .and. all(fit%data%rates > 0.0_wp), &
+      n = size(fit%data%list('moduli'))
+      call check(all(fit%data%list('moduli') > 0.0_wp) .and. all(fit%data%list('rates') > 0.0_wp), &
          'moduli and rates are positive')
-      call check(all(fit%data%rates(:n - 1) > 1.2_wp*fit%data%rates(2:)), &
-         'no two times are the same')
+      associate (rates => fit%data%list('rates'))
+         call check(all(rates(:n - 1) > 1.2_wp*rates(2:)), 'no two times are the same')
+      end associate
       call check(fit%condition < 1.0e4_wp, 'the problem is well conditioned')
    end subroutine check_sound
 
@@ -517,7 +506,7 @@ contains
       call check(.not. allocated(error), 'BUTYL is fitted by a series from dynamic data')
       if (allocated(error)) return
       call check(abs(fit%largest) <= 1.0e-3_wp, 'to 0.1 %')
-      call check(all(fit%data%moduli > 0.0_wp), 'moduli are positive')
+      call check(all(fit%data%list('moduli') > 0.0_wp), 'moduli are positive')
    end subroutine butyl_dynamic
 
    !> In noise a series does not follow the noise
@@ -532,7 +521,7 @@ contains
       call fit_material(fit, 'prony', 0, none, samples, error)
       call check(.not. allocated(error), 'noisy BUTYL is fitted by a series')
       if (allocated(error)) return
-      call check(size(fit%data%moduli) >= 3 .and. size(fit%data%moduli) <= 7, &
+      call check(size(fit%data%list('moduli')) >= 3 .and. size(fit%data%list('moduli')) <= 7, &
          'with some terms, not many')
       call check_close(fit%rms, noise, 0.25_wp*noise, 'what it misses is the noise')
       call check_sound(fit)
@@ -551,7 +540,7 @@ contains
       integer :: run, misses
 
       data = truth('prony')
-      data%equilibrium_modulus = equilibrium
+      call data%set('equilibrium_modulus', equilibrium)
       clean = sampled(data, 1.0e-6_wp, merge(1.0e-1_wp, 6.0e-3_wp, equilibrium > 1.0e6_wp), 101, &
          .false.)
       misses = 0
@@ -565,15 +554,16 @@ contains
             misses = misses + 1
             cycle
          end if
-         distance = (fit%parameters%value - [equilibrium, data%moduli(3), 1.0_wp/data%rates(3), &
-            data%moduli(2), 1.0_wp/data%rates(2), data%moduli(1), 1.0_wp/data%rates(1)]) &
-            /max(fit%parameters%error, tiny(1.0_wp))
+         associate (moduli => data%list('moduli'), times => 1.0_wp/data%list('rates'))
+            distance = (fit%parameters%value - [equilibrium, moduli(3), times(3), moduli(2), &
+               times(2), moduli(1), times(1)])/max(fit%parameters%error, tiny(1.0_wp))
+         end associate
          if (.not. all(abs(distance) <= 3.0_wp)) misses = misses + 1
          spread = spread + sum(distance**2)/real(7*runs, wp)
       end do
       call check(misses <= most_misses, 'series: the truth is within three standard errors')
       ! those of a modulus that is at its bound are smaller than its error
-call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the spread')
+      call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the spread')
    end subroutine noisy_terms
 
    !> A number of terms is taken as it is
@@ -591,7 +581,7 @@ call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the s
             sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .false.), error)
          call check(.not. allocated(error), 'a series of a given number of terms')
          if (allocated(error)) cycle
-         call check(size(fit%data%moduli) == terms(k), 'it has so many')
+         call check(size(fit%data%list('moduli')) == terms(k), 'it has so many')
          call check(fit%rms < 0.3_wp*before, 'and more terms miss less')
          before = fit%rms
       end do
@@ -601,7 +591,8 @@ call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the s
          sampled(truth('power_law'), 1.0e-6_wp, 1.0e-2_wp, 81, .false.), error)
       call check(.not. allocated(error), 'a series with its equilibrium modulus given')
       if (allocated(error)) return
-      call check_close(fit%data%equilibrium_modulus, 2.28e6_wp, 0.0_wp, 'it is what was given')
+      call check_close(fit%data%number('equilibrium_modulus'), 2.28e6_wp, 0.0_wp, &
+         'it is what was given')
    end subroutine given_terms
 
    !> Of residuals that are noise one in a thousand is said to be structured, whatever the fit took
@@ -739,9 +730,9 @@ call check(spread > 0.5_wp .and. spread < 1.42_wp, 'series: the errors are the s
       logical :: dynamic
 
       data = truth('prony')
-      data%equilibrium_modulus = 3.0e6_wp
-      data%moduli = [1.0e8_wp, 6.0e7_wp, 4.0e7_wp, 3.0e7_wp, 2.0e7_wp]
-      data%rates = [1.0e6_wp, 1.0e5_wp, 1.0e4_wp, 1.0e3_wp, 1.0e2_wp]
+      call data%set('equilibrium_modulus', 3.0e6_wp)
+      call data%set_list('moduli', [1.0e8_wp, 6.0e7_wp, 4.0e7_wp, 3.0e7_wp, 2.0e7_wp])
+      call data%set_list('rates', [1.0e6_wp, 1.0e5_wp, 1.0e4_wp, 1.0e3_wp, 1.0e2_wp])
       do k = 1, 4
          dynamic = k > 2
          right = 0

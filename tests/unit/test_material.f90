@@ -475,20 +475,20 @@ contains
       integer :: i
 
       data%name = 'some rubber'
-      data%density = 1100.0_wp
-      data%poisson_ratio = 0.45_wp
-      data%modulus = 1.0e6_wp
-      data%glassy_modulus = 2.0e6_wp
-      data%alpha = 1.0_wp
-      data%beta = 4.0_wp
-      data%equilibrium_modulus = 3.0e6_wp
-      data%moduli = [4.0e6_wp]
-      data%rates = [5.0_wp]
-      data%viscosity = 6.0_wp
-      data%coefficient = 7.0_wp
-      data%exponent = 0.25_wp
-      data%relaxing_modulus = 8.0e6_wp
-      data%time = 9.0_wp
+      call data%set('density', 1100.0_wp)
+      call data%set('poisson_ratio', 0.45_wp)
+      call data%set('modulus', 1.0e6_wp)
+      call data%set('glassy_modulus', 2.0e6_wp)
+      call data%set('alpha', 1.0_wp)
+      call data%set('beta', 4.0_wp)
+      call data%set('equilibrium_modulus', 3.0e6_wp)
+      call data%set_list('moduli', [4.0e6_wp])
+      call data%set_list('rates', [5.0_wp])
+      call data%set('viscosity', 6.0_wp)
+      call data%set('coefficient', 7.0_wp)
+      call data%set('exponent', 0.25_wp)
+      call data%set('relaxing_modulus', 8.0e6_wp)
+      call data%set('time', 9.0_wp)
       do i = 1, size(model)
          data%model = trim(model(i))
          call new_material(material, data, error)
@@ -528,7 +528,7 @@ contains
          "known: rigid, elastic, sls, prony, power_law, cerf, mittag_leffler")
       call check(.not. allocated(material), "an unknown model makes no material")
       data%model = 'sls'
-      data%alpha = 5.0_wp
+      call data%set('alpha', 5.0_wp)
       call new_material(material, data, error)
       call refused(error, "an impossible SLS", "alpha <= beta")
       call check(.not. allocated(material), "bad parameters make no material")

@@ -242,10 +242,10 @@ contains
 
       data%name = 'rubber'
       data%model = 'mittag_leffler'
-      data%equilibrium_modulus = 1.0e6_wp
-      data%relaxing_modulus = 3.0e6_wp
-      data%exponent = exponent
-      data%time = tau
+      call data%set('equilibrium_modulus', 1.0e6_wp)
+      call data%set('relaxing_modulus', 3.0e6_wp)
+      call data%set('exponent', exponent)
+      call data%set('time', tau)
       call new_material(material, data, error)
       call success(error, "a Mittag-Leffler material is built by its name")
    end subroutine build
@@ -325,17 +325,17 @@ contains
 
       data%name = 'rubber'
       data%model = 'mittag_leffler'
-      data%exponent = 1.0_wp
-      data%relaxing_modulus = 1.0_wp
-      data%time = 0.0_wp
+      call data%set('exponent', 1.0_wp)
+      call data%set('relaxing_modulus', 1.0_wp)
+      call data%set('time', 0.0_wp)
       call new_material(built, data, error)
       call refused(error, "time")
-      data%time = 1.0_wp
-      data%relaxing_modulus = -1.0_wp
+      call data%set('time', 1.0_wp)
+      call data%set('relaxing_modulus', -1.0_wp)
       call new_material(built, data, error)
       call refused(error, "moduli")
-      data%exponent = 1.5_wp
-      data%relaxing_modulus = 1.0_wp
+      call data%set('exponent', 1.5_wp)
+      call data%set('relaxing_modulus', 1.0_wp)
       call new_material(built, data, error)
       call refused(error, "exponent")
    end subroutine test_refusals

@@ -361,12 +361,12 @@ contains
 
       data%name = "rubber"
       data%model = "table"
-      data%times = [1.0_wp, 2.0_wp]
-      data%moduli = [2.0e6_wp, 1.0e6_wp]
+      call data%set_list('times', [1.0_wp, 2.0_wp])
+      call data%set_list('moduli', [2.0e6_wp, 1.0e6_wp])
       call new_material(built, data, error)
       call success(error, "a table is built by its name")
       call check_relative(built%glassy(), 2.0e6_wp, rounding, "with its points")
-      data%times = [2.0_wp, 1.0_wp]
+      call data%set_list('times', [2.0_wp, 1.0_wp])
       call new_material(built, data, error)
       call refused(error, "increase")
    end subroutine test_refusals

@@ -387,8 +387,8 @@ contains
       !> The body, its material built
       type(body_t), intent(inout) :: body
 
-      body%material%density = body%data%density
-      body%material%poisson_ratio = body%data%poisson_ratio
+      body%material%density = body%data%number('density')
+      body%material%poisson_ratio = body%data%number('poisson_ratio', default=0.5_wp)
    end subroutine set_constants
 
 end module vcor_case_blueprint

@@ -2,12 +2,13 @@
 !>
 !> Reading, checking, printing and help are all made from it, so a new key is a new row here and
 !> nothing else.
-!> A key whose meaning depends on the model of its material has one row per meaning, with the
-!> models in `models`;
-!> such rows share their kind and their default.
+!> The keys of `&material` come from the parameters of the models, a row for each key of each model;
+!> rows of one key share their kind and their default.
 module vcor_case_catalogue
    use vcor_kinds, only : wp
-   use vcor_case_interval, only : interval_t, interval_text
+   use vcor_interval, only : interval_t, interval_text
+   use vcor_material, only : identifiable_models, model_parameters, models
+   use vcor_material_parameter, only : density, positive
    use vcor_text, only : lower
    use vcor_words, only : contains_word, join_words
    implicit none
@@ -16,7 +17,7 @@ module vcor_case_catalogue
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       & list_key
    public :: find_group, find_key, first_row, last_row, row_for_model
-   public :: kind_name, range_text, wanted, keys_of, group_names
+   public :: kind_name, range_text, wanted, keys_of, group_names, described_keys
 
    !> Kinds of values: a real number
    integer, parameter :: real_key = 1
@@ -70,14 +71,6 @@ module vcor_case_catalogue
       character(len=8) :: selector = ""
    end type group_t
 
-   type(interval_t), parameter :: positive = interval_t(lower=0.0_wp, lower_open=.true.)
-   type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
-   type(interval_t), parameter :: poisson_range = &
-      & interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp)
-   type(interval_t), parameter :: unit_open = &
-      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
-   type(interval_t), parameter :: unit_half_open = &
-      & interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp)
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
    type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
@@ -95,6 +88,7 @@ module vcor_case_catalogue
       & group_t("sweep", "A parameter that is varied; several make a grid", repeated=.true.), &
       & group_t("output", "What is written, and where")]
 
+   integer :: i
    !> The keys, group by group in the order of `groups`
    type(key_t), parameter :: catalogue(*) = [ &
       & key_t("case", "title", text_key, "Title, copied to the outputs", default="''"), &
@@ -123,44 +117,14 @@ module vcor_case_catalogue
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
       &    required=.true.), &
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices="rigid elastic sls prony power_law cerf mittag_leffler table", &
-      &    required=.true.), &
-      & key_t("material", "density", real_key, &
-      &    "Density; of a sphere without mass, of a plate with waves", "kg/m3", positive), &
-      & key_t("material", "poisson_ratio", real_key, "Poisson's ratio", range=poisson_range, &
-      &    models="elastic sls prony power_law cerf mittag_leffler table", required=.true.), &
-      & key_t("material", "poisson_ratio", real_key, "Poisson's ratio, without effect", &
-      &    range=poisson_range, models="rigid"), &
-      & key_t("material", "modulus", real_key, "Young's modulus", "Pa", positive, &
-      &    models="elastic", required=.true.), &
-      & key_t("material", "glassy_modulus", real_key, "Modulus at time zero", "Pa", positive, &
-      &    models="sls", required=.true.), &
-      & key_t("material", "alpha", real_key, "Rate; rubbery modulus = glassy_modulus*alpha/beta", &
-      &    "1/s", not_negative, models="sls", required=.true.), &
-      & key_t("material", "beta", real_key, "Rate of relaxation", "1/s", not_negative, &
-      &    models="sls", required=.true.), &
-      & key_t("material", "beta", real_key, "Root of the rate of relaxation", "s^-1/2", positive, &
-      &    models="cerf", required=.true.), &
-      & key_t("material", "equilibrium_modulus", real_key, "Modulus after a long time", "Pa", &
-      &    not_negative, models="prony power_law cerf mittag_leffler", default="0.0"), &
-      & key_t("material", "moduli", list_key, "Moduli of the relaxing terms", "Pa", positive, &
-      &    models="prony"), &
-      & key_t("material", "rates", list_key, "Rates of the relaxing terms; or give times", "1/s", &
-      &    positive, models="prony"), &
-      & key_t("material", "times", list_key, "Relaxation times of the terms; or give rates", "s", &
-      &    positive, models="prony"), &
-      & key_t("material", "viscosity", real_key, "Dashpot in parallel with the other terms", &
-      &    "Pa s", not_negative, models="prony", default="0.0"), &
-      & key_t("material", "coefficient", real_key, "Coefficient C of C t^-a / Gamma(1-a)", &
-      &    "Pa s^a", positive, models="power_law", required=.true.), &
-      & key_t("material", "exponent", real_key, "Exponent a of C t^-a / Gamma(1-a)", &
-      &    range=unit_open, models="power_law", required=.true.), &
-      & key_t("material", "exponent", real_key, "Exponent a of the function E_a(-(t/time)^a)", &
-      &    range=unit_half_open, models="mittag_leffler", required=.true.), &
-      & key_t("material", "relaxing_modulus", real_key, "Part of the modulus that relaxes", "Pa", &
-      &    positive, models="cerf mittag_leffler", required=.true.), &
-      & key_t("material", "time", real_key, "Relaxation time", "s", positive, &
-      &    models="mittag_leffler", required=.true.), &
+      &    choices=models, required=.true.), &
+      & key_t("material", density%name, real_key, density%meaning, density%unit, density%range), &
+      & (key_t("material", model_parameters(i)%parameter%name, &
+      &    merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
+      &    model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &
+      &    model_parameters(i)%parameter%range, default=model_parameters(i)%parameter%default, &
+      &    models=model_parameters(i)%model, required=model_parameters(i)%parameter%required), &
+      &    i=1, size(model_parameters)), &
       & key_t("material", "file", text_key, "File of times and moduli; from the case's folder", &
       &    models="table", required=.true.), &
       & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
@@ -168,9 +132,9 @@ module vcor_case_catalogue
       & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
       &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
       & key_t("material", "valid_from", real_key, "First time that the model was fitted to", "s", &
-      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      &    positive, models=identifiable_models), &
       & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
-      &    positive, models="sls prony power_law cerf mittag_leffler"), &
+      &    positive, models=identifiable_models), &
       !
       & key_t("solver", "method", text_key, &
       &    "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
@@ -285,8 +249,8 @@ contains
       !> Row, 0 when the key does not belong to the model
       integer :: found
 
-      do found = row, size(catalogue)
-         if (catalogue(found)%name /= catalogue(row)%name) exit
+      do found = row, last_row(find_group(catalogue(row)%group))
+         if (catalogue(found)%name /= catalogue(row)%name) cycle
          if (catalogue(found)%models == "") return
          if (contains_word(catalogue(found)%models, model)) return
       end do
@@ -307,6 +271,39 @@ contains
          text = "one of "//join_words(key%choices)
       end if
    end function range_text
+
+   !> The keys as a page describes them: rows that say the same for several models are one
+   pure function described_keys() result(keys)
+      !> Rows, those of one text with the models of all of them
+      type(key_t), allocatable :: keys(:)
+      logical :: is_first(size(catalogue))
+      integer :: row, other
+
+      allocate (keys, source=catalogue)
+      is_first = .true.
+      do row = 2, size(catalogue)
+         do other = 1, row - 1
+            if (.not. says_the_same(catalogue(row), catalogue(other))) cycle
+            keys(other)%models = trim(keys(other)%models)//" "//catalogue(row)%models
+            is_first(row) = .false.
+            exit
+         end do
+      end do
+      keys = pack(keys, is_first)
+   end function described_keys
+
+   !> Whether two rows say the same of a key
+   pure function says_the_same(one, other) result(yes)
+      !> One
+      type(key_t), intent(in) :: one
+      !> The other
+      type(key_t), intent(in) :: other
+      !> Whether they do
+      logical :: yes
+
+      yes = one%group == other%group .and. one%name == other%name .and. one%unit == other%unit &
+         & .and. one%meaning == other%meaning .and. (one%required .eqv. other%required)
+   end function says_the_same
 
    !> What a key takes, in words: `a number > 0 [m]`
    pure function wanted(key) result(text)

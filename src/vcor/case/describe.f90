@@ -22,6 +22,7 @@ contains
       !> Its description
       type(material_data_t), intent(out) :: data
 
+      real(wp), allocatable :: list(:)
       real(wp) :: value
       integer :: group, row
       logical :: is_taken
@@ -34,12 +35,15 @@ contains
          call case%get('material', catalogue(row)%name, value, item)
          if (.not. ieee_is_nan(value)) call data%set(catalogue(row)%name, value, is_taken)
       end do
-      call case%get('material', 'moduli', data%moduli, item)
-      call case%get('material', 'times', data%times, item)
-      if (case%given('material', 'times', item)) then
-         data%rates = 1.0_wp/data%times
-      else
-         call case%get('material', 'rates', data%rates, item)
+      call case%get('material', 'moduli', list, item)
+      call data%set_list('moduli', list)
+      call case%get('material', 'rates', list, item)
+      call data%set_list('rates', list)
+      call case%get('material', 'times', list, item)
+      if (data%model == 'table') then
+         call data%set_list('times', list)
+      else if (case%given('material', 'times', item)) then
+         call data%set_list('rates', 1.0_wp/list)
       end if
    end subroutine describe_material
 

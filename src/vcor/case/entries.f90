@@ -4,7 +4,7 @@ module vcor_case_entries
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_internal, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_case_interval, only : contains_number
+   use vcor_interval, only : contains_number
    use vcor_case_catalogue, only : catalogue, groups, integer_key, real_key, row_for_model, wanted
    use vcor_case_store, only : entry_t, store_t
    use vcor_text, only : canonical_name, integer_text, printable, real_text, same_name

@@ -1,7 +1,8 @@
 !> A material that was found by a fit, as a group of a case and in the place of another
 module vcor_case_identified
    use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t
+   use vcor_material, only : material_data_t, parameters_of
+   use vcor_material_parameter, only : parameter_t
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : find_group
    use vcor_case_store, only : entry_t
@@ -22,28 +23,18 @@ contains
       !> The material
       type(material_data_t), intent(in) :: data
 
+      type(parameter_t), allocatable :: parameters(:)
+      integer :: i
+
       call put(case, item, 'model', word=data%model)
-      select case (data%model)
-      case ('sls')
-         call put_number(case, item, 'glassy_modulus', data%glassy_modulus)
-         call put_number(case, item, 'alpha', data%alpha)
-         call put_number(case, item, 'beta', data%beta)
-         return
-      case ('power_law')
-         call put_number(case, item, 'coefficient', data%coefficient)
-         call put_number(case, item, 'exponent', data%exponent)
-      case ('cerf')
-         call put_number(case, item, 'relaxing_modulus', data%relaxing_modulus)
-         call put_number(case, item, 'beta', data%beta)
-      case ('mittag_leffler')
-         call put_number(case, item, 'relaxing_modulus', data%relaxing_modulus)
-         call put_number(case, item, 'exponent', data%exponent)
-         call put_number(case, item, 'time', data%time)
-      case default
-         call put(case, item, 'moduli', list=data%moduli)
-         call put(case, item, 'times', list=1.0_wp/data%rates)
-      end select
-      call put_number(case, item, 'equilibrium_modulus', data%equilibrium_modulus)
+      allocate (parameters, source=parameters_of(data%model))
+      do i = 1, size(parameters)
+         if (.not. parameters(i)%fitted .or. parameters(i)%is_list) cycle
+         call put_number(case, item, parameters(i)%name, data%number(parameters(i)%name))
+      end do
+      if (data%model /= 'prony') return
+      call put(case, item, 'moduli', list=data%list('moduli'))
+      call put(case, item, 'times', list=1.0_wp/data%list('rates'))
    end subroutine put_material
 
    !> Make a material of a case one that is given by points

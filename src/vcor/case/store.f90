@@ -7,7 +7,7 @@
 module vcor_case_store
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_kinds, only : wp
-   use vcor_case_interval, only : contains_number, is_computable
+   use vcor_interval, only : contains_number, is_computable
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       & integer_key, &
       & key_t, last_row, list_key, logical_key, real_key, text_key, wanted

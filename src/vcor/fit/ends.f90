@@ -51,7 +51,7 @@ contains
                if (late > error) parameter%unseen = unseen_later
             case ('alpha')
                ! the rubbery modulus is glassy_modulus*alpha/beta
-               if (late > fit%data%glassy_modulus*error/fit%data%beta) &
+               if (late > fit%data%number('glassy_modulus')*error/fit%data%number('beta')) &
                   parameter%unseen = unseen_later
             case ('glassy_modulus', 'relaxing_modulus')
                if (early > error) parameter%unseen = unseen_earlier

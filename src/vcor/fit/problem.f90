@@ -176,15 +176,14 @@ contains
       type(material_data_t) :: data
 
       integer :: i
-      logical :: is_taken
 
       data%name = model
       data%model = model
       do i = 1, size(parameters)
-         call data%set(trim(parameters(i)%name), parameters(i)%value, is_taken)
+         call data%set(trim(parameters(i)%name), parameters(i)%value)
       end do
       ! the rubbery modulus does not exceed the glassy one
-      if (model == 'sls') data%alpha = min(data%alpha, data%beta)
+      if (model == 'sls') call data%set('alpha', min(data%number('alpha'), data%number('beta')))
    end function described
 
    !> Residuals: logarithms of model over data

@@ -188,13 +188,13 @@ contains
 
       data%name = model
       data%model = model
-      data%glassy_modulus = 1.0_wp
-      data%relaxing_modulus = 1.0_wp
-      data%coefficient = 1.0_wp
-      data%exponent = power
-      data%time = time
-      data%beta = 1.0_wp/time
-      if (model == 'cerf') data%beta = sqrt(data%beta)
+      call data%set('glassy_modulus', 1.0_wp)
+      call data%set('relaxing_modulus', 1.0_wp)
+      call data%set('coefficient', 1.0_wp)
+      call data%set('exponent', power)
+      call data%set('time', time)
+      call data%set('beta', 1.0_wp/time)
+      if (model == 'cerf') call data%set('beta', sqrt(data%number('beta')))
    end function unit_shape
 
 end module vcor_fit_scan

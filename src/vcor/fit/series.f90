@@ -400,9 +400,9 @@ contains
       n = size(series%rates)
       fit%data%name = 'prony'
       fit%data%model = 'prony'
-      fit%data%equilibrium_modulus = series%equilibrium
-      fit%data%moduli = series%moduli(n:1:-1)
-      fit%data%rates = exp(series%rates(n:1:-1))
+      call fit%data%set('equilibrium_modulus', series%equilibrium)
+      call fit%data%set_list('moduli', series%moduli(n:1:-1))
+      call fit%data%set_list('rates', exp(series%rates(n:1:-1)))
       allocate (fit%parameters(2*n + 1))
       fit%parameters(1) = parameter_t('equilibrium_modulus', 'Pa', series%equilibrium)
       if (fixed >= 0.0_wp) then

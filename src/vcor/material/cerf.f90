@@ -6,12 +6,19 @@ module vcor_material_cerf
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_parameter, only : equilibrium_modulus, parameter_t, poisson_ratio, positive, &
+      relaxing_modulus
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: cerf_t, new_cerf
+   public :: cerf_t, new_cerf, cerf_parameters
+
+   !> Parameters of model `cerf`
+   type(parameter_t), parameter :: cerf_parameters(*) = [poisson_ratio, equilibrium_modulus, &
+      relaxing_modulus, &
+      parameter_t('beta', 'Root of the rate of relaxation', 's^-1/2', positive, fitted=.true.)]
 
    !> E(t) = E_0 + E_1 CERF(b sqrt(t)), Eq. (24)
    type, extends(material_t) :: cerf_t

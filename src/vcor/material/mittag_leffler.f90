@@ -6,13 +6,23 @@ module vcor_material_mittag_leffler
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_interval, only : interval_t
+   use vcor_material_parameter, only : equilibrium_modulus, parameter_t, poisson_ratio, positive, &
+      relaxing_modulus
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
    implicit none
    private
 
-   public :: mittag_leffler_t, new_mittag_leffler
+   public :: mittag_leffler_t, new_mittag_leffler, mittag_leffler_parameters
+
+   !> Parameters of model `mittag_leffler`; with an exponent of 1 it is the standard linear solid
+   type(parameter_t), parameter :: mittag_leffler_parameters(*) = [poisson_ratio, &
+      equilibrium_modulus, relaxing_modulus, &
+      parameter_t('exponent', 'Exponent a of the function E_a(-(t/time)^a)', '', &
+      interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp), fitted=.true.), &
+      parameter_t('time', 'Relaxation time', 's', positive, fitted=.true.)]
 
    !> E(t) = E_0 + E_1 E_a(-(t/tau)^a)
    type, extends(material_t) :: mittag_leffler_t

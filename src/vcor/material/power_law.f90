@@ -5,12 +5,22 @@ module vcor_material_power_law
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_parameter, only : between_0_and_1, equilibrium_modulus, parameter_t, &
+      poisson_ratio, positive
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: power_law_t, new_power_law
+   public :: power_law_t, new_power_law, power_law_parameters
+
+   !> Parameters of model `power_law`
+   type(parameter_t), parameter :: power_law_parameters(*) = [poisson_ratio, &
+      equilibrium_modulus, &
+      parameter_t('coefficient', 'Coefficient C of C t^-a / Gamma(1-a)', 'Pa s^a', positive, &
+      fitted=.true.), &
+      parameter_t('exponent', 'Exponent a of C t^-a / Gamma(1-a)', '', between_0_and_1, &
+      fitted=.true.)]
 
    !> E(t) = E_0 + C t^-a/Gamma(1 - a), Eq. (23-b) with a = 1/2
    type, extends(material_t) :: power_law_t

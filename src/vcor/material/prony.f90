@@ -6,11 +6,38 @@ module vcor_material_prony
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_parameter, only : equilibrium_modulus, linear, not_negative, parameter_t, &
+      poisson_ratio, positive
    use vcor_material_type, only : material_t
    implicit none
    private
 
    public :: prony_t, new_prony, new_sls, new_elastic, new_rigid
+   public :: prony_parameters, sls_parameters, elastic_parameters, rigid_parameters
+
+   !> Parameters of model `rigid`
+   type(parameter_t), parameter :: rigid_parameters(*) = [ &
+      parameter_t('poisson_ratio', "Poisson's ratio, without effect", '', poisson_ratio%range, &
+      required=.false.)]
+   !> Of model `elastic`
+   type(parameter_t), parameter :: elastic_parameters(*) = [poisson_ratio, &
+      parameter_t('modulus', "Young's modulus", 'Pa', positive)]
+   !> Of model `sls`
+   type(parameter_t), parameter :: sls_parameters(*) = [poisson_ratio, &
+      parameter_t('glassy_modulus', 'Modulus at time zero', 'Pa', positive, fitted=.true.), &
+      parameter_t('alpha', 'Rate; rubbery modulus = glassy_modulus*alpha/beta', '1/s', &
+      not_negative, scale=linear, fitted=.true.), &
+      parameter_t('beta', 'Rate of relaxation', '1/s', not_negative, fitted=.true.)]
+   !> Of model `prony`; a fit finds `times`
+   type(parameter_t), parameter :: prony_parameters(*) = [poisson_ratio, equilibrium_modulus, &
+      parameter_t('moduli', 'Moduli of the relaxing terms', 'Pa', positive, required=.false., &
+      fitted=.true., is_list=.true.), &
+      parameter_t('rates', 'Rates of the relaxing terms; or give times', '1/s', positive, &
+      required=.false., is_list=.true.), &
+      parameter_t('times', 'Relaxation times of the terms; or give rates', 's', positive, &
+      required=.false., fitted=.true., is_list=.true.), &
+      parameter_t('viscosity', 'Dashpot in parallel with the other terms', 'Pa s', not_negative, &
+      required=.false., default='0.0')]
 
    !> E(t) = E_0 + sum_i E_i exp(-b_i t) + viscosity delta(t), Eqs. (17) and (26)
    type, extends(material_t) :: prony_t

@@ -4,6 +4,7 @@ module vcor_material_table
    use vcor_kinds, only : wp
    use vcor_material_exponential_fit, only : fit_exponentials
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_parameter, only : parameter_t, poisson_ratio
    use vcor_material_type, only : material_t
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
@@ -11,6 +12,10 @@ module vcor_material_table
    private
 
    public :: tabulated_t, new_tabulated, modulus_rounding, smallest_value, largest_value
+   public :: table_parameters
+
+   !> Parameters of model `table` beside its points
+   type(parameter_t), parameter :: table_parameters(*) = [poisson_ratio]
 
    !> Growth of the modulus from one point to the next, relative, that counts as rounding
    real(wp), parameter :: modulus_rounding = 1.0e-10_wp

@@ -21,7 +21,7 @@ module vcor_sweep_sweep
    use vcor_case_build, only : locate
    use vcor_case_case, only : case_t
    use vcor_case_grid, only : grid_t
-   use vcor_case_interval, only : contains_number, interval_t
+   use vcor_interval, only : contains_number, interval_t
    use vcor_case_catalogue, only : catalogue, row_for_model, wanted
    use vcor_sweep_quantity, only : point_failed, point_invalid
    implicit none

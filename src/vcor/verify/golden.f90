@@ -156,19 +156,19 @@ contains
          data = sls(15.0e6_wp, 300.0_wp, 1200.0_wp)
       case (2)
          data%model = 'prony'
-         data%equilibrium_modulus = 10.421e6_wp
-         data%moduli = [20.181e6_wp, 38.204e6_wp, 87.344e6_wp]
-         data%rates = [972.0_wp, 6426.0_wp, 34221.0_wp]
+         call data%set('equilibrium_modulus', 10.421e6_wp)
+         call data%set_list('moduli', [20.181e6_wp, 38.204e6_wp, 87.344e6_wp])
+         call data%set_list('rates', [972.0_wp, 6426.0_wp, 34221.0_wp])
       case (3)
          data%model = 'cerf'
-         data%equilibrium_modulus = 0.442e6_wp
-         data%relaxing_modulus = 676.5e6_wp
-         data%beta = 700.0_wp
+         call data%set('equilibrium_modulus', 0.442e6_wp)
+         call data%set('relaxing_modulus', 676.5e6_wp)
+         call data%set('beta', 700.0_wp)
       case default
          data%model = 'power_law'
-         data%equilibrium_modulus = 2.28e6_wp
-         data%coefficient = 0.885e6_wp
-         data%exponent = 0.5_wp
+         call data%set('equilibrium_modulus', 2.28e6_wp)
+         call data%set('coefficient', 0.885e6_wp)
+         call data%set('exponent', 0.5_wp)
       end select
    end function material
 

@@ -108,8 +108,7 @@ contains
 
       data = material
       data%name = 'body'
-      data%density = plate_density
-      if (.not. allocated(data%moduli)) allocate (data%moduli(0), data%rates(0))
+      call data%set('density', plate_density)
       call new_material(body, data, error)
    end subroutine make_body
 
@@ -151,7 +150,7 @@ contains
       type(material_data_t) :: data
 
       data%model = 'elastic'
-      data%modulus = modulus
+      call data%set('modulus', modulus)
    end function elastic
 
    !> A standard linear solid
@@ -166,9 +165,9 @@ contains
       type(material_data_t) :: data
 
       data%model = 'sls'
-      data%glassy_modulus = glassy_modulus
-      data%alpha = alpha
-      data%beta = beta
+      call data%set('glassy_modulus', glassy_modulus)
+      call data%set('alpha', alpha)
+      call data%set('beta', beta)
    end function sls
 
    !> A spring and a dashpot side by side
@@ -181,8 +180,8 @@ contains
       type(material_data_t) :: data
 
       data%model = 'prony'
-      data%equilibrium_modulus = modulus
-      data%viscosity = viscosity
+      call data%set('equilibrium_modulus', modulus)
+      call data%set('viscosity', viscosity)
    end function kelvin_voigt
 
 end module vcor_verify_impacts

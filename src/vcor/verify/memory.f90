@@ -40,10 +40,10 @@ contains
          'no time scale; numbers: own reference values, 12 digits')
       data%model = 'power_law'
       do i = 1, size(exponent)
-         data%exponent = exponent(i)
-         data%coefficient = 1.0e6_wp
+         call data%set('exponent', exponent(i))
+         call data%set('coefficient', 1.0e6_wp)
          call strike(impact(1), law%error, data)
-         data%coefficient = 3.0e4_wp
+         call data%set('coefficient', 3.0e4_wp)
          call strike(impact(2), law%error, data, velocity=0.3_wp, mass=2.0e-3_wp, radius=4.0e-3_wp)
          if (allocated(law%error)) return
          methods = methods_for()
@@ -75,14 +75,14 @@ contains
          'identities of the Mittag-Leffler function; an impact by the other model')
       methods = methods_for()
       cerf%model = 'cerf'
-      cerf%equilibrium_modulus = 0.442e6_wp
-      cerf%relaxing_modulus = 676.5e6_wp
-      cerf%beta = beta
+      call cerf%set('equilibrium_modulus', 0.442e6_wp)
+      call cerf%set('relaxing_modulus', 676.5e6_wp)
+      call cerf%set('beta', beta)
       data%model = 'mittag_leffler'
-      data%equilibrium_modulus = cerf%equilibrium_modulus
-      data%relaxing_modulus = cerf%relaxing_modulus
-      data%exponent = 0.5_wp
-      data%time = 1.0_wp/beta**2
+      call data%set('equilibrium_modulus', cerf%number('equilibrium_modulus'))
+      call data%set('relaxing_modulus', cerf%number('relaxing_modulus'))
+      call data%set('exponent', 0.5_wp)
+      call data%set('time', 1.0_wp/beta**2)
       call strike(impact, law%error, data, waves_relaxing)
       call strike(other, law%error, cerf, waves_relaxing)
       if (allocated(law%error)) return
@@ -90,10 +90,10 @@ contains
          call law%add_pair('cor, exponent 1/2: CERF', methods(i), 2.0_wp*accuracy_of(methods(i)), &
             why, impact, other)
       end do
-      data%equilibrium_modulus = drop*glassy
-      data%relaxing_modulus = (1.0_wp - drop)*glassy
-      data%exponent = 1.0_wp
-      data%time = 1.0_wp/rate
+      call data%set('equilibrium_modulus', drop*glassy)
+      call data%set('relaxing_modulus', (1.0_wp - drop)*glassy)
+      call data%set('exponent', 1.0_wp)
+      call data%set('time', 1.0_wp/rate)
       call strike(impact, law%error, data, waves_relaxing)
       call strike(other, law%error, sls(glassy, drop*rate, rate), waves_relaxing)
       if (allocated(law%error)) return
@@ -195,13 +195,13 @@ contains
       call law%begin('Half space: mass, radius and speed enter through m/sqrt(R v0) alone', &
          'dimensional analysis; an impact against one of the same m/sqrt(R v0)')
       data(1)%model = 'prony'
-      data(1)%equilibrium_modulus = 1.0e6_wp
-      data(1)%moduli = [2.0e6_wp, 5.0e6_wp]
-      data(1)%rates = [300.0_wp, 4000.0_wp]
+      call data(1)%set('equilibrium_modulus', 1.0e6_wp)
+      call data(1)%set_list('moduli', [2.0e6_wp, 5.0e6_wp])
+      call data(1)%set_list('rates', [300.0_wp, 4000.0_wp])
       data(2)%model = 'cerf'
-      data(2)%equilibrium_modulus = 1.0e6_wp
-      data(2)%relaxing_modulus = 5.0e6_wp
-      data(2)%beta = 50.0_wp
+      call data(2)%set('equilibrium_modulus', 1.0e6_wp)
+      call data(2)%set('relaxing_modulus', 5.0e6_wp)
+      call data(2)%set('beta', 50.0_wp)
       do i = 1, 2
          call strike(one, law%error, data(i), velocity=velocity, mass=mass, radius=radius)
          if (allocated(law%error)) return

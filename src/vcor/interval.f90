@@ -1,5 +1,5 @@
 !> Ranges of numbers
-module vcor_case_interval
+module vcor_interval
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, real_text
@@ -90,4 +90,4 @@ contains
       if (abs(bound - anint(bound)) <= 0.0_wp) text = integer_text(nint(bound))
    end function bound_text
 
-end module vcor_case_interval
+end module vcor_interval
