@@ -488,7 +488,7 @@ contains
       call check_contains(text, "   volterra_order = 1"//lf, "integer of the complete case")
       call check(index(text, "accuracy") == 0, "what has no value is not printed")
       text = case%to_text(complete=.true., remarks=.true.)
-      call check_contains(text, "! [m/s] Velocity", "remark with unit")
+      call check_contains(text, "! [m/s] Approach velocity", "remark with unit")
       call check_contains(text, "(default)", "remark on a default")
    end subroutine test_printing
 

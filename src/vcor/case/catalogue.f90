@@ -77,41 +77,41 @@ module vcor_case_catalogue
 
    !> The groups, in the order they are printed in
    type(group_t), parameter :: groups(*) = [ &
-      & group_t("case", "What the case is called"), &
+      & group_t("case", "Title of the case"), &
       & group_t("impact", "How the sphere strikes the plate", required=.true.), &
       & group_t("sphere", "The sphere", required=.true.), &
       & group_t("plate", "The plate", required=.true.), &
       & group_t("contact", "Law of the contact force"), &
-      & group_t("material", "A material, named by the sphere or the plate", required=.true., &
+      & group_t("material", "A material used by the sphere or the plate", required=.true., &
       &    repeated=.true., label="name", selector="model"), &
       & group_t("solver", "How the equation of motion is solved"), &
-      & group_t("sweep", "A parameter that is varied; several make a grid", repeated=.true.), &
-      & group_t("output", "What is written, and where")]
+      & group_t("sweep", "A parameter to vary; several groups make a grid", repeated=.true.), &
+      & group_t("output", "Files to write, and their folder")]
 
    integer :: i
    !> The keys, group by group in the order of `groups`
    type(key_t), parameter :: catalogue(*) = [ &
-      & key_t("case", "title", text_key, "Title, copied to the outputs", default="''"), &
+      & key_t("case", "title", text_key, "Title, copied to the results", default="''"), &
       !
-      & key_t("impact", "velocity", real_key, "Velocity of the sphere at first contact", "m/s", &
+      & key_t("impact", "velocity", real_key, "Approach velocity at first contact", "m/s", &
       &    positive, required=.true.), &
       !
       & key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
       & key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
-      & key_t("sphere", "mass", real_key, "Mass; from radius and density when not given", "kg", &
+      & key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
       &    positive), &
       !
       & key_t("plate", "half_thickness", real_key, &
-      &    "Half of the thickness; not needed without waves", "m", positive), &
+      &    "Half the thickness; not needed without waves", "m", positive), &
       & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
-      & key_t("plate", "waves", text_key, "Model of the flexural waves in the plate", &
+      & key_t("plate", "waves", text_key, "Model of the bending waves in the plate", &
       &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
       & key_t("plate", "surface_radius", real_key, &
       &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       !
       & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
       &    choices="boltzmann receding", default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "How two viscoelastic bodies combine", &
+      & key_t("contact", "pair", text_key, "Rule that combines two viscoelastic bodies", &
       &    choices="eq1 series", default="eq1"), &
       !
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
@@ -125,44 +125,48 @@ module vcor_case_catalogue
       &    model_parameters(i)%parameter%range, default=model_parameters(i)%parameter%default, &
       &    models=model_parameters(i)%model, required=model_parameters(i)%parameter%required), &
       &    i=1, size(model_parameters)), &
-      & key_t("material", "file", text_key, "File of times and moduli; from the case's folder", &
-      &    models="table", required=.true.), &
+      & key_t("material", "file", text_key, &
+      &    "File of times and moduli; relative to the folder of the case", models="table", &
+      &    required=.true.), &
       & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
       &    choices="ns us ms s min h", models="table", default="s"), &
       & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
       &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
-      & key_t("material", "valid_from", real_key, "First time that the model was fitted to", "s", &
-      &    positive, models=identifiable_models), &
-      & key_t("material", "valid_to", real_key, "Last time that the model was fitted to", "s", &
-      &    positive, models=identifiable_models), &
+      & key_t("material", "valid_from", real_key, &
+      &    "First time of the data to which the model was fitted", "s", positive, &
+      &    models=identifiable_models), &
+      & key_t("material", "valid_to", real_key, &
+      &    "Last time of the data to which the model was fitted", "s", positive, &
+      &    models=identifiable_models), &
       !
       & key_t("solver", "method", text_key, &
       &    "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
       &    choices="auto ive direct", default="auto"), &
       & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
       &    choices="product adams_bashforth", default="product"), &
-      & key_t("solver", "time_step", real_key, "Time step; chosen by the solver when not given", &
+      & key_t("solver", "time_step", real_key, "Time step; default: chosen by the solver", &
       &    "s", positive), &
-      & key_t("solver", "end_time", real_key, "Longest time; chosen by the solver when not given", &
-      &    "s", positive), &
+      & key_t("solver", "end_time", real_key, &
+      &    "Time at which the solver gives up; default: chosen by the solver", "s", positive), &
       & key_t("solver", "accuracy", real_key, &
-      &    "Wanted error of the restitution; 1e-8 ive, 1e-6 direct", range=accuracy_range), &
-      & key_t("solver", "form", text_key, "Form of Eq. (8) in adams_bashforth", &
+      &    "Largest error of the COR; default: 1e-8 (ive) or 1e-6 (direct)", &
+      &    range=accuracy_range), &
+      & key_t("solver", "form", text_key, "Form of Eq. (8); adams_bashforth only", &
       &    choices="a b", default="a"), &
-      & key_t("solver", "quadrature", text_key, "Sums of adams_bashforth", &
+      & key_t("solver", "quadrature", text_key, "Quadrature of the sums; adams_bashforth only", &
       &    choices="rectangle trapezoid", default="trapezoid"), &
       & key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
       &    range=order_range, default="1"), &
       & key_t("solver", "volterra_coefficient", real_key, "Coefficient of the second term", &
       &    "m^-1.5", default="1.0"), &
       & key_t("solver", "continue_after_separation", logical_key, &
-      &    "Go on to end_time with the force as it comes", default=".false."), &
+      &    "Continue to end_time as if the sphere were glued to the plate", default=".false."), &
       !
-      & key_t("sweep", "parameter", text_key, "What is varied, as in --set: group.key", &
+      & key_t("sweep", "parameter", text_key, "Address of the parameter, as in --set: group.key", &
       &    required=.true.), &
-      & key_t("sweep", "values", list_key, "Its values; or give start, stop and count"), &
-      & key_t("sweep", "start", real_key, "Its first value"), &
-      & key_t("sweep", "stop", real_key, "Its last value"), &
+      & key_t("sweep", "values", list_key, "Values; or give start, stop and count"), &
+      & key_t("sweep", "start", real_key, "First value"), &
+      & key_t("sweep", "stop", real_key, "Last value"), &
       & key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
       & key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
       &    choices="linear log", default="linear"), &
@@ -172,7 +176,7 @@ module vcor_case_catalogue
       & key_t("output", "history", logical_key, "Write the time history", default=".true."), &
       & key_t("output", "directory", text_key, "Folder of the files", default="."), &
       & key_t("output", "stem", text_key, &
-      & "Start of the file names; from the case file when not given")]
+      & "Start of the file names; default: the name of the case file")]
 
 contains
 

@@ -48,14 +48,14 @@ module vcor_material_parameter
 
    !> Of every material
    type(parameter_t), parameter :: density = parameter_t('density', &
-      'Density; of a sphere without mass, of a plate with waves', 'kg/m3', positive, &
+      'Density; for a sphere without mass, and for a plate with waves', 'kg/m3', positive, &
       required=.false.)
    !> Of every material that deforms
    type(parameter_t), parameter :: poisson_ratio = parameter_t('poisson_ratio', &
       "Poisson's ratio", '', interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp))
    !> Of every model that need not relax to nothing
    type(parameter_t), parameter :: equilibrium_modulus = parameter_t('equilibrium_modulus', &
-      'Modulus after a long time', 'Pa', not_negative, required=.false., default='0.0', &
+      'Long-time modulus', 'Pa', not_negative, required=.false., default='0.0', &
       scale=linear, fitted=.true.)
    !> Of the fractional models with a glassy modulus
    type(parameter_t), parameter :: relaxing_modulus = parameter_t('relaxing_modulus', &

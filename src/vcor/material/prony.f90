@@ -17,7 +17,7 @@ module vcor_material_prony
 
    !> Parameters of model `rigid`
    type(parameter_t), parameter :: rigid_parameters(*) = [ &
-      parameter_t('poisson_ratio', "Poisson's ratio, without effect", '', poisson_ratio%range, &
+      parameter_t('poisson_ratio', "Poisson's ratio (has no effect)", '', poisson_ratio%range, &
       required=.false.)]
    !> Of model `elastic`
    type(parameter_t), parameter :: elastic_parameters(*) = [poisson_ratio, &
@@ -36,7 +36,7 @@ module vcor_material_prony
       required=.false., is_list=.true.), &
       parameter_t('times', 'Relaxation times of the terms; or give rates', 's', positive, &
       required=.false., fitted=.true., is_list=.true.), &
-      parameter_t('viscosity', 'Dashpot in parallel with the other terms', 'Pa s', not_negative, &
+      parameter_t('viscosity', 'Viscosity of a dashpot in parallel', 'Pa s', not_negative, &
       required=.false., default='0.0')]
 
    !> E(t) = E_0 + sum_i E_i exp(-b_i t) + viscosity delta(t), Eqs. (17) and (26)
