@@ -21,6 +21,7 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_landing, only : end_at_zero, first_without_force, land_on_largest, &
       land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
+   use vcor_solver_ive_newton, only : accompany, guess, solve
    use vcor_solver_ive_panel, only : panel_t, relative_velocity
    use vcor_solver_ive_problem, only : new_panel_problem
    use vcor_solver_ive_rebound, only : follow_rebound
@@ -189,8 +190,8 @@ contains
       associate (problem => self%problem, rule => self%problem%collocator%rule)
          self%last = self%start%time + self%step%duration() >= self%end_time
          if (self%last) self%step = step_to(self%start%time, self%end_time - self%start%time)
-         call problem%guess(self%previous, self%step, self%start, self%panel)
-         call problem%solve(rule, self%step, self%start, self%panel, self%inverse)
+         call guess(problem, self%previous, self%step, self%start, self%panel)
+         call solve(problem, rule, self%step, self%start, self%panel, self%inverse)
          self%turns = .false.
          self%ends = .false.
          if (self%panel%converged .and. self%recedes) then
@@ -204,7 +205,7 @@ contains
          end if
          if (.not. self%panel%converged) return
          self%previous = self%panel
-         call problem%accompany(self%step, self%coarse_start, self%panel, self%inverse, &
+         call accompany(problem, self%step, self%coarse_start, self%panel, self%inverse, &
             self%coarse)
       end associate
    end subroutine solve_panel

@@ -5,7 +5,7 @@ module vcor_solver_ive_landing
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t
-   use vcor_solver_ive_newton, only : most_iterations
+   use vcor_solver_ive_newton, only : guess, most_iterations, solve, solve_near
    use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
@@ -87,12 +87,12 @@ contains
       real(wp), intent(inout) :: inverse(width, width)
 
       associate (collocator => problem%collocator)
-         call problem%guess(longer, step, start, panel)
-         call problem%solve_near(collocator%rule, step, start, collocator%near_tolerance, inverse, &
-            panel)
+         call guess(problem, longer, step, start, panel)
+         call solve_near(problem, collocator%rule, step, start, collocator%near_tolerance, &
+            inverse, panel)
          if (panel%converged) return
-         call problem%guess(longer, step, start, panel)
-         call problem%solve(collocator%rule, step, start, panel, inverse)
+         call guess(problem, longer, step, start, panel)
+         call solve(problem, collocator%rule, step, start, panel, inverse)
       end associate
    end subroutine solve_cut
 

@@ -1,12 +1,20 @@
-!> Newton's iteration on the equations of a panel, with the Jacobian kept while it serves
+!> Solution of the equations of a panel by Newton's method, with the Jacobian kept while it serves
 module vcor_solver_ive_newton
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, invert, width
-   use vcor_solver_ive_tuning, only : newton_close, newton_slow, newton_wildest
+   use vcor_numeric_radau_collocation, only : closing, collocation_t
+   use vcor_solver_ive_panel, only : panel_t, start_t
+   use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
+      panel_problem_t, product_with_m
+   use vcor_solver_ive_step, only : step_of, step_t
+   use vcor_solver_ive_tuning, only : farthest_closing, farthest_contact, farthest_rebound, &
+      most_near_iterations, newton_close, newton_slow, newton_wildest, noticeable_time, &
+      shortest_panel, slowest_near
    implicit none
    private
 
-   public :: newton_t, most_iterations, largest
+   public :: most_iterations
+   public :: guess, solve, solve_near, improve, accompany, close_contact
 
    !> Maximum iterations
    integer, parameter :: most_iterations = 40
@@ -15,53 +23,119 @@ module vcor_solver_ive_newton
    type :: newton_t
       !> Whether the next correction needs a new Jacobian
       logical :: stale = .true.
-      !> What errors are counted against; 0: the largest component of the solution
-      real(wp) :: unit = 0.0_wp
-      !> Correction over that which ends the iteration once it does not fall any more: rounding
-      real(wp) :: noise = 0.0_wp
       !> Size of the last correction
       real(wp) :: last = 0.0_wp
       !> Whether the equations are solved
       logical :: converged = .false.
       !> Whether they cannot be
       logical :: failed = .false.
-   contains
-      !> Correct the solution
-      procedure :: correct
    end type newton_t
 
 contains
 
-   !> Correct the solution and judge what is left of its error: next to a fresh Jacobian it falls
-   !> with the power 2 of the correction, or 1.5 where u = s^1.5 has its branch point, otherwise
-   !> linearly
-   pure subroutine correct(self, jacobian, residual, s, tolerance)
-      !> State of the iteration
-      class(newton_t), intent(inout) :: self
-      !> Jacobian where `stale`, otherwise its inverse; on return that
-      real(wp), intent(inout) :: jacobian(width, width)
-      !> Residual, on return the correction
-      real(wp), intent(inout) :: residual(width)
-      !> Solution
-      real(wp), intent(inout) :: s(width)
-      !> Wanted error over the largest component
-      real(wp), intent(in) :: tolerance
+   !> Guess the indentation in the panel to come from the polynomial of the panel solved last
+   subroutine guess(problem, previous, step, start, panel)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> The panel solved last, accepted or not; without stages if there is none
+      type(panel_t), intent(in) :: previous
+      !> Step
+      type(step_t), intent(in) :: step
+      !> State at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(inout) :: panel
 
+      real(wp) :: time(width)
+
+      associate (rule => problem%collocator%rule)
+         time = start%time + rule%times(step%index, step%map_scale())
+         if (previous%stages == 0) then
+            panel%indentation(1:) = problem%impact%velocity*time
+         else
+            panel%indentation(1:) = &
+               rule%extend(previous%indentation, min(previous%theta(time), farthest_contact))
+         end if
+      end associate
+   end subroutine guess
+
+   !> Solve the equations of a panel by Newton's method
+   subroutine solve(problem, rule, step, start, panel, inverse)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Step
+      type(step_t), intent(in) :: step
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages
+      type(panel_t), intent(inout) :: panel
+      !> Inverse of the Jacobian, for panels next to this one
+      real(wp), intent(out) :: inverse(width, width)
+
+      type(equations_t) :: equations
+      type(newton_t) :: newton
+      integer :: iteration
+
+      call problem%set_up(rule, step, start, panel, equations)
+      do iteration = 1, most_iterations
+         call correct(newton, problem, equations, inverse, panel)
+         if (newton%converged .or. newton%failed) exit
+      end do
+      panel%converged = newton%converged
+      if (.not. panel%converged) return
+      call problem%integrate(equations, panel)
+      if (equations%closes) call problem%settle(rule, equations, start, panel)
+   end subroutine solve
+
+   !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls with
+   !> the power 2 of the correction, or 1.5 next to the branch point of u, otherwise linearly
+   subroutine correct(self, problem, e, inverse, panel)
+      !> State of the iteration
+      type(newton_t), intent(inout) :: self
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> Equations of the panel
+      type(equations_t), intent(inout) :: e
+      !> Inverse of the Jacobian, made anew where `stale`
+      real(wp), intent(inout) :: inverse(width, width)
+      !> The panel
+      type(panel_t), intent(inout) :: panel
+
+      real(wp) :: change(width), force(width), second(width, width)
       real(wp) :: unit, size, rate, left
       logical :: regular
+      integer :: n, j
 
+      n = panel%stages
+      call problem%evaluate(e, panel)
+      if (self%stale .and. .not. e%formed) call form_matrix(e)
+      change = e%right - e%x - product_with_m(e, e%f)
+      if (allocated(e%lag)) then
+         call problem%second_term(e, force, second)
+         change = change - lost_indentation(e, apply(e%map%left, force))
+      end if
+      if (e%closes) change(n) = 0.0_wp
       if (self%stale) then
-         call invert(jacobian, regular)
+         do j = 1, width
+            inverse(:, j) = e%matrix(:, j)*e%slope(j)
+            if (allocated(e%lag)) inverse(:, j) = inverse(:, j) &
+               + lost_indentation(e, apply(e%map%left, second(:, j)))*e%slope(j)
+            if (e%closes) inverse(n, j) = 0.0_wp
+            inverse(j, j) = inverse(j, j) + 1.0_wp
+         end do
+         call invert(inverse, regular)
          self%failed = .not. regular
          if (self%failed) return
       end if
-      residual = apply(jacobian, residual)
-      s = s + residual
-      unit = self%unit
-      if (.not. unit > 0.0_wp) unit = largest(s)
-      self%failed = .not. largest(residual) < newton_wildest*unit
+      change = apply(inverse, change)
+      unit = problem%largest_condition
+      if (.not. unit > 0.0_wp) unit = largest(e%x + change)
+      self%failed = .not. largest(change) < newton_wildest*unit
       if (self%failed) return
-      size = largest(residual)/unit
+      call problem%move(e, change, panel)
+      size = largest(change)/unit
       if (self%stale) then
          left = size*sqrt(size)
          self%stale = size > newton_close
@@ -70,9 +144,207 @@ contains
          left = size*rate/(1.0_wp - 0.5_wp*rate)
          self%stale = rate > newton_slow
       end if
-      self%converged = left <= tolerance .or. size <= self%noise .and. .not. size < 0.5_wp*self%last
+      self%converged = left <= problem%tolerance &
+         .or. size <= problem%noise .and. .not. size < 0.5_wp*self%last
       self%last = size
    end subroutine correct
+
+   !> Solve the equations of a panel with the Jacobian of one next to it, of another length, or with
+   !> that of the panel whose companion it is. No matrix is formed, so this costs half of a solution
+   subroutine solve_near(problem, rule, step, start, tolerance, inverse, panel)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> Collocation rule
+      type(collocation_t), intent(in) :: rule
+      !> Step
+      type(step_t), intent(in) :: step
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted error at the end of the panel over the largest value
+      real(wp), intent(in) :: tolerance
+      !> Inverse of the Jacobian of a panel of the full number of stages
+      real(wp), intent(in) :: inverse(width, width)
+      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged
+      !> where the Jacobian does not serve
+      type(panel_t), intent(inout) :: panel
+
+      type(equations_t) :: equations
+      real(wp) :: change(width), size, unit, last, rest, contraction
+      integer :: iteration
+      logical :: coarse
+
+      panel%converged = .false.
+      if (abs(problem%collocator%second_coefficient) > 0.0_wp) return
+      coarse = rule%stages < problem%collocator%rule%stages
+      call problem%set_up(rule, step, start, panel, equations)
+      last = 0.0_wp
+      do iteration = 1, most_near_iterations
+         call problem%evaluate(equations, panel)
+         change = equations%right - equations%x - product_with_m(equations, equations%f)
+         if (equations%closes) change(rule%stages) = 0.0_wp
+         if (coarse) change = apply(problem%collocator%from_coarse, change)
+         change = apply(inverse, change)
+         if (coarse) change = apply(problem%collocator%to_coarse(:, 1:), change)
+         size = largest(change)
+         unit = problem%largest_condition
+         if (.not. equations%rebounds) unit = largest(equations%x)
+         ! a guess that is no guess
+         if (.not. size <= unit) return
+         call problem%move(equations, change, panel)
+         if (iteration > 1) then
+            contraction = size/last
+            if (.not. contraction <= slowest_near) return
+            rest = abs(change(rule%stages))
+            if (equations%closes) rest = size
+            panel%converged = rest*contraction <= tolerance*unit
+            if (panel%converged) exit
+         end if
+         last = max(size, tiny(1.0_wp))
+      end do
+      if (.not. panel%converged) return
+      call problem%integrate(equations, panel)
+      if (equations%closes) then
+         call problem%settle(rule, equations, start, panel)
+      else if (.not. equations%rebounds) then
+         ! what is left of the error goes to the force, so that the motion is that of the impulse
+         panel%indentation(1:) = problem%impact%velocity*panel%time(1:) &
+            - panel%second_impulse(1:)*equations%inverse_mass
+         if (.not. equations%frozen) &
+            panel%indentation(1:) = panel%indentation(1:) - panel%alpha(1:)*panel%impulse(1:)
+         if (equations%frozen .or. equations%remembers) &
+            panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
+         panel%indentation(rule%stages + 1:) = 0.0_wp
+      end if
+   end subroutine solve_near
+
+   !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
+   !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
+   !> leave little of it
+   subroutine improve(problem, step, start, tolerance, panel)
+      !> The problem, its contact growing
+      type(panel_problem_t), intent(in) :: problem
+      !> Step
+      type(step_t), intent(in) :: step
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted error of the indentation over its largest value
+      real(wp), intent(in) :: tolerance
+      !> The panel; on entry `indentation` holds a guess at the stages. Solved where the second
+      !> iteration still changes the indentation by more than the tolerance
+      type(panel_t), intent(inout) :: panel
+
+      type(equations_t) :: equations
+      real(wp) :: guessed(width), inverse(width, width)
+      integer :: iteration
+
+      guessed = panel%indentation(1:)
+      panel%converged = .false.
+      if (.not. abs(problem%collocator%second_coefficient) > 0.0_wp) then
+         call problem%set_up(problem%collocator%rule, step, start, panel, equations)
+         do iteration = 1, 2
+            call problem%evaluate(equations, panel)
+            panel%indentation(1:) = equations%right - product_with_m(equations, equations%f)
+         end do
+         panel%converged = largest(panel%indentation(1:) - equations%x) &
+            <= tolerance*largest(equations%x)
+      end if
+      if (panel%converged) then
+         call problem%integrate(equations, panel)
+      else
+         panel%indentation(1:) = guessed
+         call solve(problem, problem%collocator%rule, step, start, panel, inverse)
+      end if
+   end subroutine improve
+
+   !> Solve the companion of a panel, from its own start
+   subroutine accompany(problem, step, start, panel, inverse, companion)
+      !> The problem
+      type(panel_problem_t), intent(in) :: problem
+      !> Step
+      type(step_t), intent(in) :: step
+      !> State of the companion at the start of the panel
+      type(start_t), intent(in) :: start
+      !> The panel
+      type(panel_t), intent(in) :: panel
+      !> Inverse of its Jacobian
+      real(wp), intent(in) :: inverse(width, width)
+      !> Its companion
+      type(panel_t), intent(out) :: companion
+
+      real(wp) :: own_inverse(width, width)
+
+      associate (collocator => problem%collocator)
+         call start_from_panel()
+         call solve_near(problem, collocator%coarse, step, start, collocator%coarse_tolerance, &
+            inverse, companion)
+         if (companion%converged) return
+         call start_from_panel()
+         call solve(problem, collocator%coarse, step, start, companion, own_inverse)
+      end associate
+
+   contains
+
+      !> Guess the companion
+      subroutine start_from_panel()
+
+         companion%indentation(1:) = problem%collocator%coarsened(panel%indentation)
+         companion%t1(1:) = problem%collocator%coarsened(panel%t1)
+      end subroutine start_from_panel
+   end subroutine accompany
+
+   !> Solve the last panel of a receding contact and find its duration, at whose end N is zero
+   subroutine close_contact(problem, start, time_tolerance, length, panel, inverse)
+      !> The problem, its contact receding
+      type(panel_problem_t), intent(in) :: problem
+      !> State at the start
+      type(start_t), intent(in) :: start
+      !> Wanted relative error of the time of the end
+      real(wp), intent(in) :: time_tolerance
+      !> A guess at the duration, on return the duration [s]
+      real(wp), intent(inout) :: length
+      !> The panel, its t1 guessed; not converged on failure
+      type(panel_t), intent(inout) :: panel
+      !> Inverse of its Jacobian
+      real(wp), intent(out) :: inverse(width, width)
+
+      type(equations_t) :: equations
+      type(newton_t) :: newton
+      real(wp) :: fall, correction, last_correction
+      integer :: n, iteration
+
+      panel%converged = .false.
+      correction = huge(1.0_wp)
+      associate (rule => problem%collocator%rule)
+         n = rule%stages
+         do iteration = 1, most_iterations
+            if (.not. length > shortest_panel*start%time) return
+            call problem%set_up(rule, step_of(closing, length), start, panel, equations)
+            panel%t1(n) = 0.0_wp
+            call correct(newton, problem, equations, inverse, panel)
+            if (newton%failed) return
+            call problem%integrate(equations, panel)
+            call problem%settle(rule, equations, start, panel)
+            ! N is linear in (1 - theta)^2 at the end
+            fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
+            if (.not. fall > 0.0_wp) return
+            last_correction = correction
+            correction = farthest_closing*length
+            if (abs(panel%condition(n)) < farthest_closing*fall) &
+               correction = panel%condition(n)/fall*length
+            correction = sign(correction, panel%condition(n))
+            panel%converged = newton%converged .and. (abs(correction) &
+               <= time_tolerance*(start%time + length) &
+               ! rounding in the condition of stiff internal variables ends it, too
+               .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
+               .and. abs(correction) >= 0.25_wp*abs(last_correction))
+            if (panel%converged) exit
+            length = length + correction
+            ! the motion does not know how long the panel is
+            panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time &
+               + rule%times(closing, length)), farthest_rebound))
+         end do
+      end associate
+   end subroutine close_contact
 
    !> Largest magnitude
    pure function largest(x)

@@ -35,16 +35,14 @@ module vcor_solver_ive_problem
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
    use vcor_solver_ive_modes, only : advance_lags, modes_t, resolve
-   use vcor_solver_ive_newton, only : largest, most_iterations, newton_t
    use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t
-   use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_ive_tuning, only : farthest_closing, farthest_contact, farthest_rebound, &
-      most_near_iterations, noticeable_time, rebound_tolerance, rounding_of_condition, &
-      shortest_panel, slowest_near
+   use vcor_solver_ive_step, only : step_t
+   use vcor_solver_ive_tuning, only : rebound_tolerance, rounding_of_condition
    implicit none
    private
 
    public :: panel_problem_t, new_panel_problem
+   public :: equations_t, product_with_m, form_matrix, lost_indentation
 
    !> What the panels of an impact have in common; what it points to outlives it
    type :: panel_problem_t
@@ -63,29 +61,22 @@ module vcor_solver_ive_problem
       !> What rounding may leave of a correction of it
       real(wp) :: noise = 0.0_wp
    contains
-      !> Guess a panel from the one solved last
-      procedure :: guess
-      !> Solve a panel
-      procedure :: solve
-      !> The same next to one that has been solved
-      procedure :: solve_near
-      !> Improve a guess at a panel
-      procedure :: improve
-      !> Solve the companion of a panel
-      procedure :: accompany
-      !> Solve the panel that ends where a receding contact does
-      procedure :: close
-      !> Go to the end of a panel
-      procedure :: advance
       !> Begin the rebound
       procedure :: turn_round
-      procedure, private :: set_up
-      procedure, private :: evaluate
-      procedure, private :: move
-      procedure, private :: correct
-      procedure, private :: integrate
-      procedure, private :: settle_drift
-      procedure, private :: settle_condition
+      !> Set up the equations of a panel
+      procedure :: set_up
+      !> Unknown x and f(x) of a panel
+      procedure :: evaluate
+      !> Change its unknown
+      procedure :: move
+      !> Forces of its solution and their integrals
+      procedure :: integrate
+      !> What collocation does not say at the end of a receding contact
+      procedure :: settle
+      !> Second term of the Volterra series
+      procedure :: second_term
+      !> Go to the end of a panel
+      procedure :: advance
    end type panel_problem_t
 
    !> The equations of one panel; functions of H as in `panel_map_t`
@@ -94,6 +85,8 @@ module vcor_solver_ive_problem
       type(panel_map_t), pointer :: map => null()
       !> Scale of the map [s]
       real(wp) :: scale
+      !> 1/m [1/kg]
+      real(wp) :: inverse_mass
       !> Times of the stages since the start [s]
       real(wp) :: elapsed(width)
       !> Eigenvalues of H [s]
@@ -134,6 +127,10 @@ module vcor_solver_ive_problem
       logical :: formed = .false.
       !> M
       real(wp) :: matrix(width, width)
+      !> The unknown x [m], or [N/m^0.5], and f(x) [m^1.5], or [N], at the stages
+      real(wp) :: x(width), f(width)
+      !> df/dx [m^0.5], and dN/dt1 while the contact recedes [N/(m^0.5 s)]
+      real(wp) :: slope(width), rate(width)
       !> Second term of the Volterra series: matrices (1 + l_k H)^-1, shape (width, width, modes)
       real(wp), allocatable :: lag(:, :, :)
       !> What it remembers at the start, u - q_k [m^1.5], shape (modes)
@@ -164,32 +161,6 @@ contains
       self%tolerance = collocator%tolerance
    end function new_panel_problem
 
-   !> Guess the indentation in the panel to come from the polynomial of the panel solved last
-   subroutine guess(self, previous, step, start, panel)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> The panel solved last, accepted or not; without stages if there is none
-      type(panel_t), intent(in) :: previous
-      !> Step
-      type(step_t), intent(in) :: step
-      !> State at the start of the panel
-      type(start_t), intent(in) :: start
-      !> The panel
-      type(panel_t), intent(inout) :: panel
-
-      real(wp) :: time(width)
-
-      associate (rule => self%collocator%rule)
-         time = start%time + rule%times(step%index, step%map_scale())
-         if (previous%stages == 0) then
-            panel%indentation(1:) = self%impact%velocity*time
-         else
-            panel%indentation(1:) = &
-               rule%extend(previous%indentation, min(previous%theta(time), farthest_contact))
-         end if
-      end associate
-   end subroutine guess
-
    !> Set up the equations of a panel
    subroutine set_up(self, rule, step, start, panel, equations)
       !> The problem
@@ -205,14 +176,14 @@ contains
       !> The equations
       type(equations_t), intent(out) :: equations
 
-      real(wp) :: velocity, inverse_mass
+      real(wp) :: velocity
       integer :: n
 
       n = rule%stages
-      inverse_mass = 1.0_wp/self%impact%mass
       associate (e => equations, map => rule%map(step%index), contact => self%modes%contact, &
                  plate => self%impact%plate)
          e%map => rule%map(step%index)
+         e%inverse_mass = 1.0_wp/self%impact%mass
          e%rebounds = associated(self%approach)
          e%closes = step%index == closing
          e%scale = step%map_scale()
@@ -242,14 +213,14 @@ contains
             e%alpha_rate(:n) = plate%alpha_rate(panel%time(1:n), e%alpha(:n))
 
          ! the motion without a force
-         velocity = self%impact%velocity - start%impulse*inverse_mass
+         velocity = self%impact%velocity - start%impulse*e%inverse_mass
          if (e%frozen) velocity = velocity + start%drift
          e%gain = velocity*e%elapsed
          if (e%remembers) then
             call resolve(self%modes%plate, start%p, map, e%lambda, e%plate, e%past)
             e%gain = e%gain - apply(map%right, times(map%square, e%lambda, e%past))
          end if
-         e%yield = times(map%square, e%lambda, e%lambda)*inverse_mass
+         e%yield = times(map%square, e%lambda, e%lambda)*e%inverse_mass
          if (e%remembers) e%yield = e%yield &
             + times(map%square, e%lambda, times(map%square, e%lambda, e%plate))
          if (.not. e%varies) e%yield = e%yield + e%alpha(1)*e%lambda
@@ -277,7 +248,7 @@ contains
             if (e%closes) e%right(n) = 0.0_wp
          else
             e%gain = e%gain + (self%impact%velocity*start%time &
-               - start%second_impulse*inverse_mass - start%deflection)
+               - start%second_impulse*e%inverse_mass - start%deflection)
             if (.not. e%frozen) e%gain = e%gain - e%alpha*start%impulse
             e%right = e%gain - lost_indentation(e, e%memory)
          end if
@@ -322,13 +293,11 @@ contains
    end function lost_indentation
 
    !> What they take of the rate of the indentation: Q F
-   pure function lost_velocity(e, numbers, inverse_mass) result(lost)
+   pure function lost_velocity(e, numbers) result(lost)
       !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> Numbers of the forces [N]
       real(wp), intent(in) :: numbers(width)
-      !> 1/m [1/kg]
-      real(wp), intent(in) :: inverse_mass
       !> Velocity [m/s]
       real(wp) :: lost(width)
 
@@ -337,7 +306,7 @@ contains
       associate (map => e%map)
          force = apply(map%right, numbers)
          impulse = times(map%square, e%lambda, numbers)
-         lost = e%alpha*force + inverse_mass*apply(map%right, impulse)
+         lost = e%alpha*force + e%inverse_mass*apply(map%right, impulse)
          if (e%remembers) lost = lost + apply(map%right, times(map%square, e%plate, impulse))
          if (e%frozen) then
             lost = lost - integral(e, e%alpha_rate*force)
@@ -348,13 +317,11 @@ contains
    end function lost_velocity
 
    !> M f
-   pure function product_with_m(e, f, inverse_mass) result(product)
+   pure function product_with_m(e, f) result(product)
       !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> f
       real(wp), intent(in) :: f(width)
-      !> 1/m [1/kg]
-      real(wp), intent(in) :: inverse_mass
       !> M f
       real(wp) :: product(width)
 
@@ -377,16 +344,14 @@ contains
             product = lost_indentation(e, times(map%square, e%stiffness, numbers))
          end if
          if (e%viscosity > 0.0_wp) &
-            product = product + e%viscosity*lost_velocity(e, numbers, inverse_mass)
+            product = product + e%viscosity*lost_velocity(e, numbers)
       end associate
    end function product_with_m
 
    !> Form M, column by column or at once where it is a function of H
-   pure subroutine form_matrix(e, inverse_mass)
+   pure subroutine form_matrix(e)
       !> Equations of the panel
       type(equations_t), intent(inout) :: e
-      !> 1/m [1/kg]
-      real(wp), intent(in) :: inverse_mass
 
       real(wp) :: scaled(width, width), f, g
       integer :: i, j, k
@@ -410,57 +375,40 @@ contains
          end do
       else
          do j = 1, width
-            e%matrix(:, j) = product_with_m(e, identity(:, j), inverse_mass)
+            e%matrix(:, j) = product_with_m(e, identity(:, j))
          end do
       end if
       e%formed = .true.
    end subroutine form_matrix
 
    !> The unknown x and f(x) at the stages: indentation and u, or condition and force by t1
-   pure subroutine evaluate(self, e, panel, x, f, slope, rate)
+   pure subroutine evaluate(self, e, panel)
       !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel
-      type(equations_t), intent(in) :: e
+      type(equations_t), intent(inout) :: e
       !> The panel
       type(panel_t), intent(in) :: panel
-      !> x [m], or [N/m^0.5]
-      real(wp), intent(out) :: x(width)
-      !> f [m^1.5], or [N]
-      real(wp), intent(out) :: f(width)
-      !> df/dx [m^0.5]
-      real(wp), intent(out) :: slope(width)
-      !> dN/dt1 [N/(m^0.5 s)]
-      real(wp), intent(out) :: rate(width)
 
       if (e%rebounds) then
          call self%approach%evaluate(self%modes%contact%equilibrium, panel%stages, &
-            panel%time(1:), panel%t1(1:), x, f, slope, rate)
+            panel%time(1:), panel%t1(1:), e%x, e%f, e%slope, e%rate)
       else
-         x = panel%indentation(1:)
-         call self%impact%law%secants(width, x, slope)
-         f = x*slope - e%start_u
-         slope = self%impact%law%exponent*slope
-         rate = 0.0_wp
+         e%x = panel%indentation(1:)
+         call self%impact%law%secants(width, e%x, e%slope)
+         e%f = e%x*e%slope - e%start_u
+         e%slope = self%impact%law%exponent*e%slope
       end if
    end subroutine evaluate
 
    !> Change the unknown of a panel; condition and force are extrapolated
-   pure subroutine move(self, e, x, change, f, slope, rate, panel)
+   pure subroutine move(self, e, change, panel)
       !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
+      !> Equations of the panel, evaluated
       type(equations_t), intent(in) :: e
-      !> x changed, as from `evaluate`
-      real(wp), intent(in) :: x(width)
-      !> Its change
+      !> Change of x
       real(wp), intent(in) :: change(width)
-      !> f as from `evaluate`
-      real(wp), intent(in) :: f(width)
-      !> df/dx likewise
-      real(wp), intent(in) :: slope(width)
-      !> dN/dt1 likewise
-      real(wp), intent(in) :: rate(width)
       !> The panel
       type(panel_t), intent(inout) :: panel
 
@@ -468,297 +416,14 @@ contains
 
       if (e%rebounds) then
          do i = 1, panel%stages
-            panel%t1(i) = self%approach%moved(panel%t1(i), change(i), rate(i))
+            panel%t1(i) = self%approach%moved(panel%t1(i), change(i), e%rate(i))
          end do
-         panel%condition(1:) = x
-         panel%force(1:) = f + slope*change
+         panel%condition(1:) = e%x + change
+         panel%force(1:) = e%f + e%slope*change
       else
-         panel%indentation(1:) = x
+         panel%indentation(1:) = e%x + change
       end if
    end subroutine move
-
-   !> Correct a panel by one iteration of Newton's method
-   pure subroutine correct(self, e, tolerance, newton, inverse, panel)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
-      type(equations_t), intent(inout) :: e
-      !> Wanted error of x over its largest value
-      real(wp), intent(in) :: tolerance
-      !> State of the iteration
-      type(newton_t), intent(inout) :: newton
-      !> Inverse of the Jacobian
-      real(wp), intent(inout) :: inverse(width, width)
-      !> The panel
-      type(panel_t), intent(inout) :: panel
-
-      real(wp), dimension(width) :: x, f, slope, rate, change, force
-      real(wp) :: second(width, width), inverse_mass
-      integer :: n, j
-
-      n = panel%stages
-      inverse_mass = 1.0_wp/self%impact%mass
-      call self%evaluate(e, panel, x, f, slope, rate)
-      if (newton%stale .and. .not. e%formed) call form_matrix(e, inverse_mass)
-      change = e%right - x - product_with_m(e, f, inverse_mass)
-      if (allocated(e%lag)) then
-         call second_term(self, e, f, force, second)
-         change = change - lost_indentation(e, apply(e%map%left, force))
-      end if
-      if (newton%stale) then
-         do j = 1, width
-            inverse(:, j) = e%matrix(:, j)*slope(j)
-            if (allocated(e%lag)) inverse(:, j) = inverse(:, j) &
-               + lost_indentation(e, apply(e%map%left, second(:, j)))*slope(j)
-            if (e%closes) inverse(n, j) = 0.0_wp
-            inverse(j, j) = inverse(j, j) + 1.0_wp
-         end do
-      end if
-      if (e%closes) change(n) = 0.0_wp
-      call newton%correct(inverse, change, x, tolerance)
-      if (newton%failed) return
-      call self%move(e, x, change, f, slope, rate, panel)
-   end subroutine correct
-
-   !> Solve the equations of a panel by Newton's method
-   subroutine solve(self, rule, step, start, panel, inverse)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
-      !> Step
-      type(step_t), intent(in) :: step
-      !> State at the start
-      type(start_t), intent(in) :: start
-      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages
-      type(panel_t), intent(inout) :: panel
-      !> Inverse of the Jacobian, for panels next to this one
-      real(wp), intent(out) :: inverse(width, width)
-
-      type(equations_t) :: equations
-      type(newton_t) :: newton
-      integer :: iteration
-
-      call self%set_up(rule, step, start, panel, equations)
-      newton = newton_t(unit=self%largest_condition, noise=self%noise)
-      do iteration = 1, most_iterations
-         call self%correct(equations, self%tolerance, newton, inverse, panel)
-         if (newton%converged .or. newton%failed) exit
-      end do
-      panel%converged = newton%converged
-      if (.not. panel%converged) return
-      call self%integrate(equations, panel)
-      if (equations%closes) then
-         call self%settle_drift(rule, equations, start, panel)
-         call self%settle_condition(rule, equations, start, panel)
-      end if
-   end subroutine solve
-
-   !> Solve the equations of a panel with the Jacobian of one next to it, of another length, or with
-   !> that of the panel whose companion it is. No matrix is formed, so this costs half of a solution
-   subroutine solve_near(self, rule, step, start, tolerance, inverse, panel)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
-      !> Step
-      type(step_t), intent(in) :: step
-      !> State at the start
-      type(start_t), intent(in) :: start
-      !> Wanted error at the end of the panel over the largest value
-      real(wp), intent(in) :: tolerance
-      !> Inverse of the Jacobian of a panel of the full number of stages
-      real(wp), intent(in) :: inverse(width, width)
-      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged
-      !> where the Jacobian does not serve
-      type(panel_t), intent(inout) :: panel
-
-      type(equations_t) :: equations
-      real(wp), dimension(width) :: x, f, slope, rate, change
-      real(wp) :: size, unit, last, rest, contraction
-      integer :: iteration
-      logical :: coarse
-
-      panel%converged = .false.
-      if (abs(self%collocator%second_coefficient) > 0.0_wp) return
-      coarse = rule%stages < self%collocator%rule%stages
-      call self%set_up(rule, step, start, panel, equations)
-      last = 0.0_wp
-      do iteration = 1, most_near_iterations
-         call self%evaluate(equations, panel, x, f, slope, rate)
-         change = equations%right - x - product_with_m(equations, f, &
-            1.0_wp/self%impact%mass)
-         if (equations%closes) change(rule%stages) = 0.0_wp
-         if (coarse) change = apply(self%collocator%from_coarse, change)
-         change = apply(inverse, change)
-         if (coarse) change = apply(self%collocator%to_coarse(:, 1:), change)
-         size = largest(change)
-         unit = self%largest_condition
-         if (.not. equations%rebounds) unit = largest(x)
-         ! a guess that is no guess
-         if (.not. size <= unit) return
-         x = x + change
-         call self%move(equations, x, change, f, slope, rate, panel)
-         if (iteration > 1) then
-            contraction = size/last
-            if (.not. contraction <= slowest_near) return
-            rest = abs(change(rule%stages))
-            if (equations%closes) rest = size
-            panel%converged = rest*contraction <= tolerance*unit
-            if (panel%converged) exit
-         end if
-         last = max(size, tiny(1.0_wp))
-      end do
-      if (.not. panel%converged) return
-      call self%integrate(equations, panel)
-      if (equations%closes) then
-         call self%settle_drift(rule, equations, start, panel)
-         call self%settle_condition(rule, equations, start, panel)
-      else if (.not. equations%rebounds) then
-         ! what is left of the error goes to the force, so that the motion is that of the impulse
-         panel%indentation(1:) = self%impact%velocity*panel%time(1:) &
-            - panel%second_impulse(1:)*(1.0_wp/self%impact%mass)
-         if (.not. equations%frozen) &
-            panel%indentation(1:) = panel%indentation(1:) - panel%alpha(1:)*panel%impulse(1:)
-         if (equations%frozen .or. equations%remembers) &
-            panel%indentation(1:) = panel%indentation(1:) - panel%deflection(1:)
-         panel%indentation(rule%stages + 1:) = 0.0_wp
-      end if
-   end subroutine solve_near
-
-   !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
-   !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
-   !> leave little of it
-   subroutine improve(self, step, start, tolerance, panel)
-      !> The problem, its contact growing
-      class(panel_problem_t), intent(in) :: self
-      !> Step
-      type(step_t), intent(in) :: step
-      !> State at the start
-      type(start_t), intent(in) :: start
-      !> Wanted error of the indentation over its largest value
-      real(wp), intent(in) :: tolerance
-      !> The panel; on entry `indentation` holds a guess at the stages. Solved where the second
-      !> iteration still changes the indentation by more than the tolerance
-      type(panel_t), intent(inout) :: panel
-
-      type(equations_t) :: equations
-      real(wp) :: guessed(width), inverse(width, width)
-      real(wp), dimension(width) :: s, f, slope, rate
-      integer :: iteration
-
-      guessed = panel%indentation(1:)
-      panel%converged = .false.
-      if (.not. abs(self%collocator%second_coefficient) > 0.0_wp) then
-         call self%set_up(self%collocator%rule, step, start, panel, equations)
-         do iteration = 1, 2
-            call self%evaluate(equations, panel, s, f, slope, rate)
-            panel%indentation(1:) = equations%right - product_with_m(equations, f, &
-               1.0_wp/self%impact%mass)
-         end do
-         panel%converged = largest(panel%indentation(1:) - s) <= tolerance*largest(s)
-      end if
-      if (panel%converged) then
-         call self%integrate(equations, panel)
-      else
-         panel%indentation(1:) = guessed
-         call self%solve(self%collocator%rule, step, start, panel, inverse)
-      end if
-   end subroutine improve
-
-   !> Solve the companion of a panel, from its own start
-   subroutine accompany(self, step, start, panel, inverse, companion)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> Step
-      type(step_t), intent(in) :: step
-      !> State of the companion at the start of the panel
-      type(start_t), intent(in) :: start
-      !> The panel
-      type(panel_t), intent(in) :: panel
-      !> Inverse of its Jacobian
-      real(wp), intent(in) :: inverse(width, width)
-      !> Its companion
-      type(panel_t), intent(out) :: companion
-
-      real(wp) :: own_inverse(width, width)
-
-      associate (collocator => self%collocator)
-         call start_from_panel()
-         call self%solve_near(collocator%coarse, step, start, collocator%coarse_tolerance, &
-            inverse, companion)
-         if (companion%converged) return
-         call start_from_panel()
-         call self%solve(collocator%coarse, step, start, companion, own_inverse)
-      end associate
-
-   contains
-
-      !> Guess the companion
-      subroutine start_from_panel()
-
-         companion%indentation(1:) = self%collocator%coarsened(panel%indentation)
-         companion%t1(1:) = self%collocator%coarsened(panel%t1)
-      end subroutine start_from_panel
-   end subroutine accompany
-
-   !> Solve the last panel of a receding contact and find its duration, at whose end N is zero
-   subroutine close(self, start, time_tolerance, length, panel, inverse)
-      !> The problem, its contact receding
-      class(panel_problem_t), intent(in) :: self
-      !> State at the start
-      type(start_t), intent(in) :: start
-      !> Wanted relative error of the time of the end
-      real(wp), intent(in) :: time_tolerance
-      !> A guess at the duration, on return the duration [s]
-      real(wp), intent(inout) :: length
-      !> The panel, its t1 guessed; not converged on failure
-      type(panel_t), intent(inout) :: panel
-      !> Inverse of its Jacobian
-      real(wp), intent(out) :: inverse(width, width)
-
-      type(equations_t) :: equations
-      type(newton_t) :: newton
-      real(wp) :: fall, correction, last_correction
-      integer :: n, iteration
-
-      newton = newton_t(unit=self%largest_condition, noise=self%noise)
-      panel%converged = .false.
-      correction = huge(1.0_wp)
-      associate (rule => self%collocator%rule)
-         n = rule%stages
-         do iteration = 1, most_iterations
-            if (.not. length > shortest_panel*start%time) return
-            call self%set_up(rule, step_of(closing, length), start, panel, equations)
-            panel%t1(n) = 0.0_wp
-            call self%correct(equations, self%tolerance, newton, inverse, panel)
-            if (newton%failed) return
-            call self%integrate(equations, panel)
-            if (equations%viscosity > 0.0_wp) &
-               call self%settle_drift(rule, equations, start, panel)
-            call self%settle_condition(rule, equations, start, panel)
-            ! N is linear in (1 - theta)^2 at the end
-            fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
-            if (.not. fall > 0.0_wp) return
-            last_correction = correction
-            correction = farthest_closing*length
-            if (abs(panel%condition(n)) < farthest_closing*fall) &
-               correction = panel%condition(n)/fall*length
-            correction = sign(correction, panel%condition(n))
-            panel%converged = newton%converged .and. (abs(correction) &
-               <= time_tolerance*(start%time + length) &
-               ! rounding in the condition of stiff internal variables ends it, too
-               .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
-               .and. abs(correction) >= 0.25_wp*abs(last_correction))
-            if (panel%converged) exit
-            length = length + correction
-            ! the motion does not know how long the panel is
-            panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time &
-               + rule%times(closing, length)), farthest_rebound))
-         end do
-         if (panel%converged) call self%settle_drift(rule, equations, start, panel)
-      end associate
-   end subroutine close
 
    !> Forces of a solution and their integrals I = I_n + H F, J = J_n + H I_n + H^2 F, and the
    !> motion that they make where it is not the solution itself
@@ -766,11 +431,11 @@ contains
       !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel
-      type(equations_t), intent(in) :: e
+      type(equations_t), intent(inout) :: e
       !> The panel
       type(panel_t), intent(inout) :: panel
 
-      real(wp), dimension(width) :: numbers, impulse, rate, s, f, slope, force
+      real(wp), dimension(width) :: numbers, impulse, rate, force
       real(wp) :: second(width, width)
 
       associate (map => e%map)
@@ -778,11 +443,11 @@ contains
             numbers = apply(map%left, panel%force(1:))
             panel%indentation(1:) = panel%indentation(0) + e%gain - lost_indentation(e, numbers)
          else
-            call self%evaluate(e, panel, s, f, slope, rate)
-            numbers = times(map%square, e%stiffness, apply(map%left, f)) + e%memory
+            call self%evaluate(e, panel)
+            numbers = times(map%square, e%stiffness, apply(map%left, e%f)) + e%memory
             panel%force(1:) = apply(map%right, numbers)
             if (allocated(e%lag)) then
-               call second_term(self, e, f, force, second)
+               call self%second_term(e, force, second)
                panel%force(1:) = panel%force(1:) + force
                numbers = numbers + apply(map%left, force)
             end if
@@ -805,8 +470,9 @@ contains
    end subroutine integrate
 
    !> Where time stands still at the end of the panel, collocation there says nothing about internal
-   !> variables that settle in it: what they make of the drift of a hereditary plate is integrated
-   pure subroutine settle_drift(self, rule, e, start, panel)
+   !> variables that settle in it, and the end has no weight in the integrals of the panel: what
+   !> they make of the drift of a hereditary plate and of the condition is integrated
+   pure subroutine settle(self, rule, e, start, panel)
       !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Collocation rule
@@ -818,44 +484,28 @@ contains
       !> The panel
       type(panel_t), intent(inout) :: panel
 
-      associate (n => rule%stages, plate => self%modes%plate)
-         if (e%remembers) panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, &
-            e%scale, start%p, panel%impulse(:n))
-      end associate
-   end subroutine settle_drift
-
-   !> The same for the condition. The end has no weight in the integrals of the panel
-   pure subroutine settle_condition(self, rule, e, start, panel)
-      !> The problem
-      class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
-      type(collocation_t), intent(in) :: rule
-      !> Equations of the panel
-      type(equations_t), intent(in) :: e
-      !> State at the start
-      type(start_t), intent(in) :: start
-      !> The panel, its drift known
-      type(panel_t), intent(inout) :: panel
-
       real(wp) :: velocity
 
-      associate (n => rule%stages, contact => self%modes%contact, impact => self%impact)
+      associate (n => rule%stages, contact => self%modes%contact, plate => self%modes%plate, &
+                 impact => self%impact)
+         if (e%remembers) panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, &
+            e%scale, start%p, panel%impulse(:n))
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
             + rule%settling%total(contact%moduli, contact%rates, e%scale, start%lag, &
             panel%indentation(:n))
-         if (contact%viscosity > 0.0_wp) then
-            velocity = impact%velocity - panel%impulse(n)/impact%mass
+         if (e%viscosity > 0.0_wp) then
+            velocity = impact%velocity - panel%impulse(n)*e%inverse_mass
             if (impact%plate%drifts()) then
                velocity = velocity + panel%drift(n)
             else
                velocity = velocity - panel%impulse(n) &
                   *impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
             end if
-            panel%condition(n) = panel%condition(n) + contact%viscosity*velocity
+            panel%condition(n) = panel%condition(n) + e%viscosity*velocity
          end if
       end associate
-   end subroutine settle_condition
+   end subroutine settle
 
    !> Make the end of a panel the start of the next one
    subroutine advance(self, rule, step, panel, start)
@@ -925,13 +575,11 @@ contains
    end subroutine set_up_second_term
 
    !> What the second term adds to the force, c2 (G_0 u^2 + sum_k G_k p_k^2), and its derivative
-   pure subroutine second_term(self, e, gained, force, slope)
+   pure subroutine second_term(self, e, force, slope)
       !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
+      !> Equations of the panel, evaluated
       type(equations_t), intent(in) :: e
-      !> u - u_n at the stages [m^1.5]
-      real(wp), intent(in) :: gained(width)
       !> Force [N]
       real(wp), intent(out) :: force(width)
       !> dF/du [N/m^1.5]
@@ -940,7 +588,7 @@ contains
       real(wp) :: u(width), p(width)
       integer :: j, k
 
-      u = gained + e%start_u
+      u = e%f + e%start_u
       slope = 0.0_wp
       associate (contact => self%modes%contact)
          force = contact%equilibrium*u**2
@@ -948,7 +596,7 @@ contains
             slope(j, j) = 2.0_wp*contact%equilibrium*u(j)
          end do
          do k = 1, size(contact%rates)
-            p = matmul(e%lag(:, :, k), gained + e%start_lag(k))
+            p = matmul(e%lag(:, :, k), e%f + e%start_lag(k))
             force = force + contact%moduli(k)*p**2
             do j = 1, width
                slope(:, j) = slope(:, j) + 2.0_wp*contact%moduli(k)*p*e%lag(:, j, k)

@@ -12,16 +12,17 @@ module vcor_solver_ive_rebound
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : closing, linear
    use vcor_solver_ive_approach, only : approach_t
-   use vcor_solver_ive_course, only : course_t
+   use vcor_solver_ive_course, only : course_t, share
+   use vcor_solver_ive_newton, only : accompany, close_contact, solve
    use vcor_solver_ive_panel, only : panel_t
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       cut_most, end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, &
       end_slow, enough_closings, expected_rebound, farthest_rebound, fast, finer, first_rate, &
-      largest_share, margin_of_rest, near_vertex, order_at_end, rebound_fast, rebound_growth, &
-      rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, slowest_fall, &
-      smallest_share, tolerable, tolerable_end, unreliable_kernel, usual_accuracy
+      largest_share, margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, &
+      rebound_growth, rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, &
+      slowest_fall, smallest_share, tolerable, tolerable_end, unreliable_kernel, usual_accuracy
    use vcor_solver_receding, only : refuse_growth
    implicit none
    private
@@ -177,11 +178,11 @@ contains
          self%step = step_of(merge(closing, self%kind, self%ends), self%taken)
          call guess(self)
          if (self%ends) then
-            call problem%close(self%start, max(closest_end &
+            call close_contact(problem, self%start, max(closest_end &
                *min(self%accuracy, usual_accuracy), 1.0e-13_wp), self%taken, panel, self%inverse)
             self%step = step_of(closing, self%taken)
          else
-            call problem%solve(rule, self%step, self%start, panel, self%inverse)
+            call solve(problem, rule, self%step, self%start, panel, self%inverse)
          end if
          if (.not. panel%converged) return
          self%previous = panel
@@ -201,7 +202,7 @@ contains
             self%misled = .true.
          end if
          if (self%misled) return
-         call problem%accompany(self%step, self%start, panel, self%inverse, self%coarse)
+         call accompany(problem, self%step, self%start, panel, self%inverse, self%coarse)
       end associate
    end subroutine solve_panel
 
@@ -255,7 +256,9 @@ contains
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity
          end if
-         self%excess = self%error(1)/(0.45_wp*self%accuracy)
+         self%excess = self%motion_error()/(panel_share*self%accuracy)
+         if (self%ends) self%excess = max(self%excess, &
+            share(time_error, panel%time(n)*self%time_tolerance()))
       end associate
    end subroutine judge
 

@@ -7,6 +7,7 @@ module vcor_solver_ive_recording
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t
+   use vcor_solver_ive_newton, only : guess, improve, solve
    use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
@@ -164,8 +165,8 @@ contains
             peak_position)
          time = theta*(panel%map(1) + panel%map(2)*theta)
          step = step_to(start%time, time)
-         call problem%guess(panel, step, start, cut)
-         call problem%improve(step, start, accuracy, cut)
+         call guess(problem, panel, step, start, cut)
+         call improve(problem, step, start, accuracy, cut)
          peak = rule%interpolate(value, theta)
          if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
          time = start%time + time
@@ -261,8 +262,8 @@ contains
       real(wp) :: inverse(width, width)
 
       associate (rule => problem%collocator%rule)
-         call problem%guess(last, step, now, next)
-         call problem%solve(rule, step, now, next, inverse)
+         call guess(problem, last, step, now, next)
+         call solve(problem, rule, step, now, next, inverse)
          if (next%converged) call problem%advance(rule, step, next, now)
       end associate
       last = next
