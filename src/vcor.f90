@@ -1,6 +1,6 @@
-!> The public interface of the library: what a program needs to describe impacts, to solve one or many
-!> of them, to write the results and to fit materials. Each name is explained where it is declared,
-!> and used once in tests/unit/test_library.f90
+!> The public interface of the library: what a program needs to describe impacts, to solve one or
+!> many of them, to write the results and to fit materials. Each name is explained where it is
+!> declared, and used once in tests/unit/test_library.f90
 module vcor
    use vcor_case_build, only : build_impact, build_material, build_solver
    use vcor_case_case, only : case_t
@@ -43,12 +43,12 @@ module vcor
    public :: error_t, error_usage, error_input, error_file, error_numerical
    ! materials
    public :: material_t, prony_t, power_law_t, cerf_t, mittag_leffler_t, tabulated_t
-   public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf, &
-      new_mittag_leffler, new_tabulated
+   public :: new_rigid, new_elastic, new_sls, new_prony, new_power_law, new_cerf
+   public :: new_mittag_leffler, new_tabulated
    ! an impact
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
-   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen, &
-      waves_hereditary
+   public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
+   public :: waves_hereditary
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution
    public :: solve_impact, outcome_t, solver_t, solver_settings_t, new_solver
