@@ -55,8 +55,8 @@ contains
          if (allocated(error)) return
          if (job%writes(2)) call write_csv(job%path//trim(job%endings(2)), course, error)
          if (allocated(error)) return
-         if (job%writes(3)) call write_hdf5(job%path//trim(job%endings(3)), summary, course, error, &
-            remarks(:n))
+         if (job%writes(3)) call write_hdf5(job%path//trim(job%endings(3)), summary, course, &
+            error, remarks(:n))
       else
          call write_summary(name_of(1), name_of(3), summary, remarks(:n), threads_of(request), &
             error)

@@ -148,8 +148,8 @@ contains
       end function share
    end function budget
 
-   !> A number, 0 where it is below the digits that can be trusted of its scale: that is rounding and
-   !> numerical error
+   !> A number, 0 where it is below the digits that can be trusted of its scale: what is there is
+   !> rounding and numerical error
    pure function visible(value, scale, digits)
       real(wp), intent(in) :: value
       !> What the number is a part of, > 0

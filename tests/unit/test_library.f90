@@ -264,8 +264,15 @@ contains
       allocate (samples%loss(0))
       call fit_material(fit, 'sls', 0, none, samples, error)
       call success(error, "a material is fitted")
-      call check_relative(fit%data%glassy_modulus, 3.0e6_wp, 1.0e-6_wp, "its glassy modulus")
-      call check_relative(fit%data%beta, 300.0_wp, 1.0e-6_wp, "its rate")
+      call check(size(fit%parameters) == 3, "an SLS has three parameters")
+      do i = 1, size(fit%parameters)
+         associate (found => fit%parameters(i))
+            if (found%name == 'glassy_modulus') &
+               call check_relative(found%value, 3.0e6_wp, 1.0e-6_wp, "its glassy modulus")
+            if (found%name == 'beta') &
+               call check_relative(found%value, 300.0_wp, 1.0e-6_wp, "its rate")
+         end associate
+      end do
    end subroutine test_fit
 
 end program test_library
