@@ -9,7 +9,7 @@ impacts whose contact time or residual indentation misses where that test does n
 
     benchmarks/tuning.py [--factors 0.5,2] [--only REGEX] [--build DIR] [--accuracies 1e-6,1e-8,1e-10]
 
-Needs the compiler, CMake and valgrind; an hour for all constants.
+Needs the compiler, CMake and valgrind; half an hour for all constants.
 """
 
 import argparse
@@ -38,6 +38,8 @@ CASES = {
     "exact cerf": ("butyl_cerf", ("contact.law=receding", "plate.waves=hereditary")),
 }
 """Impacts whose instructions are counted: example and settings."""
+POINTS = 40
+"""Velocities that they are counted for."""
 
 READER = """
 contains
@@ -109,20 +111,26 @@ def references(folder):
 
 def misses(program, impacts, accuracy, environment):
     """What the impacts miss, by name and column."""
+    run = subprocess.run([program, "run", *(file.name for _, file, *_ in impacts), "--quiet", "--print",
+                          ",".join(COLUMNS), "--set", "solver.method=ive", "--set",
+                          f"solver.accuracy={accuracy:g}"], cwd=impacts[0][1].parent, env=environment,
+                         text=True, capture_output=True, check=False)
+    rows = run.stdout.strip().split("\n")
+    if len(rows) != len(impacts):
+        return {("all", "no result")}
     missed = set()
-    for name, file, expect, reference, receding in impacts:
-        run = subprocess.run([program, "run", file.name, "--quiet", "--print", ",".join(COLUMNS),
-                              "--set", "solver.method=ive", "--set", f"solver.accuracy={accuracy:g}"],
-                             cwd=file.parent, env=environment, text=True, capture_output=True, check=False)
-        words = run.stdout.strip().split("\n")[-1].replace(",", " ").split()
-        if run.returncode or len(words) != len(COLUMNS) or words[-1] != "separated":
+    for row, (name, _, expect, reference, receding) in zip(rows, impacts):
+        words = row.replace(",", " ").split()
+        if " table" in name:
+            continue
+        if words[-1] != "separated":
             missed.add((name, "status"))
             continue
         found = [float(word) for word in words[:-1]]
         scale = [1.0, 1.0, *expect[2:5], expect[3], expect[8], expect[8]]
         error = [abs(f - e) / s for f, e, s in zip(found, expect, scale)]
-        for i in range(len(SHARE) if " table" not in name else 0):
-            tolerance = SHARE[i] * max(accuracy, 1.0e-9 if i in (2, 5) else 0.0)
+        for i, share in enumerate(SHARE):
+            tolerance = share * max(accuracy, 1.0e-9 if i in (2, 5) else 0.0)
             if not error[i] <= tolerance + reference:
                 missed.add((name, COLUMNS[i] + (" receding" if receding and i in (2, 5) else "")))
         for i in (0, 1):
@@ -131,23 +139,20 @@ def misses(program, impacts, accuracy, environment):
     return missed
 
 
-def instructions(program, folder, environment, points=(51, 151)):
-    """Instructions per impact of the cases, in thousands."""
+def instructions(program, folder, environment, points):
+    """Instructions of sweeps of the cases over so many velocities."""
     counts = []
     for example, settings in CASES.values():
         text = (ROOT / f"examples/paper/{example}.nml").read_text()
-        total = []
-        for n in points:
-            case = folder / "instructions.nml"
-            case.write_text(text + "&sweep parameter = 'impact.velocity', start = 1.0, stop = 12.0, "
-                            f"count = {n}, spacing = 'log' /\n")
-            command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "run", case,
-                       "--threads", "1", "--quiet", "--print", "cor"]
-            for setting in settings:
-                command += ["--set", setting]
-            run = subprocess.run(command, env=environment, text=True, capture_output=True, check=False)
-            total.append(int(re.search(r"Collected : (\d+)", run.stderr)[1]))
-        counts.append((total[1] - total[0]) / (points[1] - points[0]) / 1000.0)
+        case = folder / "instructions.nml"
+        case.write_text(text + "&sweep parameter = 'impact.velocity', start = 1.0, stop = 12.0, "
+                        f"count = {points}, spacing = 'log' /\n")
+        command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "run", case,
+                   "--threads", "1", "--quiet", "--print", "cor"]
+        for setting in settings:
+            command += ["--set", setting]
+        run = subprocess.run(command, env=environment, text=True, capture_output=True, check=False)
+        counts.append(int(re.search(r"Collected : (\d+)", run.stderr)[1]))
     return counts
 
 
@@ -171,12 +176,17 @@ def main():
     def measure(line):
         values.write_text(line)
         missed = [misses(program, impacts, accuracy, environment) for accuracy in accuracies]
-        return instructions(program, folder, environment), missed
+        return [(n - i) / 1000.0 / POINTS for n, i in
+                zip(instructions(program, folder, environment, POINTS), idle)], missed
 
+    # what a run costs without an impact
+    values.write_text("")
+    few, many = (instructions(program, folder, environment, n) for n in (POINTS, 3 * POINTS))
+    idle = [n - (m - n) / 2 for n, m in zip(few, many)]
     usual, known = measure("")
     print("usual: instructions per impact [1000]",
           ", ".join(f"{name} {count:.0f}" for name, count in zip(CASES, usual)))
-    for accuracy, missed in zip(accuracies, known):
+    for accuracy, missed in zip(accuracies, known, strict=True):
         print(f"missed at {accuracy:g}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
     print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in CASES)
           + " ".join(f"{accuracy:>9.0e}" for accuracy in accuracies) + "   new misses (mended) at each accuracy",

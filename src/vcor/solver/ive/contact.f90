@@ -30,7 +30,7 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, first_growth_fast, &
       first_growth_slow, first_longest, first_receding, first_receding_growth, first_short, &
       first_slow, first_three, force_share, frozen_first, inner_allowed, inner_felt, levels_base, &
-      levels_error, most_ahead, most_steps, next_to_branch, order_at_branch, panel_share, &
+      levels_error, most_ahead, most_steps, next_to_branch, panel_share, &
       peak_share, rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
       share_of_growth, tolerable, usual_accuracy, usually_better
    implicit none
@@ -287,11 +287,12 @@ contains
       end if
       self%refused = self%excess
       if (self%ends) then
-         ! the error falls with a power of its length only: panels that lead to the end come first
+         ! next to a branch point the error falls as s u(s) only: panels that lead to the end come
+         ! first
          self%end_found = self%start%time + self%step%duration()
          self%ahead = 0
          if (self%branches) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
-            /(order_at_branch*log(1.0_wp - cut_at_end)))) - 1
+            /((1.0_wp + self%problem%impact%law%exponent)*log(1.0_wp - cut_at_end)))) - 1
       end if
       call self%step%shorten(merge(cut_at_end, 0.5_wp, self%ends)*self%step%duration())
    end function is_refused

@@ -89,8 +89,8 @@ contains
       if (equations%closes) call problem%settle(rule, equations, start, panel)
    end subroutine solve
 
-   !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls with
-   !> the power 2 of the correction, or 1.5 next to the branch point of u, otherwise linearly
+   !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls as u
+   !> does next to its branch point, or faster, otherwise linearly
    subroutine correct(self, problem, e, inverse, panel)
       !> State of the iteration
       type(newton_t), intent(inout) :: self
@@ -137,7 +137,7 @@ contains
       call problem%move(e, change, panel)
       size = largest(change)/unit
       if (self%stale) then
-         left = size*sqrt(size)
+         left = min(problem%impact%law%u(size), size)
          self%stale = size > newton_close
       else
          rate = min(1.0_wp, size/self%last)

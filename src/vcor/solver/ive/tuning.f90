@@ -133,9 +133,7 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: usually_better = 10.0_wp
    !> The panel before an end that was refused comes this close to it
    real(wp), parameter :: cut_at_end = 0.65_wp
-   !> Power of its length with which the error of a panel falls that ends next to a branch point,
-   !> and the most panels that lead to such an end before it is tried again
-   real(wp), parameter :: order_at_branch = 2.5_wp
+   !> The most panels that lead to an end next to a branch point before it is tried again
    real(wp), parameter :: most_ahead = 6.0_wp
 
    ! Estimate of the error
