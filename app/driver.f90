@@ -15,7 +15,8 @@ module vcor_app_driver
    use vcor_app_verify, only : verify_case, verify_program
    use vcor_error, only : error_numerical, error_t
    use vcor_io_file, only : write_stdout
-   use vcor_io_number, only : integer_text, real_text
+   use vcor_io_number, only : decimal_text
+   use vcor_text, only : integer_text
    use vcor_solver, only : default_accuracy
    use vcor_sweep_mpi, only : share_error, this_rank
    use vcor_version, only : version
@@ -175,18 +176,13 @@ contains
       !> Lines
       character(len=:), allocatable :: text
 
-      character(len=:), allocatable :: method
-
-      call job%case%get('solver', 'method', method)
-      text = job%method
-      if (method == 'auto') text = method//' ('//text//')'
-      text = new_line('a')//'! method: '//text//new_line('a')
+      text = new_line('a')//'! method: '//job%method//new_line('a')
       if (.not. job%case%given('solver', 'accuracy')) text = text//'! accuracy: ' &
          //short(default_accuracy(job%method))//new_line('a')
       if (job%sweep%is_grid()) then
          text = text//'! points: '//integer_text(job%sweep%grid%count())//new_line('a')
       else if (.not. job%case%given('sphere', 'mass')) then
-         text = text//'! mass of the sphere: '//real_text(job%impact%mass)//' kg'//new_line('a')
+         text = text//'! mass of the sphere: '//decimal_text(job%impact%mass)//' kg'//new_line('a')
       end if
    end function chosen
 

@@ -2,9 +2,8 @@
 module vcor_app_fit_screen
    use vcor_app_screen, only : short, significant
    use vcor_fit, only : fit_t, samples_t, state_bound, state_fixed, unseen_earlier, unseen_later
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, printable
    use vcor_kinds, only : wp
-   use vcor_text, only : printable
    use vcor_version, only : version
    implicit none
    private

@@ -17,31 +17,12 @@ program vcor_main
          !> Exit code
          integer(c_int), intent(in), value :: code
       end subroutine c_exit
-
-      !> Set a parameter of the memory of C (glibc's own)
-      function c_mallopt(parameter, value) result(is_set) bind(c, name='mallopt')
-         import :: c_int
-         !> Which parameter
-         integer(c_int), intent(in), value :: parameter
-         !> Its value
-         integer(c_int), intent(in), value :: value
-         !> 1 on success
-         integer(c_int) :: is_set
-      end function c_mallopt
    end interface
 
-   !> Arrays of so many bytes go back to the system when they are freed (M_MMAP_THRESHOLD), smaller
-   !> ones do not (M_TRIM_THRESHOLD). Left to itself glibc keeps arrays of any size that it has seen
-   !> before, a fifth of the memory of a large sweep; told of the first only, it gives everything
-   !> back, and half of the time between chunks goes into getting it anew
-   integer(c_int), parameter :: mmap_threshold = -3, trim_threshold = -1, large = 2**22
-   integer(c_int) :: ignored
    type(argument_t), allocatable :: words(:)
    type(request_t) :: request
    type(error_t), allocatable :: error
 
-   ignored = c_mallopt(mmap_threshold, large)
-   ignored = c_mallopt(trim_threshold, large)
    call join_ranks()
    call prepare_signals()
    call get_arguments(words)

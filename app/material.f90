@@ -2,21 +2,20 @@
 module vcor_app_material
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : directory_of, job_t
+   use vcor_app_job, only : job_t
    use vcor_app_screen, only : short, significant
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor_case_case, only : case_t
    use vcor_error, only : error_t
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : write_stdout
-   use vcor_io_hdf5, only : named_table_t, write_hdf5
+   use vcor_io_hdf5, only : write_hdf5
    use vcor_io_moduli_tables, only : moduli_tables
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, printable
    use vcor_io_path, only : make_directory
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t
-   use vcor_text, only : printable
    use vcor_version, only : version
    implicit none
    private
@@ -50,13 +49,15 @@ contains
       if (allocated(error)) return
 
       call case%get('case', 'title', title)
-      call write_files(job, case, title, moduli, summary, files, error)
+      call write_files(request, job, case, title, moduli, summary, files, error)
       if (allocated(error) .or. request%quiet) return
       call write_stdout(report(job%case%source, title, moduli)//notes//files//nl, error)
    end subroutine show_materials
 
    !> Write the files
-   subroutine write_files(job, case, title, moduli, summary, files, error)
+   subroutine write_files(request, job, case, title, moduli, summary, files, error)
+      !> The request
+      type(request_t), intent(in) :: request
       !> What is written, and where
       type(job_t), intent(in) :: job
       !> The case, for the heads of the files
@@ -72,21 +73,22 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(named_table_t) :: curves(2)
+      type(table_t) :: curves(2)
+      character(len=:), allocatable :: directory
       integer :: i
 
       files = ''
-      curves(1)%name = 'relaxation'
-      curves(2)%name = 'dynamic'
-      call moduli_tables(moduli, title, case%to_text(complete=.true.), summary, curves(1)%table, &
-         curves(2)%table)
+      call moduli_tables(moduli, title, case%to_text(complete=.true.), summary, curves(1), &
+         curves(2))
       if (.not. any(job%writes)) return
-      call make_directory(directory_of(job), error)
+      call case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call make_directory(directory, error)
       if (.not. allocated(error) .and. job%writes(1)) &
          call write_csv(job%path//trim(job%endings(1)), summary, error)
       do i = 1, size(curves)
          if (.not. allocated(error) .and. job%writes(i + 1)) &
-            call write_csv(job%path//trim(job%endings(i + 1)), curves(i)%table, error)
+            call write_csv(job%path//trim(job%endings(i + 1)), curves(i), error)
       end do
       if (.not. allocated(error) .and. job%writes(4)) &
          call write_hdf5(job%path//trim(job%endings(4)), summary, error=error, more=curves)

@@ -13,15 +13,13 @@ module vcor_app_merge
    use vcor_io_file, only : write_stdout
    use vcor_io_hdf5, only : remark_t
    use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_io_path, only : join_path, make_directory, quoted_path, same_file
-   use vcor_io_results, only : summary_table
-   use vcor_io_summary_files, only : write_summary
+   use vcor_io_results, only : summary_table, write_summary
    use vcor_io_table, only : table_t
    use vcor_sweep_part, only : new_part
    use vcor_sweep_quantity, only : point_pending, status_name
    use vcor_sweep_summary, only : new_summary, summary_t
-   use vcor_sweep_points, only : default_threads
    use vcor_version, only : version
    implicit none
    private
@@ -272,7 +270,7 @@ contains
       end do
       whole = identity
       whole%part = new_part(identity%part%points, 1, 1)
-      call look_at(path, endings, [csv, .false., hdf5], whole, previous)
+      call look_at(path, [csv, .false., hdf5], whole, previous)
 
       call summary_table(table, identity%title, identity%case_text, grid, summary)
       remarks = remarks_of(identity)
@@ -281,8 +279,7 @@ contains
          //' impacts'//new_line('a')//new_line('a')
       call make_directory(directory, error)
       if (allocated(error)) return
-      call write_summary(name_of(1, csv), name_of(3, hdf5), table, remarks(:n), &
-         default_threads(), error)
+      call write_summary(name_of(1, csv), name_of(3, hdf5), table, remarks(:n), error)
       if (allocated(error)) return
       if (csv) text = text//'  written '//name_of(1, csv)//new_line('a')
       if (hdf5) text = text//'  written '//name_of(3, hdf5)//new_line('a')

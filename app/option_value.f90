@@ -2,9 +2,8 @@
 module vcor_app_option_value
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, printable
    use vcor_kinds, only : wp
-   use vcor_text, only : printable
    implicit none
    private
 

@@ -10,10 +10,9 @@ module vcor_app_plot
    use vcor_io_figure, only : figure_t
    use vcor_io_file, only : write_stdout
    use vcor_io_gnuplot, only : figure_formats => formats
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, printable
    use vcor_io_path, only : same_file
    use vcor_nearest, only : suggestion
-   use vcor_text, only : printable
    implicit none
    private
 

@@ -13,7 +13,7 @@ module vcor_app_run
    use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_stdout
    use vcor_io_identity, only : identity_of, identity_t
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
@@ -92,8 +92,6 @@ contains
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, table, trouble)
-         if (.not. request%quiet .and. len(inexact(outcome)) > 0) &
-            call remark(job%case%source//': '//inexact(outcome))
       else if (.not. request%quiet) then
          call write_stdout(report(job%case%source, identity%title, &
             method_of(job, worker%trajectory), outcome, &
@@ -159,7 +157,9 @@ contains
 
       text = ''
       if (outcome%status /= contact_separated) return
-      if (len(inexact(outcome)) > 0) call add(inexact(outcome))
+      if (outcome%misses()) call add('the estimated error, ' &
+         //short(max(outcome%cor_error, outcome%cor_sphere_error)) &
+         //', is above the accuracy asked for, '//short(outcome%accuracy))
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
       call job%case%get('sphere', 'radius', radius)
@@ -210,20 +210,6 @@ contains
          text = text//as_line('note: '//line)
       end subroutine add
    end function remarks_on
-
-   !> What is said of a result that is less accurate than asked for
-   pure function inexact(outcome) result(text)
-      !> The outcome
-      type(outcome_t), intent(in) :: outcome
-      !> Words; nothing where it is as accurate as asked for
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (outcome%status /= contact_separated) return
-      if (outcome%misses()) text = 'the estimated error, ' &
-         //short(max(outcome%cor_error, outcome%cor_sphere_error)) &
-         //', is above the accuracy asked for, '//short(outcome%accuracy)
-   end function inexact
 
    !> An impact without separation has no coefficient of restitution: say why
    subroutine end_of(job, outcome, trajectory, error)

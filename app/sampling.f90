@@ -12,14 +12,13 @@ module vcor_app_sampling
    use vcor_fit, only : samples_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, printable
    use vcor_io_path, only : file_exists
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t
    use vcor_nearest, only : suggestion
    use vcor_study_moduli, only : sampled_times, time_range_t
    use vcor_study_reliance, only : solve_case
-   use vcor_text, only : printable
    implicit none
    private
 

@@ -3,14 +3,14 @@ module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : quantities, quantity_value, status_name
    use vcor_version, only : version
    implicit none
    private
 
-   public :: report, short, shown, significant, visible
+   public :: report, short, shown, significant
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -148,22 +148,18 @@ contains
       end function share
    end function budget
 
-   !> A number, 0 where it is below the digits that can be trusted of its scale: what is there is
+   !> A number, 0 where it is below the eight digits that the screen shows of its scale: that is
    !> rounding and numerical error
-   pure function visible(value, scale, digits)
+   pure function visible(value, scale)
+      !> The number
       real(wp), intent(in) :: value
-      !> What the number is a part of, > 0
+      !> What it is a part of, > 0
       real(wp), intent(in) :: scale
-      !> Digits of the scale, absent: 8
-      integer, intent(in), optional :: digits
+      !> The number, or 0
       real(wp) :: visible
 
-      integer :: d
-
-      d = 8
-      if (present(digits)) d = digits
       visible = value
-      if (abs(value) <= 10.0_wp**(-d)*scale) visible = 0.0_wp
+      if (abs(value) <= 1.0e-8_wp*scale) visible = 0.0_wp
    end function visible
 
    !> A number with so many significant digits, right-justified
@@ -190,8 +186,7 @@ contains
       else if (.not. abs(value) > 0.0_wp) then
          buffer = '0'
       else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d - 1)) then
-         write (form, '(a, i0, a)') '(es24.', d - 1, 'e2)'
-         write (buffer, form) value
+         buffer = scientific(value, d - 1)
       else
          write (form, '(a, i0, a)') '(f24.', d - max(0, floor(log10(abs(value))) + 1), ')'
          write (buffer, form) value
@@ -207,10 +202,30 @@ contains
       !> Its text
       character(len=:), allocatable :: text
 
-      character(len=10) :: buffer
-
-      write (buffer, '(es9.1)') value
-      text = trim(adjustl(buffer))
+      text = scientific(value, 1)
    end function short
+
+   !> A number as in `-1.5E-03`; the exponent has a third digit where it needs one, and never loses
+   !> its letter, as it does with `es` formats of fixed width (`1.5-103`)
+   pure function scientific(value, decimals) result(text)
+      !> The number
+      real(wp), intent(in) :: value
+      !> Digits behind the point, 1 .. 14
+      integer, intent(in) :: decimals
+      !> Its text
+      character(len=:), allocatable :: text
+
+      character(len=24) :: buffer
+      character(len=12) :: form
+      integer :: letter
+
+      write (form, '(a, i0, a)') '(es24.', decimals, 'e3)'
+      write (buffer, form) value
+      text = trim(adjustl(buffer))
+      letter = index(text, 'E')
+      if (letter > 0) then
+         if (text(letter + 2:letter + 2) == '0') text = text(:letter + 1)//text(letter + 3:)
+      end if
+   end function scientific
 
 end module vcor_app_screen

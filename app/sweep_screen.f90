@@ -4,9 +4,8 @@ module vcor_app_sweep_screen
    use vcor_app_job, only : job_t, shard_text
    use vcor_app_screen, only : shown, significant
    use vcor_case_grid, only : axis_t
-   use vcor_io_number, only : integer_text
-   use vcor_io_row_text, only : place_in_table
-   use vcor_io_table, only : table_t
+   use vcor_text, only : integer_text
+   use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_quantity, only : quantities
@@ -14,7 +13,7 @@ module vcor_app_sweep_screen
    implicit none
    private
 
-   public :: sweep_report, shard_report, coordinates, inexact
+   public :: sweep_report, shard_report, coordinates
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -42,7 +41,7 @@ contains
          //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
+      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
       call job%case%get('output', 'history', history)
       if (history .and. any(job%writes)) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
@@ -67,7 +66,7 @@ contains
          //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', ' &
          //method_shown(job)//nl
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
+      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
       text = text//nl//'  written '//path//nl//nl
    end function shard_report
 
@@ -139,7 +138,7 @@ contains
          do j = 1, size(quantities)
             if (quantities(j)%name /= shown(i)) cycle
             associate (column => summary%columns(place_in_table(summary, trim(shown(i))) &
-                       - summary%dimension_count))
+                       - size(summary%dimensions)))
                any_there = .false.
                do k = 1, column%length
                   if (ieee_is_nan(column%reals(k))) cycle
@@ -189,13 +188,14 @@ contains
       type(job_t), intent(in) :: job
       !> What there is to say of the points
       type(failures_t), intent(in) :: failures
-      !> One line
+      !> Lines
       character(len=:), allocatable :: text
 
-      text = integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
+      text = '  note: '//integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
          //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
-         //'asked for, the first one is point '//integer_text(failures%first_inexact)//': ' &
-         //coordinates(job, failures%first_inexact)
+         //'asked for'//nl &
+         //'            first at point '//integer_text(failures%first_inexact)//': ' &
+         //coordinates(job, failures%first_inexact)//nl
    end function inexact
 
    !> Parameters of a point

@@ -4,7 +4,7 @@ module vcor_app_verify
    use vcor_app_verify_screen, only : comparison_text, law_text, models_text
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_io_file, only : write_stdout
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_verify_comparison, only : compare
    use vcor_verify_comparison_type, only : comparison_t
    use vcor_verify_models, only : model_t, solve_models

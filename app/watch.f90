@@ -8,7 +8,7 @@ module vcor_app_watch
    use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint
    use vcor_io_file, only : write_terminal
    use vcor_io_identity, only : identity_t
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_sweep_points, only : monitor_t
    use vcor_sweep_summary, only : summary_t

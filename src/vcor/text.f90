@@ -7,7 +7,7 @@ module vcor_text
    private
 
    public :: lower, same_name, canonical_name, integer_text, real_text, logical_text, quoted
-   public :: printable, shortened, is_utf8, has_control
+   public :: printable, shortened, is_utf8, has_control, is_control
 
    !> Longest part of somebody's text that a message repeats [bytes]
    integer, parameter :: shown_bytes = 60

@@ -58,3 +58,27 @@ def test_damaged_shard_is_finished_again(pristine, tmp_path):
     done = vcor("run", "case.nml", "--output", "out", "--shard", "1/2", "--resume")
     assert done.code in {SUCCESS, NUMERICAL}
     assert (tmp_path / SHARDS[0]).read_bytes() == (pristine / SHARDS[0]).read_bytes()
+
+
+def test_points_that_have_changed_places(pristine, tmp_path):
+    """A point whose numbers are those of another one is damaged, be they right in themselves."""
+    vcor = Vcor(tmp_path)
+    (tmp_path / "out").mkdir()
+    for name in ["case.nml", *SHARDS]:
+        (tmp_path / name).write_bytes((pristine / name).read_bytes())
+    data = bytearray((tmp_path / SHARDS[0]).read_bytes())
+    with h5py.File(tmp_path / SHARDS[0]) as file:
+        for name, column in file["summary"].items():
+            if name in {"point", "impact.velocity", "sphere.radius"}:
+                continue
+            width = column.dtype.itemsize
+            one, other = (column.id.get_offset() + place * width for place in (13, 15))
+            data[one : one + width], data[other : other + width] = (
+                data[other : other + width],
+                data[one : one + width],
+            )
+    (tmp_path / SHARDS[0]).write_bytes(data)
+    vcor.refuses("merge", *SHARDS, code=FILE, says="--resume")
+    done = vcor("run", "case.nml", "--output", "out", "--shard", "1/2", "--resume")
+    assert done.code in {SUCCESS, NUMERICAL}
+    assert (tmp_path / SHARDS[0]).read_bytes() == (pristine / SHARDS[0]).read_bytes()

@@ -5,7 +5,7 @@ import re
 
 import h5py
 import pytest
-from cases import SLS, case_text
+from cases import SLS, case_text, edit
 from program import ALL, NAMES, USAGE
 
 
@@ -104,3 +104,12 @@ def test_blank_instead_of_a_comma(sls, value):
 def test_goes_before_quiet(sls):
     out = sls.succeeds("run", "case.nml", "--print", "cor", "--quiet")
     assert out in {"", sls.succeeds("run", "case.nml", "--print", "cor")}
+
+
+def test_exponents_of_three_digits(vcor):
+    """Energies of a slow impact keep the letter of their exponent on the screen."""
+    vcor.write(edit(SLS, "impact", "velocity", "1e-50")[0])
+    screen = vcor.succeeds("run", "case.nml")
+    (line,) = (line for line in screen.splitlines() if "energy before the impact" in line)
+    assert re.search(r" [0-9]\.[0-9]{7}E-10[0-9] J", line)
+    assert not re.search(r"[0-9][+-][0-9]{3}\b", screen)

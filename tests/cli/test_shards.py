@@ -121,13 +121,14 @@ def test_every_bit_of_a_row(vcor):
         data[offset + row * dtype.itemsize + bit // 8] ^= 1 << bit % 8
     shard.write_bytes(data)
     vcor.refuses("merge", path, code=FILE, says=f"{len(bits)} of its {len(bits)} points")
-    # the sum is the one that others know
+    # the sum is the one that others know, of the numbers and of the place, from 1
     shard.write_bytes(whole)
     with h5py.File(shard) as file:
         rows = [file["summary"][name][:] for name in NAMES]
         check = file["summary/check"][:].view(numpy.uint32)
     for row in (0, len(bits) - 1):
-        assert zlib.crc32(b"".join(column[row].tobytes() for column in rows)) == check[row]
+        numbers = [column[row] for column in rows] + [numpy.int32(row + 1)]
+        assert zlib.crc32(b"".join(number.tobytes() for number in numbers)) == check[row]
     shard.write_bytes(data)
     part = shard.with_name("case_shard_1_of_1.part.h5")
     shard.rename(part)

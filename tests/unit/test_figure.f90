@@ -1,24 +1,23 @@
 !> Figures: contours, labels, the text of scripts, and reading the files that they are made of
 program test_figure
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_c_binding, only : c_associated
    use vcor_error, only : error_file, error_input, error_t
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
-   use vcor_io_column, only : integer_column, real_column, text_column, text_value
+   use vcor_io_table, only : add_column, add_dimension, add_fact, integer_column, new_table, &
+      real_column, table_t, text_column, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, plain
    use vcor_io_file, only : write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_gnuplot_axis, only : in_quotes, number
-   use vcor_io_hdf5, only : named_table_t, write_hdf5
-   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset, read_numbers
-   use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
-      open_hdf5, reader_t, text_attribute
-   use vcor_io_number, only : integer_text
-   use vcor_io_path, only : join_path, make_directory, quoted_path
-   use vcor_io_posix, only : c_getpid
-   use vcor_io_table, only : add_fact, new_table, table_t
-   use vcor_io_table_columns, only : add_column, add_dimension
+   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, &
+      number_attribute, open_hdf5, read_dataset, read_numbers, reader_t, text_attribute
+   use vcor_text, only : integer_text
+   use vcor_io_path, only : join_path, quoted_path
+   use vcor_io_posix, only : c_mkdtemp, c_text
    use vcor_kinds, only : wp
    use vcor_numeric_contour, only : find_loops, loop_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
@@ -51,15 +50,15 @@ contains
 
    !> A folder of our own
    subroutine make_folder()
-      type(error_t), allocatable :: error
       character(len=1000) :: parent
+      character(len=:), allocatable :: template
       integer :: status
 
       call get_environment_variable('TMPDIR', parent, status=status)
       if (status /= 0 .or. len_trim(parent) == 0) parent = '/tmp'
-      folder = join_path(parent, 'vcor figure '//integer_text(int(c_getpid())))
-      call make_directory(folder, error)
-      call check(.not. allocated(error), 'the folder of the test can be made')
+      template = c_text(join_path(parent, 'vcor figure XXXXXX'))
+      call check(c_associated(c_mkdtemp(template)), 'the folder of the test can be made')
+      folder = template(:len(template) - 1)
    end subroutine make_folder
 
    !> Contours of a plane are straight: the area above one is that of a trapezoid
@@ -319,7 +318,7 @@ contains
    !> What is written to a file is read back
    subroutine test_reading()
       type(table_t) :: summary, history
-      type(named_table_t) :: more(1)
+      type(table_t) :: more
       type(reader_t) :: reader
       type(member_t), allocatable :: members(:)
       type(dataset_t) :: set
@@ -328,23 +327,22 @@ contains
       real(wp), allocatable :: numbers(:)
       integer :: i
 
-      call new_table(summary, '1.2.3', 'Stoß', '&case'//new_line('a')//'/')
+      call new_table(summary, 'summary', 'Stoß', '&case'//new_line('a')//'/')
       call add_dimension(summary, 'impact.velocity', [1.0_wp, 2.0_wp], 'm/s', 'velocity')
       call add_dimension(summary, 'sphere.radius', [0.1_wp, 0.2_wp, 0.3_wp], 'm', 'radius')
       call add_column(summary, 'cor', [(0.1_wp*real(i, wp), i=1, 6)], '1', 'restitution')
       call add_column(summary, 'steps', [(10*i, i=1, 6)], '1', 'steps')
       call add_column(summary, 'status', [character(len=9) :: 'separated', 'sticks', 'α', '', 'x', &
          'y'], '', 'status')
-      call new_table(history, '1.2.3', 'Stoß', '')
+      call new_table(history, 'history', 'Stoß', '')
       call add_dimension(history, 'time', [0.0_wp, 1.0_wp], 's', 'time')
       call add_column(history, 'force', [3.0_wp, 4.0_wp], 'N', 'force')
-      more(1)%name = 'more'
-      call new_table(more(1)%table, '1.2.3', 'Stoß', '')
-      call add_fact(more(1)%table, 'contact_time', 1.5e-3_wp, 's', 'contact time')
-      call add_dimension(more(1)%table, 'time', [0.0_wp], 's', 'time')
-      call add_column(more(1)%table, 'force', [3.0_wp], 'N', 'force')
+      call new_table(more, 'more', 'Stoß', '')
+      call add_fact(more, 'contact_time', 1.5e-3_wp, 's', 'contact time')
+      call add_dimension(more, 'time', [0.0_wp], 's', 'time')
+      call add_column(more, 'force', [3.0_wp], 'N', 'force')
       path = join_path(folder, 'round trip é.h5')
-      call write_hdf5(path, summary, history, error, more=more)
+      call write_hdf5(path, summary, error, more=[history, more])
       call check(.not. allocated(error), 'the file is written')
 
       call open_hdf5(reader, path, error)

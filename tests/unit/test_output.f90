@@ -2,20 +2,22 @@
 program test_output
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_quiet_nan, &
       & ieee_value
+   use, intrinsic :: iso_c_binding, only : c_associated
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_internal, error_t
-   use vcor_io_column, only : text_value
+   use vcor_io_table, only : add_column, add_dimension, check_table, coordinate_row, new_table, &
+      row_count, table_t, text_value
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : commit, create_file, discard, output_file_t, put, write_file, &
-      & write_stdout
+      write_stdout
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_number, only : integer_text, real_text
+   use vcor_text, only : integer_text
    use vcor_io_path, only : check_name, directory_exists, file_exists, for_shell, join_path, &
-      & make_directory, quoted_path
-   use vcor_io_posix, only : c_getpid
-   use vcor_io_table, only : check_table, coordinate_row, new_table, row_count, table_t
-   use vcor_io_table_columns, only : add_column, add_dimension
+      make_directory, quoted_path
+   use vcor_io_posix, only : c_mkdtemp, c_text
+   use vcor_io_number, only : decimal_text
    use vcor_kinds, only : wp
+   use vcor_version, only : version
    use vcor_test, only : check, check_contains, check_text, finish, suite
    implicit none
 
@@ -47,15 +49,15 @@ contains
 
    !> A folder of our own, with a blank and a letter beyond ASCII in its name
    subroutine make_folder()
-      type(error_t), allocatable :: error
       character(len=1000) :: parent
+      character(len=:), allocatable :: template
       integer :: status
 
       call get_environment_variable("TMPDIR", parent, status=status)
       if (status /= 0 .or. len_trim(parent) == 0) parent = "/tmp"
-      folder = join_path(parent, "vcor test "//integer_text(int(c_getpid()))//" "//"é")
-      call make_directory(folder, error)
-      call check(.not. allocated(error), "the folder of the test can be made")
+      template = c_text(join_path(parent, "vcor test é XXXXXX"))
+      call check(c_associated(c_mkdtemp(template)), "the folder of the test can be made")
+      folder = template(:len(template)-1)
    end subroutine make_folder
 
    !> Numbers that are special in some way
@@ -66,24 +68,24 @@ contains
       smallest = 1_int64
       lowest = -huge(1)
       lowest = lowest - 1
-      call check_text(real_text(0.0_wp), "0.0000000000000000e+00", "zero")
-      call check_text(real_text(-0.0_wp), "-0.0000000000000000e+00", "zero has a sign")
-      call check_text(real_text(1.0_wp), "1.0000000000000000e+00", "one")
-      call check_text(real_text(-0.1_wp), "-1.0000000000000001e-01", "a tenth is not exact")
-      call check_text(real_text(1.0e23_wp), "9.9999999999999992e+22", "1e23 is not exact")
-      call check_text(real_text(123456.0_wp), "1.2345600000000000e+05", "whole numbers")
-      call check_text(real_text(1.0e-300_wp), "1.0000000000000000e-300", "exponent of 3 digits")
-      call check_text(real_text(huge(1.0_wp)), "1.7976931348623157e+308", "largest number")
-      call check_text(real_text(tiny(1.0_wp)), "2.2250738585072014e-308", "smallest normal number")
-      call check_text(real_text(transfer(smallest, 1.0_wp)), "4.9406564584124654e-324", &
+      call check_text(decimal_text(0.0_wp), "0.0000000000000000e+00", "zero")
+      call check_text(decimal_text(-0.0_wp), "-0.0000000000000000e+00", "zero has a sign")
+      call check_text(decimal_text(1.0_wp), "1.0000000000000000e+00", "one")
+      call check_text(decimal_text(-0.1_wp), "-1.0000000000000001e-01", "a tenth is not exact")
+      call check_text(decimal_text(1.0e23_wp), "9.9999999999999992e+22", "1e23 is not exact")
+      call check_text(decimal_text(123456.0_wp), "1.2345600000000000e+05", "whole numbers")
+      call check_text(decimal_text(1.0e-300_wp), "1.0000000000000000e-300", "exponent of 3 digits")
+      call check_text(decimal_text(huge(1.0_wp)), "1.7976931348623157e+308", "largest number")
+      call check_text(decimal_text(tiny(1.0_wp)), "2.2250738585072014e-308", "smallest normal")
+      call check_text(decimal_text(transfer(smallest, 1.0_wp)), "4.9406564584124654e-324", &
          & "smallest number")
       ! 18 digits, the last one a five: a tie, which goes to the even digit
-      call check_text(real_text(2.0_wp**(-25)*33554433.0_wp), "1.0000000298023224e+00", "no tie")
-      call check_text(real_text(100000000000000005.0_wp*16), "1.6000000000000000e+18", "17 digits")
-      call check_text(real_text(9007199254740993.0_wp*64), "5.7646075230342349e+17", "tie to even")
-      call check_text(real_text(ieee_value(1.0_wp, ieee_quiet_nan)), "nan", "NaN")
-      call check_text(real_text(ieee_value(1.0_wp, ieee_positive_inf)), "inf", "infinity")
-      call check_text(real_text(ieee_value(1.0_wp, ieee_negative_inf)), "-inf", "minus infinity")
+      call check_text(decimal_text(2.0_wp**(-25)*33554433.0_wp), "1.0000000298023224e+00", "no tie")
+      call check_text(decimal_text(100000000000000005.0_wp*16), "1.6000000000000000e+18", "digits")
+      call check_text(decimal_text(9007199254740993.0_wp*64), "5.7646075230342349e+17", "tie, even")
+      call check_text(decimal_text(ieee_value(1.0_wp, ieee_quiet_nan)), "nan", "NaN")
+      call check_text(decimal_text(ieee_value(1.0_wp, ieee_positive_inf)), "inf", "infinity")
+      call check_text(decimal_text(ieee_value(1.0_wp, ieee_negative_inf)), "-inf", "minus infinity")
       call check_text(integer_text(0), "0", "integer zero")
       call check_text(integer_text(-120), "-120", "negative integer")
       call check_text(integer_text(huge(1)), "2147483647", "largest integer")
@@ -117,7 +119,7 @@ contains
             bits = transfer(int(1 + 1000*u(1))*10.0_wp**int(40*u(2) - 20), 1_int64)
          end select
          x = transfer(bits, 1.0_wp)
-         text = real_text(x)
+         text = decimal_text(x)
          if (text /= compiler_text(x)) unlike = unlike + 1
          read(text, *) back
          if (transfer(back, 1_int64) /= bits) unread = unread + 1
@@ -349,7 +351,7 @@ contains
       type(table_t) :: table
       integer :: i
 
-      call new_table(table, "1.2.3", "title  ", "case")
+      call new_table(table, "summary", "title  ", "case")
       call add_dimension(table, "row", 4)
       do i = 1, 100
          call add_column(table, "column "//integer_text(i), real([i, i, i, i], wp), "m", "column")
@@ -359,7 +361,7 @@ contains
       call check(.not. allocated(error), "table is sound")
       call check_text(table%title, "title", "title is trimmed")
       call check(row_count(table) == 4, "number of rows")
-      call check(table%column_count == 101, "number of columns")
+      call check(size(table%columns) == 101, "number of columns")
       call check(all(nint(table%columns(1)%reals) == 1), "values stay when columns are added")
       call check(all(nint(table%columns(33)%reals) == 33), "values of a later column")
       call check_text(table%columns(100)%name, "column 100", "name of a column")
@@ -367,7 +369,7 @@ contains
       call check_text(text_value(table%columns(101), 2), "", "empty text")
       call check_text(text_value(table%columns(101), 3), " bc", "text with a blank before it")
 
-      call new_table(table, "1.2.3", "grid", "case")
+      call new_table(table, "summary", "grid", "case")
       call add_dimension(table, "a", [1, 2], "1", "a")
       call add_dimension(table, "b", [1.0_wp, 2.0_wp, 3.0_wp], "1", "b")
       call check(row_count(table) == 6, "rows of a grid")
@@ -399,7 +401,7 @@ contains
       table = small_table()
       call add_dimension(table, "late", 1)
       call check_fault(table, "'late' comes after the first column", "late dimension")
-      call new_table(table, "1", "", "")
+      call new_table(table, "summary", "", "")
       call check_fault(table, "no dimension", "nothing")
       call add_column(table, "cor", [1, 2], "1", "early")
       call check_fault(table, "'cor' comes before the first dimension", "early column")
@@ -417,7 +419,7 @@ contains
       call write_csv(path, small_table(), error)
       call check(.not. allocated(error), "table can be written as csv")
       call check_text(content(path), &
-         & "# vcor 1.2.3"//lf// &
+         & "# vcor "//version//lf// &
          & "# title: small"//lf// &
          & "# columns:"//lf// &
          & "#   cor [1] coefficient of restitution"//lf// &
@@ -431,7 +433,7 @@ contains
          & "5.0000000000000000e-01,-3,""a, """"b"""""""//lf// &
          & "nan,0,"""""//lf, "csv of a small table")
 
-      call new_table(table, "1", "none", "")
+      call new_table(table, "summary", "none", "")
       call add_dimension(table, "impact", 0)
       call add_column(table, "cor", [real(wp) ::], "1", "cor")
       call add_column(table, "status", [character(len=3) ::], "", "status")
@@ -445,7 +447,7 @@ contains
       call check(.not. allocated(error), "large table can be written as csv")
       call check(len(content(path)) > 20000*len("1.0000000000000000e+00,word"//lf), &
          & "large table is complete")
-      call check_contains(content(path), lf//real_text(1.0_wp/20000)//",word"//lf, "last row")
+      call check_contains(content(path), lf//decimal_text(1.0_wp/20000)//",word"//lf, "last row")
    end subroutine test_csv
 
    !> No line of the case may become a row
@@ -455,14 +457,14 @@ contains
       character(len=:), allocatable :: path
 
       path = join_path(folder, "comments.csv")
-      call new_table(table, "1", "two"//lf//"lines", "a"//cr//lf//lf//"b"//cr//"c"//lf//lf)
+      call new_table(table, "summary", "two"//lf//"lines", "a"//cr//lf//lf//"b"//cr//"c"//lf//lf)
       call add_dimension(table, "time", [0.0_wp], "s", "time")
       call write_csv(path, table, error)
       call check_contains(content(path), "# title: two"//lf//"# lines"//lf, "title of two lines")
       call check_contains(content(path), &
          & lf//"# case:"//lf//"# a"//lf//"# "//lf//"# b"//lf//"# c"//lf//"# "//lf//"time"//lf, &
          & "lines end with line feed, carriage return or both")
-      call new_table(table, "1", "long", repeat("x", 200000))
+      call new_table(table, "summary", "long", repeat("x", 200000))
       call add_dimension(table, "time", [0.0_wp], "s", "time")
       call write_csv(path, table, error)
       call check_contains(content(path), "# "//repeat("x", 200000)//lf//"time"//lf, "long line")
@@ -475,7 +477,7 @@ contains
       character(len=:), allocatable :: path
 
       path = join_path(folder, "grid.csv")
-      call new_table(table, "1", "grid", "")
+      call new_table(table, "summary", "grid", "")
       call add_dimension(table, "material", ["a ", "bc"], "", "material")
       call add_dimension(table, "k", [7, 8], "1", "number")
       call add_column(table, "n", [1, 2, 3, 4], "1", "count")
@@ -493,29 +495,29 @@ contains
       character(len=*), parameter :: signature = char(137)//"HDF"//cr//lf//achar(26)//lf
 
       path = join_path(folder, "small.h5")
-      call new_table(history, "1.2.3", "small", "case")
+      call new_table(history, "history", "small", "case")
       call add_dimension(history, "time", [0.0_wp, 1.0e-6_wp, 2.0e-6_wp], "s", "time")
       call add_column(history, "force", [0.0_wp, 1.0_wp, 0.5_wp], "N", "force")
-      call write_hdf5(path, small_table(), history, error)
+      call write_hdf5(path, small_table(), error, more=[history])
       call check(.not. allocated(error), "tables can be written as hdf5")
       first = content(path)
       call check(index(first, signature) == 1, "file is hdf5")
       call check_contains(first, "coefficient of restitution", "file has what names mean")
-      call write_hdf5(path, small_table(), history, error)
+      call write_hdf5(path, small_table(), error, more=[history])
       call check(content(path) == first, "the same tables give the same bytes")
 
       call write_hdf5(path, small_table(), error=error)
       call check(.not. allocated(error), "hdf5 without history")
       call check(index(content(path), "history") == 0, "no history, no group")
 
-      call new_table(table, "1", "none", "")
+      call new_table(table, "summary", "none", "")
       call add_dimension(table, "impact", 0)
       call add_column(table, "status", [character(len=3) ::], "", "status")
       call write_hdf5(path, table, error=error)
       call check(.not. allocated(error), "hdf5 of a table without rows")
 
       ! Names that HDF5 would take for its own
-      call new_table(table, "1", "names", "")
+      call new_table(table, "summary", "names", "")
       call add_dimension(table, "impact", 1)
       call add_column(table, "a/b.c", [1], "1", "slash")
       call write_hdf5(path, table, error=error)
@@ -536,7 +538,7 @@ contains
       !> The table
       type(table_t) :: table
 
-      call new_table(table, "1.2.3", "small", "&case"//lf//"  title = 'small'"//lf//"/"//lf)
+      call new_table(table, "summary", "small", "&case"//lf//"  title = 'small'"//lf//"/"//lf)
       call add_dimension(table, "impact", 2)
       call add_column(table, "cor", [0.5_wp, ieee_value(1.0_wp, ieee_quiet_nan)], "1", &
          & "coefficient of restitution")
@@ -554,7 +556,7 @@ contains
 
       allocate(words(rows))
       words = "word"
-      call new_table(table, "1", "large", "")
+      call new_table(table, "summary", "large", "")
       call add_dimension(table, "impact", rows)
       call add_column(table, "cor", [(1.0_wp/i, i = 1, rows)], "1", "cor")
       call add_column(table, "status", words, "", "status")

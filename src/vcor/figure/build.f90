@@ -8,7 +8,7 @@ module vcor_figure_build
    use vcor_figure_result, only : get_axes, has_group, read_result, result_t
    use vcor_figure_sweep, only : sweep_figure
    use vcor_io_figure, only : figure_t, style_count
-   use vcor_io_hdf5_dataset, only : dataset_t
+   use vcor_io_hdf5_reader, only : dataset_t
    use vcor_text, only : integer_text
    implicit none
    private

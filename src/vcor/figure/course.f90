@@ -4,7 +4,7 @@ module vcor_figure_course
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_figure_result, only : get_axes, get_column, get_number, has_group, result_t
-   use vcor_io_hdf5_dataset, only : dataset_t
+   use vcor_io_hdf5_reader, only : dataset_t
    use vcor_kinds, only : wp
    implicit none
    private

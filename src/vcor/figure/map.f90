@@ -9,7 +9,7 @@ module vcor_figure_map
    use vcor_figure_sweep, only : refuse_empty, rising
    use vcor_io_figure, only : add_curve, add_note, figure_axis_t, figure_t, line_grid, new_figure, &
       note_inside, panel_t, plain, shape_filled
-   use vcor_io_hdf5_dataset, only : dataset_t
+   use vcor_io_hdf5_reader, only : dataset_t
    use vcor_kinds, only : wp
    use vcor_numeric_contour, only : find_loops, loop_t
    use vcor_text, only : integer_text

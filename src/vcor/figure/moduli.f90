@@ -6,10 +6,10 @@ module vcor_figure_moduli
    use vcor_figure_label, only : largest_of, rounded_text, suit_unit, with_unit
    use vcor_figure_legend, only : fitted, legend_t, page_room
    use vcor_figure_result, only : get_column, get_texts, get_window, has_group, result_t
-   use vcor_io_column, only : column_t, text_value
+   use vcor_io_table, only : column_t, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_solid, new_figure, note_top, &
       panel_t, style_count
-   use vcor_io_hdf5_dataset, only : dataset_t
+   use vcor_io_hdf5_reader, only : dataset_t
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable
    implicit none

@@ -2,11 +2,10 @@
 module vcor_figure_result
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_column, only : column_t, integer_column, real_column, text_column
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_io_drawing, only : split_path
-   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset
-   use vcor_io_hdf5_reader, only : close_hdf5, list_members, member_t, number_attribute, &
-      open_hdf5, reader_t, text_attribute
+   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, &
+      number_attribute, open_hdf5, read_dataset, reader_t, text_attribute
    use vcor_kinds, only : wp
    use vcor_nearest, only : suggestion
    use vcor_text, only : printable, shortened

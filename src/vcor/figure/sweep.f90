@@ -5,9 +5,9 @@ module vcor_figure_sweep
       quantity_label, suit_unit, with_unit
    use vcor_figure_legend, only : column_room, fitted, legend_t, page_room
    use vcor_figure_result, only : get_axes, get_column, result_t
-   use vcor_io_figure, only : add_curve, figure_t, line_solid, new_figure, points_only, plain, &
+   use vcor_io_figure, only : add_curve, figure_t, line_solid, new_figure, plain, points_only, &
       style_count
-   use vcor_io_hdf5_dataset, only : dataset_t
+   use vcor_io_hdf5_reader, only : dataset_t
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, shortened
    implicit none

@@ -19,22 +19,18 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_checkpoint_points, only : check_column, check_of, columns, dataset, read_points, &
       status_column, steps_column
-   use vcor_io_file, only : move_file, remove_file
+   use vcor_io_file, only : make_scratch, move_file, remember, remove_file, remove_scratch
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_dataset, only : find_place
-   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, reader_t
    use vcor_io_identity, only : identity_t, remarks_of
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
       c_text, errno_exists, errno_interrupted, errno_locked, file_at, last_errno, lock_alone, &
       open_file, same_file_id, system_reason
    use vcor_io_results, only : unit_of
-   use vcor_io_scratch, only : make_scratch, remember, remove_scratch
-   use vcor_io_table, only : new_table, table_t
-   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
+   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_numeric_crc, only : crc_t, new_crc
    use vcor_case_grid, only : grid_t
    use vcor_sweep_part, only : part_t
    use vcor_sweep_quantity, only : quantities
@@ -52,8 +48,6 @@ module vcor_io_checkpoint
       type(c_ptr), private :: stream = c_null_ptr
       !> Where in the file each column begins [bytes]
       integer(c_int64_t), private :: offsets(columns) = 0_c_int64_t
-      !> Check sums
-      type(crc_t), private :: crc
    contains
       !> Whether there is a file
       procedure :: is_open
@@ -96,21 +90,20 @@ contains
       !> File that it replaces, closed afterwards; there is none if it is not open or not given
       type(checkpoint_t), intent(inout), optional :: old
 
-      type(crc_t) :: crc
       type(table_t) :: table
       character(len=:), allocatable :: folder, temporary
       integer :: i, offset
 
-      crc = new_crc()
       call make_scratch(folder, path, error)
       if (allocated(error)) return
       temporary = join_path(folder, 'part.h5')
       call remember(temporary)
       call summary%blank_pending()
       call begin_table(table, identity, grid)
-      offset = table%column_count
-      call add_column(table, 'check', [(check_of(crc, summary, i), i = 1, size(summary%status))], &
-         '1', 'CRC-32 of the numbers of the summary in this row; 0: pending')
+      offset = size(table%columns)
+      call add_column(table, 'check', [(check_of(summary, i), i = 1, size(summary%status))], &
+         '1', 'CRC-32 of the numbers of the summary in this row and of its number; '// &
+         '0: pending')
       do i = 1, size(quantities)
          call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
             trim(quantities(i)%unit), trim(quantities(i)%meaning))
@@ -193,7 +186,7 @@ contains
       real(wp), allocatable :: values(:)
       integer :: i, j
 
-      call new_table(table, identity%version, identity%title, identity%case_text)
+      call new_table(table, 'summary', identity%title, identity%case_text)
       points = [(identity%part%point(i), i = 1, identity%part%count())]
       call add_dimension(table, 'point', points, '1', 'number of the point in the sweep')
       allocate (values(size(points)))
@@ -243,7 +236,6 @@ contains
       integer :: i
 
       self%path = path
-      self%crc = new_crc()
       call check_plain(path, error)
       if (.not. allocated(error)) call open_hdf5(reader, path, error)
       if (allocated(error)) return
@@ -272,7 +264,7 @@ contains
          if (reason == errno_locked) call raise(error, error_file, in_use(path))
       end if
       ! no link, and no file that has been replaced or removed since
-      if (.not. same_file_id(file_at(path), open_file(c_fileno(self%stream)))) &
+      if (.not. same_file_id(file_at(path, follows=.false.), open_file(c_fileno(self%stream)))) &
          call raise(error, error_file, in_use(path))
       if (allocated(error)) call self%close()
    end subroutine attach
@@ -305,7 +297,7 @@ contains
          c_loc(summary%status(first)), error)
       if (allocated(error)) return
       do i = 1, size(checks)
-         checks(i) = check_of(self%crc, summary, first + i - 1)
+         checks(i) = check_of(summary, first + i - 1)
       end do
       call write_at(self, self%offsets(check_column), storage_size(1)/8, first, last, &
          c_loc(checks), error)

@@ -5,13 +5,13 @@
 module vcor_io_checkpoint_points
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_column, only : text_column, text_value
-   use vcor_io_hdf5_dataset, only : dataset_t, read_dataset, read_numbers
-   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t
+   use vcor_io_table, only : text_column, text_value
+   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, open_hdf5, read_dataset, read_numbers, &
+      reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
-   use vcor_numeric_crc, only : crc_t, new_crc
+   use vcor_numeric_crc, only : crc32
    use vcor_sweep_quantity, only : point_pending, quantities, status_code
    use vcor_sweep_summary, only : summary_t
    implicit none
@@ -40,7 +40,6 @@ contains
       !> What it should be about; nothing but this is read without it
       type(identity_t), intent(in), optional :: expected
 
-      type(crc_t) :: crc
       integer, allocatable :: checks(:)
       integer :: i
       logical :: is_ours
@@ -62,9 +61,8 @@ contains
       allocate (checks(size(summary%status)))
       call read_columns(path, summary, error, checks)
       if (allocated(error)) return
-      crc = new_crc()
       do i = 1, size(checks)
-         if (checks(i) == check_of(crc, summary, i)) cycle
+         if (checks(i) == check_of(summary, i)) cycle
          summary%status(i) = point_pending
          summary%steps(i) = 0
       end do
@@ -161,10 +159,9 @@ contains
       path = 'summary/'//path
    end function dataset
 
-   !> Check sum of a point: CRC-32 of its numbers as the file has them, quantities, steps, status
-   pure function check_of(crc, summary, place) result(check)
-      !> Check sums
-      type(crc_t), intent(in) :: crc
+   !> Check sum of a point: CRC-32 of its numbers as the file has them, quantities, steps, status,
+   !> and of its place, so that two points that have changed places are found
+   pure function check_of(summary, place) result(check)
       !> Outcomes
       type(summary_t), intent(in) :: summary
       !> Place of the point
@@ -181,8 +178,8 @@ contains
       do i = 1, size(quantities)
          values(i) = summary%values(i)%at(place)
       end do
-      check = crc%of([transfer(values, bytes), &
-         transfer([summary%steps(place), summary%status(place)], bytes)], 0)
+      check = crc32([transfer(values, bytes), &
+         transfer([summary%steps(place), summary%status(place), place], bytes)], 0)
       if (check == 0) check = 1
    end function check_of
 

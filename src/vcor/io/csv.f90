@@ -1,7 +1,9 @@
-!> Tables as text files, comma-separated values (RFC 4180, lines end with LF)
+!> Tables as text: files of comma-separated values (RFC 4180, lines end with LF), and bare values
+!> for scripts
 !>
 !>     # vcor 0.1.0
 !>     # title: rubber ball on steel
+!>     # contact_time = 1.3000000000000000e-03 s, contact time t0 of the impact
 !>     # columns:
 !>     #   cor [1] coefficient of restitution
 !>     # case:
@@ -12,307 +14,255 @@
 !>
 !> All lines that begin with `#` come first, then one line with the names, then the rows. Taking the
 !> first two characters of the lines after `# case:` away gives the case again. Numbers have 17
-!> digits (`vcor_io_number`); text stands between quotation marks only if it has to.
-!>
-!> Numbers that hold for the table as a whole follow the title: `# contact_time = 1.3e-03 s, ...`.
-!> The coordinates of a dimension are columns too, unless they are just numbers in a row.
+!> digits (`vcor_io_number`); text stands between quotation marks only if it has to. The coordinates
+!> of a dimension are columns too, unless they are just numbers in a row.
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
+   use vcor_buffer, only : buffer_t
    use vcor_error, only : error_t
-   use vcor_io_column, only : column_t
-   use vcor_io_csv_rows, only : field, new_row_writer, row_writer_t
-   use vcor_io_file, only : commit, create_file, discard, output_file_t, put
-   use vcor_io_number, only : real_text
-   use vcor_io_table, only : check_table, row_count, table_t
+   use vcor_io_file, only : commit, create_file, output_file_t, put, write_stdout
+   use vcor_io_number, only : decimal_t, decimal_text, longest_integer, longest_real, new_decimal, &
+      put_integer, put_real
+   use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
+      row_count, table_t, text_value
    implicit none
    private
 
-   public :: write_csv, csv_file_t, begin_csv, add_rows, share_rows, end_csv, discard_csv
+   public :: write_csv, write_rows
 
-   !> Rows that become text at once
-   integer, parameter :: rows_per_block = 256
-   !> Characters that are collected before they go to the file
-   integer, parameter :: buffer_length = 65536
+   !> Characters that are collected before they are written
+   integer, parameter :: block_length = 65536
+   !> What makes quotation marks necessary; `#` begins a comment for most readers
+   character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
 
-   !> A file with a buffer before it
-   type :: writer_t
-      !> The file
-      type(output_file_t) :: file
-      !> Text on its way to the file
-      character(len=buffer_length) :: buffer
-      !> Last character of the buffer in use
+   !> Text on its way out
+   type :: text_block_t
+      !> Room for the text
+      character(len=:), allocatable :: text
+      !> Last character in use
       integer :: last = 0
-   end type writer_t
-
-   !> A file that grows by rows
-   type :: csv_file_t
-      !> Whether it is begun and not ended
-      logical :: is_open = .false.
-      !> The file
-      type(output_file_t), private :: file
-   end type csv_file_t
+      !> Powers of ten for the numbers
+      type(decimal_t) :: decimal
+   end type text_block_t
 
 contains
 
    !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
-   subroutine write_csv(filename, table, error, threads)
+   subroutine write_csv(filename, table, error)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
       !> Table to write
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Number of threads; 1 if it is not given
-      integer, intent(in), optional :: threads
-      type(csv_file_t) :: file
-      integer :: team
 
-      team = 1
-      if (present(threads)) team = threads
-      call begin_csv(file, filename, table, error)
-      if (allocated(error)) return
-      call add_rows(file, table, 1, row_count(table), team, error)
-      if (allocated(error)) return
-      call end_csv(file, error)
-   end subroutine write_csv
-
-   !> Begin a file: what describes the table. Nothing is seen under its name before its end
-   subroutine begin_csv(file, filename, table, error)
-      !> The file
-      type(csv_file_t), intent(out) :: file
-      !> Its name; replaced if it is there
-      character(len=*), intent(in) :: filename
-      !> Table to write
-      type(table_t), intent(in) :: table
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      type(writer_t), allocatable :: writer
+      type(output_file_t) :: file
+      type(text_block_t), allocatable :: block
+      integer :: i, row
 
       call check_table(table, error)
+      if (.not. allocated(error)) call create_file(file, filename, error)
+      if (.not. allocated(error)) call put(file, head_of(table), error)
       if (allocated(error)) return
-      ! Not on the stack, for the sake of its buffer
-      allocate(writer)
-      call create_file(writer%file, filename, error)
-      if (allocated(error)) return
-      call put_head(writer, table, error)
-      if (allocated(error)) return
-      call flush_buffer(writer, error)
-      if (allocated(error)) return
-      file%file = writer%file
-      file%is_open = .true.
-   end subroutine begin_csv
-
-   !> Add rows: blocks of them become text by several threads, and go to the file in order
-   subroutine add_rows(file, table, first, last, threads, error)
-      !> The file, begun; discarded on failure
-      type(csv_file_t), intent(inout) :: file
-      !> Table to write
-      type(table_t), intent(in) :: table
-      !> First row
-      integer, intent(in) :: first
-      !> Last row
-      integer, intent(in) :: last
-      !> Number of threads
-      integer, intent(in) :: threads
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      integer :: team
-
-      team = max(1, min(threads, (last - first)/rows_per_block + 1))
-!$omp parallel default(none) shared(file, table, error, first, last) num_threads(team)
-      call share_rows(file, table, first, last, error)
-!$omp end parallel
-   end subroutine add_rows
-
-   !> The same, called by all threads of a team, with the same arguments; a thread that has other
-   !> things to do may come late
-   subroutine share_rows(file, table, first, last, error)
-      !> The file, begun; discarded on failure
-      type(csv_file_t), intent(inout) :: file
-      !> Table to write
-      type(table_t), intent(in) :: table
-      !> First row
-      integer, intent(in) :: first
-      !> Last row
-      integer, intent(in) :: last
-      !> Unallocated before; set if the file could not be written
-      type(error_t), allocatable, intent(inout) :: error
-      type(row_writer_t) :: rows
-      integer :: start
-
-      call new_row_writer(rows, table)
-!$omp do schedule(dynamic) ordered
-      do start = first, last, rows_per_block
-         call rows%take(start, min(start + rows_per_block - 1, last), table)
-!$omp ordered
-         if (.not. allocated(error)) call put(file%file, rows%text(:rows%last), error)
-         if (allocated(error)) file%is_open = .false.
-!$omp end ordered
+      call new_block(block, table)
+      do row = 1, row_count(table)
+         do i = 1, size(table%dimensions)
+            if (table%dimensions(i)%is_index) cycle
+            call put_value(block, table%dimensions(i), coordinate_row(table, i, row), ',', .true.)
+         end do
+         do i = 1, size(table%columns)
+            call put_value(block, table%columns(i), row, ',', .true.)
+         end do
+         ! the line ends in place of the last comma
+         block%text(block%last:block%last) = c_new_line
+         if (block%last < block_length) cycle
+         call put(file, block%text(:block%last), error)
+         if (allocated(error)) return
+         block%last = 0
       end do
-!$omp end do
-   end subroutine share_rows
+      call put(file, block%text(:block%last), error)
+      if (.not. allocated(error)) call commit(file, error)
+   end subroutine write_csv
 
-   !> End a file: it gets its name
-   subroutine end_csv(file, error)
-      !> The file, begun; closed afterwards
-      type(csv_file_t), intent(inout) :: file
-      !> Set if the file is not complete; then it is discarded
+   !> Write some dimensions and columns of all rows to the standard output, a line per row with
+   !> blanks between the values
+   subroutine write_rows(table, places, error)
+      !> The table
+      type(table_t), intent(in) :: table
+      !> Places of dimensions and columns (`place_in_table`), in their order, shape (n), n > 0
+      integer, intent(in) :: places(:)
+      !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
 
-      file%is_open = .false.
-      call commit(file%file, error)
-   end subroutine end_csv
+      type(text_block_t), allocatable :: block
+      integer :: i, row
 
-   !> Give a file up; none is fine
-   subroutine discard_csv(file)
-      !> The file
-      type(csv_file_t), intent(inout) :: file
+      call new_block(block, table)
+      do row = 1, row_count(table)
+         do i = 1, size(places)
+            associate (column => places(i) - size(table%dimensions))
+               if (column > 0) then
+                  call put_value(block, table%columns(column), row, ' ', .false.)
+               else
+                  call put_value(block, table%dimensions(places(i)), &
+                     coordinate_row(table, places(i), row), ' ', .false.)
+               end if
+            end associate
+         end do
+         block%text(block%last:block%last) = c_new_line
+         if (block%last < block_length) cycle
+         call write_stdout(block%text(:block%last), error)
+         if (allocated(error)) return
+         block%last = 0
+      end do
+      call write_stdout(block%text(:block%last), error)
+   end subroutine write_rows
 
-      if (file%is_open) call discard(file%file)
-      file%is_open = .false.
-   end subroutine discard_csv
-
-   !> Write what describes the table, and the line of the names
-   subroutine put_head(writer, table, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
-      !> Table to write
+   !> Make room for a block of text and one more row
+   subroutine new_block(block, table)
+      !> Block without text
+      type(text_block_t), allocatable, intent(out) :: block
+      !> Table whose rows it is for
       type(table_t), intent(in) :: table
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      integer :: i
-      logical :: first
 
-      call put_comments(writer, "vcor "//table%version, error)
-      if (allocated(error)) return
-      call put_comments(writer, "title: "//table%title, error)
-      if (allocated(error)) return
-      do i = 1, table%fact_count
-         associate (fact => table%facts(i))
-            call put_comments(writer, fact%name//" = "//real_text(fact%value)//" "//fact%unit &
-               & //", "//fact%long_name, error)
-         end associate
-         if (allocated(error)) return
-      end do
-      call put_comments(writer, "columns:", error)
-      if (allocated(error)) return
-      do i = 1, table%dimension_count
-         if (table%dimensions(i)%is_index) cycle
-         call put_description(writer, table%dimensions(i)%coordinate, error)
-         if (allocated(error)) return
-      end do
-      do i = 1, table%column_count
-         call put_description(writer, table%columns(i), error)
-         if (allocated(error)) return
-      end do
-      call put_comments(writer, "case:", error)
-      if (allocated(error)) return
-      call put_comments(writer, table%case_text, error)
-      if (allocated(error)) return
+      integer :: columns, width
 
-      first = .true.
-      do i = 1, table%dimension_count
-         if (table%dimensions(i)%is_index) cycle
-         call put_name(writer, table%dimensions(i)%coordinate%name, first, error)
-         if (allocated(error)) return
-      end do
-      do i = 1, table%column_count
-         call put_name(writer, table%columns(i)%name, first, error)
-         if (allocated(error)) return
-      end do
-      call put_text(writer, c_new_line, error)
-   end subroutine put_head
+      columns = size(table%dimensions) + size(table%columns)
+      width = max(0, maxval(table%dimensions%width), maxval(table%columns%width))
+      allocate (block)
+      call new_decimal(block%decimal)
+      ! each letter of a text may be a quotation mark, which is written twice
+      allocate (character(len=block_length + columns*max(longest_real + 1, longest_integer + 1, &
+         2*width + 3)) :: block%text)
+   end subroutine new_block
 
-   !> Write one line that says what a column is
-   subroutine put_description(writer, column, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
-      !> Column to describe
+   !> Add one value and what stands behind it
+   subroutine put_value(block, column, row, separator, quotes)
+      !> Text with room for the value
+      type(text_block_t), intent(inout) :: block
+      !> Column
       type(column_t), intent(in) :: column
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
+      !> Number of the value
+      integer, intent(in) :: row
+      !> What stands behind it
+      character, intent(in) :: separator
+      !> Whether text stands between quotation marks where it has to
+      logical, intent(in) :: quotes
 
-      if (len(column%unit) == 0) then
-         call put_comments(writer, "  "//column%name//" "//column%long_name, error)
-      else
-         call put_comments(writer, &
-            & "  "//column%name//" ["//column%unit//"] "//column%long_name, error)
-      end if
-   end subroutine put_description
+      select case (column%kind)
+      case (real_column)
+         call put_real(block%decimal, column%reals(row), block%text, block%last)
+      case (integer_column)
+         call put_integer(column%integers(row), block%text, block%last)
+      case default
+         if (quotes) then
+            call put_text(field(text_value(column, row)))
+         else
+            call put_text(text_value(column, row))
+         end if
+      end select
+      call put_text(separator)
 
-   !> Write a text as comment, each of its lines after `# `
-   subroutine put_comments(writer, text, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
+   contains
+
+      !> Add text
+      subroutine put_text(text)
+         !> The text
+         character(len=*), intent(in) :: text
+
+         block%text(block%last + 1:block%last + len(text)) = text
+         block%last = block%last + len(text)
+      end subroutine put_text
+   end subroutine put_value
+
+   !> What describes a table, and the line of the names
+   function head_of(table) result(text)
+      !> The table
+      type(table_t), intent(in) :: table
+      !> The text
+      character(len=:), allocatable :: text
+
+      type(buffer_t) :: head
+      character(len=:), allocatable :: names
+      integer :: i
+
+      call add_comments(head, 'vcor '//table%version)
+      call add_comments(head, 'title: '//table%title)
+      do i = 1, size(table%facts)
+         associate (fact => table%facts(i))
+            call add_comments(head, fact%name//' = '//decimal_text(fact%value)//' '//fact%unit &
+               //', '//fact%long_name)
+         end associate
+      end do
+      call add_comments(head, 'columns:')
+      names = ''
+      do i = 1, size(table%dimensions)
+         if (.not. table%dimensions(i)%is_index) call add_column(table%dimensions(i))
+      end do
+      do i = 1, size(table%columns)
+         call add_column(table%columns(i))
+      end do
+      call add_comments(head, 'case:')
+      call add_comments(head, table%case_text)
+      call head%add(names(2:)//c_new_line)
+      text = head%text()
+
+   contains
+
+      !> Describe a column, and keep its name
+      subroutine add_column(column)
+         !> The column
+         type(column_t), intent(in) :: column
+
+         names = names//','//field(column%name)
+         if (column%unit == '') then
+            call add_comments(head, '  '//column%name//' '//column%long_name)
+         else
+            call add_comments(head, '  '//column%name//' ['//column%unit//'] '//column%long_name)
+         end if
+      end subroutine add_column
+   end function head_of
+
+   !> Add a text as comment, each of its lines after `# `
+   subroutine add_comments(head, text)
+      !> Text to add to
+      type(buffer_t), intent(inout) :: head
       !> Any number of lines; the end of the last one may be missing
       character(len=*), intent(in) :: text
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-      integer :: end_of_line, first, next
+
+      integer :: first, last
 
       first = 1
       do while (first <= len(text))
          ! A carriage return ends a line for most readers, with or without a line feed: what comes
          ! after it would be taken for data
-         end_of_line = scan(text(first:), c_new_line//c_carriage_return) + first - 1
-         if (end_of_line < first) end_of_line = len(text) + 1
-         next = end_of_line + 1
-         if (next <= len(text)) then
-            if (text(next-1:next) == c_carriage_return//c_new_line) next = next + 1
-         end if
-         call put_text(writer, "# "//text(first:end_of_line-1)//c_new_line, error)
-         if (allocated(error)) return
-         first = next
+         last = scan(text(first:), c_new_line//c_carriage_return) + first - 2
+         if (last < first - 1) last = len(text)
+         call head%add('# '//text(first:last)//c_new_line)
+         first = last + 2
+         if (first > len(text)) exit
+         if (text(last + 1:first) == c_carriage_return//c_new_line) first = first + 1
       end do
-   end subroutine put_comments
+   end subroutine add_comments
 
-   !> Write the name of a column
-   subroutine put_name(writer, name, first, error)
-      !> Open file
-      type(writer_t), intent(inout) :: writer
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Whether it is the first of the line; false afterwards
-      logical, intent(inout) :: first
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. first) call put_text(writer, ",", error)
-      if (allocated(error)) return
-      first = .false.
-      call put_text(writer, field(name), error)
-   end subroutine put_name
-
-   !> Write text through the buffer
-   subroutine put_text(writer, text, error)
-      !> Open file; discarded on failure
-      type(writer_t), intent(inout) :: writer
-      !> Text to write
+   !> A text as a field of a row
+   pure function field(text)
+      !> Any text
       character(len=*), intent(in) :: text
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
+      !> The text, between quotation marks if need be
+      character(len=:), allocatable :: field
 
-      if (writer%last + len(text) > buffer_length) then
-         call flush_buffer(writer, error)
-         if (allocated(error)) return
-      end if
-      if (len(text) > buffer_length) then
-         call put(writer%file, text, error)
-      else
-         writer%buffer(writer%last+1:writer%last+len(text)) = text
-         writer%last = writer%last + len(text)
-      end if
-   end subroutine put_text
+      integer :: i
 
-   !> Hand the buffer to the file
-   subroutine flush_buffer(writer, error)
-      !> Open file; discarded on failure
-      type(writer_t), intent(inout) :: writer
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-
-      call put(writer%file, writer%buffer(:writer%last), error)
-      writer%last = 0
-   end subroutine flush_buffer
+      field = text
+      ! An empty field might make an empty line, which readers skip
+      if (text /= '' .and. index(text, ' ') /= 1 .and. scan(text, special) == 0) return
+      field = '"'
+      do i = 1, len(text)
+         field = field//text(i:i)
+         if (text(i:i) == '"') field = field//'"'
+      end do
+      field = field//'"'
+   end function field
 
 end module vcor_io_csv

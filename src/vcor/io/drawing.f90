@@ -6,11 +6,10 @@
 module vcor_io_drawing
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : check_target, write_file
+   use vcor_io_file, only : check_target, make_scratch, remember, remove_scratch, write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_path, only : file_exists, for_shell, join_path, make_directory, quoted_path
    use vcor_io_posix, only : c_rename, c_text, last_errno, system_reason
-   use vcor_io_scratch, only : make_scratch, remember, remove_scratch
    implicit none
    private
 

@@ -1,49 +1,63 @@
 !> Files that are there as a whole or not at all, and the standard output
 !>
-!> A file is written in a private folder (`vcor_io_scratch`) in its own directory, with every status
-!> checked, gets the permissions that the user's umask leaves, is closed, and renamed only then. If
-!> anything fails it is removed and what was there under the real name is untouched.
+!> A file is written in a private folder `.vcor-XXXXXX` in its own directory, so that renaming stays
+!> within one file system, under a name that nobody can foresee and for the user alone: what is made
+!> there meets no link, pipe or file of anybody else. Every status is checked; the file is closed
+!> and renamed only then, with the permissions that the user's umask leaves. If anything fails it is
+!> removed, and what was there under the real name is untouched.
 !>
 !>  - An interrupted process leaves nothing under the real name. There is no `fsync`: it takes 2 to
 !>    10 ms per file, as long as an impact with all the rest, and only a power failure within
 !>    seconds makes a difference. A full disk is seen without it.
+!>  - What is in private folders is remembered, and removed by `remove_all_scratch` if a signal ends
+!>    the process. A folder that a killed process has left means nothing, and may be removed.
 !>  - A symbolic link under the real name is replaced by the file; what it points at stays as it is.
 !>  - A directory, a device or a pipe under the real name, or a link to one, is never replaced but
 !>    refused: `/dev/stdout` would else become a file.
 !>  - Blanks at the end of a path do not count, as in Fortran's `open`.
 !>
-!> Every error is an `error_file` with the path and the system's reason.
+!> Every error is an `error_file` with the path and the system's reason. Files are written by one
+!> thread at a time.
 module vcor_io_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
+      c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_path, only : check_name, directory_exists, file_exists, quoted_path, raise_system
-   use vcor_io_posix, only : c_close, c_fchmod, c_fclose, c_fdopen, c_fflush, c_fileno, c_fwrite, &
-      & c_isatty, c_rename, c_text, c_umask, c_unlink, c_write, all_permissions, &
-      & errno_interrupted, file_permissions, is_regular, last_errno, standard_error, &
-      & standard_output
-   use vcor_io_scratch, only : forget, make_scratch, make_scratch_file, remove_scratch
+   use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
+      plain_file_exists, quoted_path, raise_system
+   use vcor_io_posix, only : c_fclose, c_fopen, c_fwrite, c_isatty, c_mkdtemp, c_rename, c_rmdir, &
+      c_text, c_unlink, c_write, errno_interrupted, last_errno, standard_error, standard_output
    implicit none
    private
 
-   public :: output_file_t, create_file, put, commit, discard
-   public :: check_target, write_file, write_stdout, write_terminal, stderr_is_terminal
+   public :: output_file_t, create_file, put, commit, discard, write_file, check_target
    public :: move_file, remove_file
+   public :: make_scratch, remember, remove_scratch, remove_all_scratch
+   public :: write_stdout, write_terminal, stderr_is_terminal
 
-   !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`
-   !>
-   !> A procedure that fails discards the file by itself.
+   !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`.
+   !> A procedure that fails discards the file
    type :: output_file_t
       private
       !> Stream of C, null unless the file is open
       type(c_ptr) :: stream = c_null_ptr
       !> The real name
       character(len=:), allocatable :: path
-      !> The private folder that it is in until `commit`
-      character(len=:), allocatable :: folder
-      !> Its name there
-      character(len=:), allocatable :: temporary
+      !> The private folder that it is in until `commit`, and its path there
+      character(len=:), allocatable :: folder, temporary
    end type output_file_t
+
+   !> Longest path that is remembered (PATH_MAX of Linux), and most of them; a run has few at a time
+   integer, parameter :: longest = 4096, most = 32
+
+   !> A path as C has it, empty while it is not in use
+   type :: place_t
+      !> The path, ends with NUL
+      character(kind=c_char) :: path(longest) = c_null_char
+   end type place_t
+
+   !> Private folders and what is in them now
+   type(place_t), volatile :: places(most)
 
 contains
 
@@ -56,38 +70,19 @@ contains
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
 
-      ! One thread at a time: the length of a text that a function returns is static
-!$omp critical (vcor_file)
-      call begin(file, path, error)
-!$omp end critical (vcor_file)
-   end subroutine create_file
-
-   !> Begin a file
-   subroutine begin(file, path, error)
-      !> The open file
-      type(output_file_t), intent(inout) :: file
-      !> Its real name
-      character(len=*), intent(in) :: path
-      !> Set if the file cannot be created
-      type(error_t), allocatable, intent(out) :: error
-      integer(c_int) :: descriptor, ignored, reason
+      integer(c_int) :: reason
 
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
       call make_scratch(file%folder, file%path, error)
       if (allocated(error)) return
-      call make_scratch_file(file%folder, file%temporary, descriptor)
+      file%temporary = join_path(file%folder, 'new')
+      call remember(file%temporary)
+      file%stream = c_fopen(c_text(file%temporary), c_text('wbx'))
       reason = last_errno()
-      if (descriptor >= 0) then
-         file%stream = c_fdopen(descriptor, c_text("wb"))
-         reason = last_errno()
-         if (c_associated(file%stream)) return
-         ignored = c_close(descriptor)
-      end if
-      call discard(file)
-      call raise_system(error, "cannot write "//quoted_path(path), reason)
-   end subroutine begin
+      if (.not. c_associated(file%stream)) call fail(file, reason, error)
+   end subroutine create_file
 
    !> Write to a file
    subroutine put(file, text, error)
@@ -97,16 +92,16 @@ contains
       character(len=*), intent(in) :: text
       !> Set if the text could not be written as a whole
       type(error_t), allocatable, intent(out) :: error
-      integer(c_size_t) :: length, written
+
+      integer(c_size_t) :: length
       integer(c_int) :: reason
 
       call check_open(file, error)
       if (allocated(error)) return
       length = len(text, kind=c_size_t)
-      if (length == 0_c_size_t) return
-      written = c_fwrite(text, 1_c_size_t, length, file%stream)
+      if (c_fwrite(text, 1_c_size_t, length, file%stream) == length) return
       reason = last_errno()
-      if (written /= length) call fail(file, reason, error)
+      call fail(file, reason, error)
    end subroutine put
 
    !> End a file: hand the rest of it to the system, close it and give it its real name
@@ -115,67 +110,36 @@ contains
       type(output_file_t), intent(inout) :: file
       !> Set if the file is not complete; then it is discarded
       type(error_t), allocatable, intent(out) :: error
+
       integer(c_int) :: reason, status
 
       call check_open(file, error)
       if (allocated(error)) return
-
-      status = c_fflush(file%stream)
+      status = c_fclose(file%stream)
+      file%stream = c_null_ptr
+      if (status == 0) status = c_rename(c_text(file%temporary), c_text(file%path))
       reason = last_errno()
       if (status == 0) then
-         status = c_fchmod(c_fileno(file%stream), permissions())
-         reason = last_errno()
-      end if
-      if (status == 0) then
-         status = c_fclose(file%stream)
-         reason = last_errno()
-         file%stream = c_null_ptr
-      end if
-      if (status == 0) then
-         status = c_rename(c_text(file%temporary), c_text(file%path))
-         reason = last_errno()
-      end if
-      if (status /= 0) then
+         call discard(file)
+      else
          call fail(file, reason, error)
-         return
       end if
-      call forget(file%temporary)
-      deallocate(file%temporary)
-      call discard(file)
    end subroutine commit
 
-   !> Permissions of a new file
-   function permissions() result(mode)
-      !> Those that the user's umask leaves
-      integer(c_int) :: mode
-      integer(c_int) :: ignored, mask
-
-      ! It can only be asked for by setting it: nothing is let through meanwhile
-!$omp critical (vcor_umask)
-      mask = c_umask(all_permissions)
-      ignored = c_umask(mask)
-!$omp end critical (vcor_umask)
-      mode = iand(file_permissions, not(mask))
-   end function permissions
-
-   !> Give a file up: the temporary file goes, what has the real name stays
-   !>
-   !> Does nothing to a file that is not open.
+   !> Give a file up: what is in the private folder goes, what has the real name stays. Does nothing
+   !> to a file that is not open
    subroutine discard(file)
       !> Open file; closed afterwards
       type(output_file_t), intent(inout) :: file
+
       integer(c_int) :: ignored
 
       if (c_associated(file%stream)) ignored = c_fclose(file%stream)
       file%stream = c_null_ptr
-      if (allocated(file%temporary)) then
-         call remove_scratch(file%temporary)
-         deallocate(file%temporary)
-      end if
-      if (allocated(file%folder)) then
-         call remove_scratch(file%folder)
-         deallocate(file%folder)
-      end if
+      if (.not. allocated(file%temporary)) return
+      call remove_scratch(file%temporary)
+      call remove_scratch(file%folder)
+      deallocate (file%temporary, file%folder)
    end subroutine discard
 
    !> Write a whole file at once
@@ -186,14 +150,171 @@ contains
       character(len=*), intent(in) :: text
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+
       type(output_file_t) :: file
 
       call create_file(file, path, error)
-      if (allocated(error)) return
-      call put(file, text, error)
-      if (allocated(error)) return
-      call commit(file, error)
+      if (.not. allocated(error)) call put(file, text, error)
+      if (.not. allocated(error)) call commit(file, error)
    end subroutine write_file
+
+   !> Check that a file may have that name
+   subroutine check_target(path, error)
+      !> Name to check
+      character(len=*), intent(in) :: path
+      !> Set if it may not
+      type(error_t), allocatable, intent(out) :: error
+
+      call check_name(path, error)
+      if (allocated(error)) return
+      if (path == '') then
+         call raise(error, error_file, 'cannot write a file without a name')
+      else if (directory_exists(path)) then
+         call refuse('it is a directory, expected the name of a file')
+      else if (index(path, '/', back=.true.) == len_trim(path)) then
+         call refuse('it ends with a slash, expected the name of a file')
+      else if (file_exists(path)) then
+         if (.not. plain_file_exists(path)) &
+            call refuse('it is a device or a pipe, expected a file or nothing there')
+      end if
+
+   contains
+
+      !> Refuse the name
+      subroutine refuse(reason)
+         !> Why
+         character(len=*), intent(in) :: reason
+
+         call raise(error, error_file, 'cannot write '//quoted_path(path)//': '//reason)
+      end subroutine refuse
+   end subroutine check_target
+
+   !> Check that a file is open
+   subroutine check_open(file, error)
+      !> File to check
+      type(output_file_t), intent(in) :: file
+      !> Set if it is not
+      type(error_t), allocatable, intent(out) :: error
+
+      if (.not. c_associated(file%stream)) call raise(error, error_file, &
+         'cannot write a file that is not open')
+   end subroutine check_open
+
+   !> Discard a file for a reason of the system
+   subroutine fail(file, reason, error)
+      !> Open file; closed afterwards
+      type(output_file_t), intent(inout) :: file
+      !> Value of `errno`
+      integer(c_int), intent(in) :: reason
+      !> Set to the reason
+      type(error_t), allocatable, intent(inout) :: error
+
+      call discard(file)
+      call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
+   end subroutine fail
+
+   !> Give a file another name, in place of what has that name
+   subroutine move_file(from, to, error)
+      !> Its name
+      character(len=*), intent(in) :: from
+      !> Its new name, in the same folder
+      character(len=*), intent(in) :: to
+      !> Set if that failed
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(c_int) :: reason
+
+      if (c_rename(c_text(from), c_text(to)) == 0) return
+      reason = last_errno()
+      call raise_system(error, 'cannot write '//quoted_path(to), reason)
+   end subroutine move_file
+
+   !> Remove a file; none is fine
+   subroutine remove_file(path)
+      !> Its name
+      character(len=*), intent(in) :: path
+
+      integer(c_int) :: ignored
+
+      ignored = c_unlink(c_text(path))
+   end subroutine remove_file
+
+   !> Make a private folder
+   subroutine make_scratch(folder, path, error)
+      !> Its path; unallocated if it cannot be made
+      character(len=:), allocatable, intent(out) :: folder
+      !> Path of what is to be written, in whose folder it is made
+      character(len=*), intent(in) :: path
+      !> Set if it cannot be made
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: template
+      integer(c_int) :: reason
+
+      template = c_text(path(:index(path, '/', back=.true.))//'.vcor-XXXXXX')
+      if (c_associated(c_mkdtemp(template))) then
+         folder = template(:len(template) - 1)
+         call remember(folder)
+      else
+         reason = last_errno()
+         call raise_system(error, 'cannot write '//quoted_path(path), reason)
+      end if
+   end subroutine make_scratch
+
+   !> Remember a path: a signal that ends the process removes what has it
+   subroutine remember(path)
+      !> Path of a file in a private folder, or of such a folder
+      character(len=*), intent(in) :: path
+
+      integer :: i, j
+
+      if (len(path) >= longest) return
+      do i = 1, most
+         if (places(i)%path(1) /= c_null_char) cycle
+         ! the first letter last: a signal in between finds the place empty
+         do j = len(path) + 1, 1, -1
+            places(i)%path(j) = c_null_char
+            if (j <= len(path)) places(i)%path(j) = path(j:j)
+         end do
+         return
+      end do
+   end subroutine remember
+
+   !> Remove a file in a private folder, or such a folder if it is empty, and forget it; none is
+   !> fine
+   subroutine remove_scratch(path)
+      !> Its path
+      character(len=*), intent(in) :: path
+
+      integer(c_int) :: ignored
+      integer :: i, j
+
+      if (c_unlink(c_text(path)) /= 0) ignored = c_rmdir(c_text(path))
+      if (len(path) >= longest) return
+      do i = 1, most
+         if (places(i)%path(len(path) + 1) /= c_null_char) cycle
+         if (all([(places(i)%path(j) == path(j:j), j=1, len(path))])) &
+            places(i)%path(1) = c_null_char
+      end do
+   end subroutine remove_scratch
+
+   !> Remove all that is remembered; does nothing that a handler of signals may not do
+   subroutine remove_all_scratch()
+      integer(c_int) :: ignored
+      integer :: i, pass
+
+      ! files, the folders that are empty then, and those that hold such folders
+      do pass = 1, 3
+         do i = 1, most
+            if (places(i)%path(1) == c_null_char) cycle
+            if (pass == 1) then
+               ignored = c_unlink(places(i)%path)
+            else
+               ignored = c_rmdir(places(i)%path)
+            end if
+         end do
+      end do
+   end subroutine remove_all_scratch
 
    !> Write to the standard output at once, unbuffered: a full disk or a closed output is seen
    subroutine write_stdout(text, error)
@@ -201,16 +322,17 @@ contains
       character(len=*), intent(in) :: text
       !> Set if the text could not be written as a whole
       type(error_t), allocatable, intent(out) :: error
+
       integer(c_size_t) :: first, length, written
       integer(c_int) :: reason
       integer :: status
       character(len=200) :: message
 
       ! What a caller has left in the unit of Fortran comes first
-      message = ""
-      flush(output_unit, iostat=status, iomsg=message)
+      message = ''
+      flush (output_unit, iostat=status, iomsg=message)
       if (status /= 0) then
-         call raise(error, error_file, "cannot write the standard output: "//trim(message))
+         call raise(error, error_file, 'cannot write the standard output: '//trim(message))
          return
       end if
 
@@ -222,7 +344,7 @@ contains
          if (written >= 0_c_size_t) then
             first = first + written
          else if (reason /= errno_interrupted) then
-            call raise_system(error, "cannot write the standard output", reason)
+            call raise_system(error, 'cannot write the standard output', reason)
             return
          end if
       end do
@@ -240,82 +362,10 @@ contains
    subroutine write_terminal(text)
       !> What to write, byte by byte: nothing is added
       character(len=*), intent(in) :: text
+
       integer(c_size_t) :: ignored
 
       ignored = c_write(standard_error, text, len(text, kind=c_size_t))
    end subroutine write_terminal
-
-   !> Give a file another name, in place of what has that name
-   subroutine move_file(from, to, error)
-      !> Its name
-      character(len=*), intent(in) :: from
-      !> Its new name, in the same folder
-      character(len=*), intent(in) :: to
-      !> Set if that failed
-      type(error_t), allocatable, intent(out) :: error
-      integer(c_int) :: reason
-
-      if (c_rename(c_text(from), c_text(to)) == 0) return
-      reason = last_errno()
-      call raise_system(error, "cannot write "//quoted_path(to), reason)
-   end subroutine move_file
-
-   !> Remove a file; none is fine
-   subroutine remove_file(path)
-      !> Its name
-      character(len=*), intent(in) :: path
-      integer(c_int) :: ignored
-
-      ignored = c_unlink(c_text(path))
-   end subroutine remove_file
-
-   !> Check that a file may have that name
-   subroutine check_target(path, error)
-      !> Name to check
-      character(len=*), intent(in) :: path
-      !> Set if it may not
-      type(error_t), allocatable, intent(out) :: error
-
-      call check_name(path, error)
-      if (allocated(error)) return
-      if (len_trim(path) == 0) then
-         call raise(error, error_file, "cannot write a file without a name")
-      else if (directory_exists(path)) then
-         call raise(error, error_file, "cannot write "//quoted_path(path)// &
-            & ": it is a directory, expected the name of a file")
-      else if (index(path, "/", back=.true.) == len_trim(path)) then
-         call raise(error, error_file, "cannot write "//quoted_path(path)// &
-            & ": it ends with a slash, expected the name of a file")
-      else if (file_exists(path)) then
-         if (.not. is_regular(trim(path))) call raise(error, error_file, "cannot write "// &
-            & quoted_path(path)//": it is a device or a pipe, expected a file or nothing there")
-      end if
-   end subroutine check_target
-
-   !> Check that a file is open
-   subroutine check_open(file, error)
-      !> File to check
-      type(output_file_t), intent(in) :: file
-      !> Set if it is not
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. c_associated(file%stream)) call raise(error, error_file, &
-         & "cannot write a file that is not open")
-   end subroutine check_open
-
-   !> Discard a file for a reason of the system
-   subroutine fail(file, reason, error)
-      !> Open file; closed afterwards
-      type(output_file_t), intent(inout) :: file
-      !> Value of `errno`
-      integer(c_int), intent(in) :: reason
-      !> Set to the reason
-      type(error_t), allocatable, intent(inout) :: error
-
-!$omp critical (vcor_file)
-      call discard(file)
-      call raise_system(error, "cannot write "//quoted_path(file%path), reason)
-!$omp end critical (vcor_file)
-   end subroutine fail
 
 end module vcor_io_file

@@ -12,24 +12,38 @@
 !> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
 !> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
-!> The same tables give the same bytes.
+!> The file is built in memory and written by `vcor_io_file`, for HDF5 does not survive a full disk:
+!> release 1.10 crashes when it closes a file that it could not write. A seal (`vcor_io_seal`) ends
+!> it. Objects hold no times: the same tables give the same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_int64_t
+   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int64_t, &
+      c_int8_t, c_loc, c_null_char, c_null_ptr, c_ptr
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
-   use hdf5, only : h5dclose_f, h5dget_storage_size_f, h5dopen_f, h5gclose_f, h5gcreate_f, hid_t, &
-      & hsize_t
+   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
+      h5f_acc_trunc_f, h5f_close_strong_f, h5f_libver_v18_f, h5f_scope_global_f, h5fclose_f, &
+      h5fcreate_f, h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, &
+      h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
+      h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
+      h5pcreate_f, h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_fill_value_f, &
+      h5pset_libver_bounds_f, h5pset_link_creation_order_f, h5pset_obj_track_times_f, &
+      h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5t_cset_utf8_f, &
+      h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5t_string, &
+      h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_hdf5_column, only : link_name, put_column
-   use vcor_io_hdf5_image, only : close_image, note, nothing, open_image, put_attribute, &
-      & put_number, write_image, writer_t
-   use vcor_io_file, only : commit, discard, output_file_t
+   use vcor_io_file, only : commit, create_file, output_file_t, put
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
-   use vcor_io_table, only : check_table, table_t
+   use vcor_io_seal, only : seal_of
+   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
+      text_column, text_value
+   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: write_hdf5, remark_t, named_table_t
+   public :: write_hdf5, remark_t
+
+   !> An identifier that stands for nothing
+   integer(hid_t), parameter :: nothing = -1_hid_t
 
    !> Text that describes a file
    type :: remark_t
@@ -39,195 +53,444 @@ module vcor_io_hdf5
       character(len=:), allocatable :: text
    end type remark_t
 
-   !> A table and the name of its group
-   type :: named_table_t
-      !> Name of the group
-      character(len=:), allocatable :: name
-      !> The table
-      type(table_t) :: table
-   end type named_table_t
+   !> A file that is being built in memory. The first failure is kept; what comes after it does
+   !> nothing
+   type :: writer_t
+      !> The file
+      integer(hid_t) :: file = nothing
+      !> How to create groups and datasets
+      integer(hid_t) :: group_creation = nothing, dataset_creation = nothing
+      !> Type of text
+      integer(hid_t) :: text_type = nothing
+      !> What the seal of the file leaves out, as in `seal_of`
+      integer(c_int64_t), allocatable :: left_out(:, :)
+      !> What failed first; unallocated as long as nothing did
+      character(len=:), allocatable :: fault
+   end type writer_t
+
+   interface
+      !> What the driver of a file works with: in memory, the address of a pointer to its bytes
+      function c_get_vfd_handle(file, access, handle) result(status) &
+         bind(c, name='H5Fget_vfd_handle')
+         import :: c_int, c_int64_t, c_ptr
+         integer(c_int64_t), intent(in), value :: file, access
+         type(c_ptr), intent(out) :: handle
+         integer(c_int) :: status
+      end function c_get_vfd_handle
+   end interface
 
 contains
 
-   !> Write the summary and, if there are, the history and further tables to a file
-   !>
-   !> The file is there as a whole or, if that fails, as it was before.
-   subroutine write_hdf5(filename, summary, history, error, remarks, changing, more, file)
+   !> Write tables to a file. It is there as a whole or, if that fails, as it was before
+   subroutine write_hdf5(filename, table, error, remarks, more, changing)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
-      !> A row per impact; its version, title and case describe the file
-      type(table_t), intent(in) :: summary
-      !> A row per time
-      type(table_t), intent(in), optional :: history
+      !> First table; its version, title and case describe the file
+      type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
       !> More that describes the file, shape (n)
       type(remark_t), intent(in), optional :: remarks(:)
-      !> Number of columns of the summary, the last ones, whose numbers will change where they are
-      !> in the file; if it is given, all columns are stored as they are, in one piece
+      !> Further tables
+      type(table_t), intent(in), optional :: more(:)
+      !> Number of columns of the first table, the last ones, whose numbers will change where they
+      !> are in the file: they are no part of the seal
       integer, intent(in), optional :: changing
-      !> Further tables, each with its name
-      type(named_table_t), intent(in), optional :: more(:)
-      !> The file, complete, to be given its name by `commit`: it gets it at once without this
-      type(output_file_t), intent(out), optional :: file
-      type(output_file_t) :: own
+
       type(writer_t) :: writer
       type(handler_t) :: handler
-      integer :: i
+      integer :: i, ignored
 
-      call check_table(summary, error)
-      if (allocated(error)) return
-      if (present(history)) call check_table(history, error)
+      call check_table(table, error)
       if (allocated(error)) return
       if (present(more)) then
          do i = 1, size(more)
-            call check_table(more(i)%table, error)
+            call check_table(more(i), error)
             if (allocated(error)) return
          end do
       end if
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         writer%is_plain = present(changing)
-         call build(writer, summary, history, remarks, more)
-         if (present(changing)) call leave_out(writer, summary, changing)
-         call write_image(writer, own, filename, error)
-         call close_image(writer)
+         call begin_file(writer)
+         call put_text(writer, writer%file, 'program', 'vcor')
+         call put_text(writer, writer%file, 'version', table%version)
+         call put_text(writer, writer%file, 'title', table%title)
+         call put_text(writer, writer%file, 'case', table%case_text)
+         if (present(remarks)) then
+            do i = 1, size(remarks)
+               call put_text(writer, writer%file, remarks(i)%name, remarks(i)%text)
+            end do
+         end if
+         call put_table(writer, table, changing)
+         if (present(more)) then
+            do i = 1, size(more)
+               call put_table(writer, more(i))
+            end do
+         end if
+         call save(writer, filename, error)
+         ! what is still open in it after a failure goes with the file
+         call h5fclose_f(writer%file, ignored)
+         call h5tclose_f(writer%text_type, ignored)
+         call h5pclose_f(writer%group_creation, ignored)
+         call h5pclose_f(writer%dataset_creation, ignored)
          call end_hdf5(handler)
       end if
-
-      if (allocated(writer%fault) .and. .not. allocated(error)) then
-         call discard(own)
-         call raise(error, error_file, &
-            & "cannot write "//quoted_path(filename)//": HDF5 cannot "//writer%fault)
-      end if
-      if (present(file)) then
-         file = own
-      else if (.not. allocated(error)) then
-         call commit(own, error)
-      end if
+      if (allocated(writer%fault)) call raise(error, error_file, &
+         'cannot write '//quoted_path(filename)//': HDF5 cannot '//writer%fault)
    end subroutine write_hdf5
 
-   !> Columns of the summary that will change are no part of the seal
-   subroutine leave_out(writer, summary, changing)
-      !> Writer with a file
-      type(writer_t), intent(inout) :: writer
-      !> The summary
-      type(table_t), intent(in) :: summary
-      !> Number of these columns
-      integer, intent(in) :: changing
-      integer(hid_t) :: dataset
-      integer(hsize_t) :: length
-      integer(c_int64_t) :: offset
-      integer :: i, place, status
-
-      if (allocated(writer%fault)) return
-      deallocate(writer%left_out)
-      allocate(writer%left_out(2, changing))
-      do i = 1, changing
-         associate (name => summary%columns(summary%column_count - changing + i)%name)
-            call h5dopen_f(writer%file, "summary/"//link_name(name), dataset, status)
-            call note(writer, status, "open '"//name//"'")
-            if (allocated(writer%fault)) return
-            offset = c_get_offset(int(dataset, c_int64_t))
-            call h5dget_storage_size_f(dataset, length, status)
-            call note(writer, min(status, merge(0, -1, offset >= 0)), "find '"//name//"'")
-            ! in ascending order: HDF5 may have them in another one
-            place = 1 + count(writer%left_out(1, :i-1) < offset)
-            writer%left_out(:, place+1:i) = writer%left_out(:, place:i-1)
-            writer%left_out(:, place) = [offset, int(length, c_int64_t)]
-            call h5dclose_f(dataset, status)
-            call note(writer, status, "close '"//name//"'")
-         end associate
-      end do
-   end subroutine leave_out
-
-   !> Build the file in memory
-   subroutine build(writer, summary, history, remarks, more)
+   !> Begin a file in memory, with the property lists and the type that all its objects share
+   subroutine begin_file(writer)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
-      !> A row per impact
-      type(table_t), intent(in) :: summary
-      !> A row per time
-      type(table_t), intent(in), optional :: history
-      !> More that describes the file
-      type(remark_t), intent(in), optional :: remarks(:)
-      !> Further tables
-      type(named_table_t), intent(in), optional :: more(:)
-      integer :: i
 
-      call open_image(writer)
-      call put_attribute(writer, writer%file, "program", "vcor")
-      call put_attribute(writer, writer%file, "version", summary%version)
-      call put_attribute(writer, writer%file, "title", summary%title)
-      call put_attribute(writer, writer%file, "case", summary%case_text)
-      if (present(remarks)) then
-         do i = 1, size(remarks)
-            call put_attribute(writer, writer%file, remarks(i)%name, remarks(i)%text)
-         end do
-      end if
-      call put_table(writer, "summary", summary)
-      if (present(history)) call put_table(writer, "history", history)
-      if (present(more)) then
-         do i = 1, size(more)
-            call put_table(writer, more(i)%name, more(i)%table)
-         end do
-      end if
-   end subroutine build
+      ! HDF5 wants a name for a file in memory too and reads what has that name: nothing can
+      character(len=*), parameter :: no_path = '/dev/null/vcor.h5'
+      ! Bytes by which the file grows in memory
+      integer(size_t), parameter :: growth = 65536_size_t
+      integer(hid_t) :: access, creation
+      integer :: ignored, order, status(15)
+
+      order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
+      allocate (writer%left_out(2, 0))
+      call h5pcreate_f(h5p_file_create_f, creation, status(1))
+      call h5pset_link_creation_order_f(creation, order, status(2))
+      call h5pset_obj_track_times_f(creation, .false., status(3))
+      call h5pcreate_f(h5p_group_create_f, writer%group_creation, status(4))
+      call h5pset_link_creation_order_f(writer%group_creation, order, status(5))
+      call h5pset_obj_track_times_f(writer%group_creation, .false., status(6))
+      call h5pcreate_f(h5p_dataset_create_f, writer%dataset_creation, status(7))
+      call h5pset_obj_track_times_f(writer%dataset_creation, .false., status(8))
+      call h5pcreate_f(h5p_file_access_f, access, status(9))
+      call h5pset_fapl_core_f(access, growth, .false., status(10))
+      ! From 1.8 on HDF5 keeps check sums of what makes a file an HDF5 file
+      call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_v18_f, status(11))
+      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(12))
+      call h5tcopy_f(h5t_string, writer%text_type, status(13))
+      call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status(14))
+      call h5fcreate_f(no_path, h5f_acc_trunc_f, writer%file, status(15), creation, access)
+      call note(writer, minval(status), 'create a file in memory')
+      call h5pclose_f(creation, ignored)
+      call h5pclose_f(access, ignored)
+   end subroutine begin_file
 
    !> Write a table as a group
-   subroutine put_table(writer, name, table)
+   subroutine put_table(writer, table, changing)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
-      !> Name of the group
-      character(len=*), intent(in) :: name
       !> Table to write
       type(table_t), intent(in) :: table
-      integer(hid_t) :: dataset, group
-      integer(hid_t) :: scales(table%dimension_count)
-      integer :: i, j, lengths(table%dimension_count), status
+      !> Number of columns that the seal leaves out, the last ones
+      integer, intent(in), optional :: changing
+
+      integer(hid_t) :: dataset, group, scales(size(table%dimensions))
+      integer :: i, j, status
 
       if (allocated(writer%fault)) return
-      call h5gcreate_f(writer%file, name, group, status, gcpl_id=writer%group_creation)
-      call note(writer, status, "create the group '"//name//"'")
-      if (allocated(writer%fault)) return
-      do i = 1, table%fact_count
+      call h5gcreate_f(writer%file, table%name, group, status, gcpl_id=writer%group_creation)
+      call note(writer, status, "create the group '"//table%name//"'")
+      do i = 1, size(table%facts)
          associate (fact => table%facts(i))
             call put_number(writer, group, fact%name, fact%value)
-            call put_attribute(writer, group, fact%name//"_units", fact%unit)
+            call put_text(writer, group, fact%name//'_units', fact%unit)
          end associate
       end do
-
-      scales = nothing
-      do i = 1, table%dimension_count
-         associate (coordinate => table%dimensions(i)%coordinate)
-            lengths(i) = coordinate%length
-            call put_column(writer, group, coordinate, lengths(i:i), scales(i))
-            if (allocated(writer%fault)) exit
-            call h5dsset_scale_f(scales(i), status, link_name(coordinate%name))
-            call note(writer, status, "make '"//coordinate%name//"' a dimension scale")
+      do i = 1, size(scales)
+         associate (coordinates => table%dimensions(i))
+            call put_column(writer, group, coordinates, [coordinates%length], scales(i))
+            if (allocated(writer%fault)) return
+            call h5dsset_scale_f(scales(i), status, link_name(coordinates%name))
+            call note(writer, status, "make '"//coordinates%name//"' a dimension scale")
          end associate
       end do
-
-      do j = 1, table%column_count
-         call put_column(writer, group, table%columns(j), lengths, dataset)
-         if (allocated(writer%fault)) exit
-         do i = 1, table%dimension_count
+      do j = 1, size(table%columns)
+         call put_column(writer, group, table%columns(j), table%dimensions%length, dataset)
+         if (allocated(writer%fault)) return
+         do i = 1, size(scales)
             ! Numbers here count as in C but from 1: the slowest dimension first
             call h5dsattach_scale_f(dataset, scales(i), i, status)
             call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
          end do
+         if (present(changing)) then
+            if (j > size(table%columns) - changing) &
+               call leave_out(writer, table%columns(j), dataset)
+         end if
          call h5dclose_f(dataset, status)
-         call note(writer, status, "close '"//table%columns(j)%name//"'")
       end do
-
-      do i = 1, table%dimension_count
-         if (scales(i) == nothing) cycle
+      do i = 1, size(scales)
          call h5dclose_f(scales(i), status)
-         call note(writer, status, "close a dimension scale")
       end do
       call h5gclose_f(group, status)
-      call note(writer, status, "close the group '"//name//"'")
    end subroutine put_table
+
+   !> Write a column as a dataset and leave it open
+   subroutine put_column(writer, group, column, lengths, dataset)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> Group to write to
+      integer(hid_t), intent(in) :: group
+      !> Column to write
+      type(column_t), intent(in), target :: column
+      !> Lengths of its dimensions, the slowest first
+      integer, intent(in) :: lengths(:)
+      !> The dataset, open
+      integer(hid_t), intent(out) :: dataset
+
+      integer(hid_t) :: creation, space, type_id
+      integer :: status
+      logical :: is_filled
+
+      dataset = nothing
+      if (allocated(writer%fault)) return
+      select case (column%kind)
+      case (real_column)
+         type_id = h5t_ieee_f64le
+      case (integer_column)
+         type_id = h5t_std_i32le
+      case default
+         type_id = writer%text_type
+      end select
+      call h5screate_simple_f(size(lengths), int(lengths(size(lengths):1:-1), hsize_t), space, &
+         status)
+      call note(writer, status, "make the dimensions of '"//column%name//"'")
+      is_filled = is_uniform(column)
+      call h5pcopy_f(writer%dataset_creation, creation, status)
+      if (is_filled) call set_fill_text(column, type_id, creation, status)
+      call note(writer, status, "set the fill value of '"//column%name//"'")
+      call h5dcreate_f(group, link_name(column%name), type_id, space, dataset, status, &
+         dcpl_id=creation)
+      call note(writer, status, "create '"//column%name//"'")
+      call h5pclose_f(creation, status)
+      call h5sclose_f(space, status)
+      if (allocated(writer%fault)) return
+
+      ! An array without elements has no address
+      if (column%length > 0 .and. .not. is_filled) then
+         select case (column%kind)
+         case (real_column)
+            call h5dwrite_f(dataset, h5t_native_double, c_loc(column%reals), status)
+         case (integer_column)
+            call h5dwrite_f(dataset, h5t_native_integer, c_loc(column%integers), status)
+         case default
+            call write_texts(column, dataset, type_id, status)
+         end select
+         call note(writer, status, "write '"//column%name//"'")
+      end if
+      if (column%unit /= '') call put_text(writer, dataset, 'units', column%unit)
+      call put_text(writer, dataset, 'long_name', column%long_name)
+   end subroutine put_column
+
+   !> Whether a long column is nothing but one text, as `status` is where all goes well: it is not
+   !> written then but the fill value of its dataset, and reads as if it were. HDF5 takes 50 bytes
+   !> and a microsecond to store a text
+   pure function is_uniform(column)
+      !> The column
+      type(column_t), intent(in) :: column
+      !> Whether it is
+      logical :: is_uniform
+
+      integer, parameter :: longest_stored = 50000
+
+      is_uniform = column%kind == text_column .and. column%length > longest_stored
+      ! the texts are the same if they are what they are one text further
+      if (is_uniform) is_uniform = column%texts(column%width + 1:) &
+         == column%texts(:len(column%texts) - column%width)
+   end function is_uniform
+
+   !> Make the first text of a column the fill value
+   subroutine set_fill_text(column, type_id, creation, status)
+      !> Text column
+      type(column_t), intent(in) :: column
+      !> Type of text
+      integer(hid_t), intent(in) :: type_id
+      !> How the dataset is created
+      integer(hid_t), intent(in) :: creation
+      !> Negative on failure
+      integer, intent(out) :: status
+
+      character(len=:, kind=c_char), allocatable, target :: text
+      type(c_ptr), target :: place
+
+      text = text_value(column, 1)//c_null_char
+      place = c_loc(text)
+      call h5pset_fill_value_f(creation, type_id, c_loc(place), status)
+   end subroutine set_fill_text
+
+   !> Write the values of a text column: HDF5 wants an address for each
+   subroutine write_texts(column, dataset, type_id, status)
+      !> Text column
+      type(column_t), intent(in) :: column
+      !> Dataset to write to
+      integer(hid_t), intent(in) :: dataset
+      !> Type of text
+      integer(hid_t), intent(in) :: type_id
+      !> Negative on failure
+      integer, intent(out) :: status
+
+      character(len=column%width+1, kind=c_char), allocatable, target :: texts(:)
+      type(c_ptr), allocatable, target :: places(:)
+      integer :: i
+
+      allocate (texts(column%length), places(column%length))
+      do i = 1, column%length
+         associate (text => column%texts((i - 1)*column%width + 1:i*column%width))
+            texts(i) = text(:len_trim(text))//c_null_char
+         end associate
+         places(i) = c_loc(texts(i))
+      end do
+      call h5dwrite_f(dataset, type_id, c_loc(places), status)
+   end subroutine write_texts
+
+   !> Keep where a dataset of numbers is, as no part of the seal
+   subroutine leave_out(writer, column, dataset)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Its column
+      type(column_t), intent(in) :: column
+      !> The dataset, in one piece
+      integer(hid_t), intent(in) :: dataset
+
+      integer(c_int64_t) :: bytes, offset
+      integer :: below
+
+      offset = c_get_offset(int(dataset, c_int64_t))
+      call note(writer, merge(0, -1, offset >= 0), "find '"//column%name//"'")
+      bytes = int(merge(8, 4, column%kind == real_column), c_int64_t)*column%length
+      ! in ascending order: HDF5 may have them in another one
+      below = count(writer%left_out(1, :) < offset)
+      writer%left_out = reshape([writer%left_out(:, :below), offset, bytes, &
+         writer%left_out(:, below + 1:)], [2, size(writer%left_out, 2) + 1])
+   end subroutine leave_out
+
+   !> Write a text attribute
+   subroutine put_text(writer, object, name, text)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name and value of the attribute
+      character(len=*), intent(in) :: name, text
+
+      character(len=:, kind=c_char), allocatable, target :: value
+      type(c_ptr), target :: place
+
+      value = text//c_null_char
+      place = c_loc(value)
+      call put_attribute(writer, object, name, writer%text_type, writer%text_type, c_loc(place))
+   end subroutine put_text
+
+   !> Write a number as an attribute
+   subroutine put_number(writer, object, name, number)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> The number
+      real(wp), intent(in), target :: number
+
+      call put_attribute(writer, object, name, h5t_ieee_f64le, h5t_native_double, c_loc(number))
+   end subroutine put_number
+
+   !> Write an attribute
+   subroutine put_attribute(writer, object, name, file_type, memory_type, value)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> What the attribute belongs to
+      integer(hid_t), intent(in) :: object
+      !> Name of the attribute
+      character(len=*), intent(in) :: name
+      !> Type of the value in the file and in memory
+      integer(hid_t), intent(in) :: file_type, memory_type
+      !> Address of the value
+      type(c_ptr), intent(in) :: value
+
+      integer(hid_t) :: attribute, space
+      integer :: status(5)
+
+      if (allocated(writer%fault)) return
+      call h5screate_f(h5s_scalar_f, space, status(1))
+      call h5acreate_f(object, name, file_type, space, attribute, status(2))
+      call h5awrite_f(attribute, memory_type, value, status(3))
+      call h5aclose_f(attribute, status(4))
+      call h5sclose_f(space, status(5))
+      call note(writer, minval(status), "write the attribute '"//name//"'")
+   end subroutine put_attribute
+
+   !> Write the bytes of the file, from where HDF5 has them (a copy would double the memory), and
+   !> its seal
+   subroutine save(writer, filename, error)
+      !> Writer with a file
+      type(writer_t), intent(inout) :: writer
+      !> Name of the file; replaced if it is there
+      character(len=*), intent(in) :: filename
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(c_int64_t), parameter :: default = 0_c_int64_t
+      integer(c_int8_t), pointer, contiguous :: bytes(:)
+      character(kind=c_char), pointer, contiguous :: letters(:)
+      type(c_ptr) :: handle
+      type(c_ptr), pointer :: place
+      integer(size_t) :: length
+      integer :: status(3)
+
+      if (allocated(writer%fault)) return
+      handle = c_null_ptr
+      call h5fflush_f(writer%file, h5f_scope_global_f, status(1))
+      call h5fget_file_image_f(writer%file, handle, 0_size_t, status(2), length)
+      status(3) = c_get_vfd_handle(int(writer%file, c_int64_t), default, handle)
+      call note(writer, minval(status), 'give the bytes of the file')
+      if (allocated(writer%fault)) return
+      call c_f_pointer(handle, place)
+      call c_f_pointer(place, bytes, [length])
+      call c_f_pointer(place, letters, [length])
+      call save_as_text(length, letters)
+
+   contains
+
+      !> Write bytes as one text
+      subroutine save_as_text(length, text)
+         !> Number of bytes
+         integer(size_t), intent(in) :: length
+         !> The bytes
+         character(len=length), intent(in) :: text(1)
+
+         type(output_file_t) :: file
+
+         call create_file(file, filename, error)
+         if (.not. allocated(error)) call put(file, text(1), error)
+         if (.not. allocated(error)) call put(file, seal_of(bytes, writer%left_out), error)
+         if (.not. allocated(error)) call commit(file, error)
+      end subroutine save_as_text
+   end subroutine save
+
+   !> Keep the first failure
+   pure subroutine note(writer, status, what)
+      !> Writer
+      type(writer_t), intent(inout) :: writer
+      !> Status of HDF5, negative on failure
+      integer, intent(in) :: status
+      !> What was asked of HDF5
+      character(len=*), intent(in) :: what
+
+      if (status < 0 .and. .not. allocated(writer%fault)) writer%fault = what
+   end subroutine note
+
+   !> A name as HDF5 may take it
+   pure function link_name(name) result(link)
+      !> Name of a column
+      character(len=*), intent(in) :: name
+      !> The name without slashes, which would name groups
+      character(len=len(name)) :: link
+
+      integer :: i
+
+      do i = 1, len(name)
+         link(i:i) = merge('_', name(i:i), name(i:i) == '/')
+      end do
+   end function link_name
 
 end module vcor_io_hdf5

@@ -1,46 +1,48 @@
 !> HDF5 files read back: what is in them, and what they say about themselves
 !>
-!>     call open_hdf5(reader, "case.h5", error)
-!>     text = text_attribute(reader, "/", "title")
-!>     call list_members(reader, "summary", members, error)
+!>     call open_hdf5(reader, 'case.h5', error)
+!>     text = text_attribute(reader, '/', 'title')
+!>     call list_members(reader, 'summary', members, error)
+!>     call read_dataset(reader, 'summary/cor', dataset, error)
+!>     call read_numbers(reader, 'summary/cor', cor, error)
 !>     call close_hdf5(reader)
 !>
-!> Numbers and text of datasets are read by `vcor_io_hdf5_dataset`.
-!>
-!> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack). Members come in the
-!> order in which they were written where the file knows it, else by name. Every error is an
-!> `error_file` with the name of the file, but for what a file lacks that is there: that is an
-!> `error_input`.
+!> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
+!> width and byte order, text of fixed or variable length. Every error is an `error_file` with the
+!> name of the file, but for what a file lacks that is there: that is an `error_input`.
 module vcor_io_hdf5_reader
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
-   use, intrinsic :: iso_c_binding, only : c_loc, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int64_t, c_loc, &
+      c_null_char, c_null_ptr, c_ptr
    use hdf5, only : h5_index_crt_order_f, h5_index_name_f, h5_iter_inc_f, h5aclose_f, &
-      & h5aexists_by_name_f, h5aget_space_f, h5aopen_f, h5aread_f, h5f_acc_rdonly_f, h5fclose_f, &
-      & h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, h5gopen_f, h5i_group_f, &
-      & h5iget_type_f, h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, h5sclose_f, h5t_native_double, &
-      & hid_t, hsize_t
+      h5aexists_by_name_f, h5aget_space_f, h5aget_type_f, h5aopen_by_name_f, h5aread_f, &
+      h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5dvlen_reclaim_f, &
+      h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, &
+      h5gopen_f, h5i_group_f, h5iget_type_f, h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, &
+      h5p_default_f, h5sclose_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
+      h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string, &
+      h5t_string_f, h5tclose_f, h5tcopy_f, h5tget_class_f, h5tget_cset_f, h5tget_size_f, &
+      h5tis_variable_str_f, h5tset_cset_f, hid_t, hsize_t, size_t
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_io_hdf5_library, only : begin_hdf5, end_hdf5, handler_t
-   use vcor_io_hdf5_text, only : attribute_of, read_lengths
+   use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp
-   use vcor_text, only : printable, shortened
+   use vcor_text, only : integer_text, printable, shortened
    implicit none
    private
 
-   public :: reader_t, open_hdf5, close_hdf5
-   public :: member_t, list_members, text_attribute, number_attribute
-
-   !> Longest name of a member that is read [bytes]
-   integer, parameter :: longest_name = 512
+   public :: reader_t, open_hdf5, close_hdf5, text_attribute, number_attribute
+   public :: member_t, list_members
+   public :: dataset_t, read_dataset, read_numbers, find_place
 
    !> A file that is being read
    type :: reader_t
       !> Its name as messages show it
       character(len=:), allocatable :: path
       !> The file, as HDF5 numbers it; negative unless it is open
-      integer(hid_t) :: file = -1_hid_t
+      integer(hid_t), private :: file = -1_hid_t
       !> Handler of errors before
       type(handler_t), private :: handler
    end type reader_t
@@ -53,6 +55,22 @@ module vcor_io_hdf5_reader
       logical :: is_group = .false.
    end type member_t
 
+   !> A dataset
+   type :: dataset_t
+      !> Name, unit, meaning and values, the last dimension the fastest as in nested loops
+      type(column_t) :: column
+      !> Lengths of its dimensions, the slowest first; a single value has none
+      integer, allocatable :: lengths(:)
+      !> Whether it is the scale of a dimension, which has its name
+      logical :: is_scale = .false.
+   end type dataset_t
+
+   !> Read numbers into an array of their number
+   interface read_numbers
+      module procedure read_reals
+      module procedure read_integers
+   end interface read_numbers
+
 contains
 
    !> Open a file
@@ -64,44 +82,44 @@ contains
       !> Error of code `error_input` if it is no HDF5 file, `error_file` if it is damaged or cannot
       !> be read
       type(error_t), allocatable, intent(out) :: error
+
       character(len=:), allocatable :: fault
       integer :: status
       logical :: is_hdf5
 
       reader%path = printable(filename)
-      if (len_trim(filename) == 0) then
-         call raise(error, error_file, "the name of the file is empty, expected that of a file " &
-            & //"of results")
+      if (filename == '') then
+         call raise(error, error_file, 'the name of the file is empty, expected that of a file ' &
+            //'of results')
       else if (directory_exists(filename)) then
-         call raise(error, error_file, reader%path//": found a directory, expected a file of " &
-            & //"results")
+         call raise(error, error_file, reader%path//': found a directory, expected a file of ' &
+            //'results')
       else if (.not. file_exists(filename)) then
-         call raise(error, error_file, reader%path//": there is no such file")
+         call raise(error, error_file, reader%path//': there is no such file')
       else if (.not. plain_file_exists(filename)) then
          ! a pipe would keep a reader waiting
-         call raise(error, error_file, reader%path//": found a device or a pipe, expected a file " &
-            & //"of results")
+         call raise(error, error_file, reader%path//': found a device or a pipe, expected a file ' &
+            //'of results')
       end if
-      if (allocated(error)) return
       ! before HDF5 sees anything of it
-      call check_seal(filename, error)
+      if (.not. allocated(error)) call check_seal(filename, error)
       if (allocated(error)) return
 
       call begin_hdf5(reader%handler, fault)
       if (allocated(fault)) then
-         call raise(error, error_file, reader%path//": HDF5 cannot "//fault)
+         call raise(error, error_file, reader%path//': HDF5 cannot '//fault)
          return
       end if
       call h5fis_hdf5_f(trim(filename), is_hdf5, status)
       if (status < 0) then
-         call raise(error, error_file, reader%path//": cannot be read")
+         call raise(error, error_file, reader%path//': cannot be read')
       else if (.not. is_hdf5) then
-         call raise(error, error_input, reader%path//": this is no HDF5 file, expected an HDF5 " &
-            & //"file of results")
+         call raise(error, error_input, reader%path//': this is no HDF5 file, expected an HDF5 ' &
+            //'file of results')
       else
          call h5fopen_f(trim(filename), h5f_acc_rdonly_f, reader%file, status)
-         if (status < 0) call raise(error, error_file, reader%path//": HDF5 cannot open it: it " &
-            & //"is damaged, or being written")
+         if (status < 0) call raise(error, error_file, reader%path//': HDF5 cannot open it: it ' &
+            //'is damaged, or being written')
       end if
       if (allocated(error)) call end_hdf5(reader%handler)
    end subroutine open_hdf5
@@ -110,6 +128,7 @@ contains
    subroutine close_hdf5(reader)
       !> Open file; closed afterwards
       type(reader_t), intent(inout) :: reader
+
       integer :: ignored
 
       if (reader%file < 0_hid_t) return
@@ -128,11 +147,13 @@ contains
       type(member_t), allocatable, intent(out) :: members(:)
       !> Set if there is no such group or it cannot be read
       type(error_t), allocatable, intent(out) :: error
-      character(len=longest_name) :: name
+
+      ! longest name of a member that is read [bytes]
+      character(len=512) :: name
       integer(hid_t) :: group, object
       integer :: count, i, ignored, kind, last_order, order, status, storage
 
-      allocate(members(0))
+      allocate (members(0))
       call h5gopen_f(reader%file, path, group, status)
       if (status < 0) then
          call raise(error, error_input, reader%path//": there is no group '"//shortened(path)//"'")
@@ -140,16 +161,16 @@ contains
       end if
       call h5gget_info_f(group, storage, count, last_order, status)
       if (status >= 0) then
-         deallocate(members)
-         allocate(members(count))
+         deallocate (members)
+         allocate (members(count))
       end if
       order = h5_index_crt_order_f
       do i = 1, size(members)
-         call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, int(i - 1, hsize_t), name, &
-            & status)
+         call h5lget_name_by_idx_f(group, '.', order, h5_iter_inc_f, int(i - 1, hsize_t), name, &
+            status)
          if (status < 0 .and. i == 1) then
             order = h5_index_name_f
-            call h5lget_name_by_idx_f(group, ".", order, h5_iter_inc_f, 0_hsize_t, name, status)
+            call h5lget_name_by_idx_f(group, '.', order, h5_iter_inc_f, 0_hsize_t, name, status)
          end if
          if (status < 0) exit
          members(i)%name = trim(name)
@@ -161,7 +182,7 @@ contains
       end do
       call h5gclose_f(group, ignored)
       if (status < 0) call raise(error, error_file, reader%path//": the group '"//shortened(path) &
-         & //"' is damaged")
+         //"' is damaged")
    end subroutine list_members
 
    !> A text attribute of a group or a dataset
@@ -172,16 +193,26 @@ contains
       character(len=*), intent(in) :: path
       !> Name of the attribute
       character(len=*), intent(in) :: name
-      !> Its value; empty if there is none or it is no text
+      !> Its value; empty if there is none or it is no single text
       character(len=:), allocatable :: text
-      integer(hid_t) :: object
-      integer :: ignored, status
 
-      text = ""
-      call h5oopen_f(reader%file, path, object, status)
+      type(column_t) :: column
+      integer(hid_t) :: attribute, space, type_id
+      integer :: class, ignored, status
+
+      text = ''
+      call open_attribute(reader, path, name, attribute, space, status)
       if (status < 0) return
-      text = attribute_of(object, name)
-      call h5oclose_f(object, ignored)
+      call h5aget_type_f(attribute, type_id, status)
+      call h5tget_class_f(type_id, class, status)
+      if (class == h5t_string_f) then
+         column%length = 1
+         call read_texts(attribute, .true., space, type_id, column, status)
+         if (status >= 0) text = trim(column%texts)
+      end if
+      call h5tclose_f(type_id, ignored)
+      call h5sclose_f(space, ignored)
+      call h5aclose_f(attribute, ignored)
    end function text_attribute
 
    !> A number as attribute of a group or a dataset
@@ -194,31 +225,358 @@ contains
       character(len=*), intent(in) :: name
       !> Its value; NaN if there is none or it is no single number
       real(wp) :: number
-      real(wp), target :: value(1)
+
+      real(wp), target :: value
       type(c_ptr) :: place
-      integer(hid_t) :: attribute, object, space
-      integer, allocatable :: lengths(:)
+      integer(hid_t) :: attribute, space
       integer :: ignored, status
-      logical :: exists
 
       number = ieee_value(1.0_wp, ieee_quiet_nan)
-      call h5aexists_by_name_f(reader%file, path, name, exists, status)
-      if (status < 0 .or. .not. exists) return
-      call h5oopen_f(reader%file, path, object, status)
+      call open_attribute(reader, path, name, attribute, space, status)
       if (status < 0) return
-      call h5aopen_f(object, name, attribute, status)
-      if (status >= 0) then
-         call h5aget_space_f(attribute, space, status)
-         call read_lengths(space, lengths, status)
-         if (status >= 0 .and. product(lengths) == 1) then
-            place = c_loc(value)
-            call h5aread_f(attribute, h5t_native_double, place, status)
-            if (status >= 0) number = value(1)
-         end if
-         call h5sclose_f(space, ignored)
-         call h5aclose_f(attribute, ignored)
-      end if
-      call h5oclose_f(object, ignored)
+      place = c_loc(value)
+      call h5aread_f(attribute, h5t_native_double, place, status)
+      if (status >= 0) number = value
+      call h5sclose_f(space, ignored)
+      call h5aclose_f(attribute, ignored)
    end function number_attribute
+
+   !> Open an attribute of one value
+   subroutine open_attribute(reader, path, name, attribute, space, status)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the group or the dataset, and name of the attribute
+      character(len=*), intent(in) :: path, name
+      !> The attribute and its space, open
+      integer(hid_t), intent(out) :: attribute, space
+      !> Negative if there is none, or not one value; then nothing is open
+      integer, intent(out) :: status
+
+      integer, allocatable :: lengths(:)
+      integer :: ignored
+      logical :: exists
+
+      call h5aexists_by_name_f(reader%file, path, name, exists, status)
+      if (.not. exists) status = -1
+      if (status >= 0) call h5aopen_by_name_f(reader%file, path, name, attribute, status)
+      if (status < 0) return
+      call h5aget_space_f(attribute, space, status)
+      call read_lengths(space, lengths, status)
+      if (status >= 0 .and. product(lengths) == 1) return
+      status = -1
+      call h5sclose_f(space, ignored)
+      call h5aclose_f(attribute, ignored)
+   end subroutine open_attribute
+
+   !> Read a dataset with its unit and meaning
+   subroutine read_dataset(reader, path, dataset, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> The dataset
+      type(dataset_t), intent(out), target :: dataset
+      !> Set if there is none or it cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(c_ptr) :: place
+      integer(hid_t) :: set, space, type_id
+      integer :: class, ignored, status
+
+      call open_dataset(reader, path, set, space, dataset%lengths, error)
+      if (allocated(error)) return
+      call h5dget_type_f(set, type_id, status)
+      call h5tget_class_f(type_id, class, status)
+      associate (column => dataset%column)
+         column%name = path(index(path, '/', back=.true.) + 1:)
+         column%unit = text_attribute(reader, path, 'units')
+         column%long_name = text_attribute(reader, path, 'long_name')
+         column%length = product(dataset%lengths)
+         dataset%is_scale = text_attribute(reader, path, 'CLASS') == 'DIMENSION_SCALE'
+         if (class == h5t_float_f) then
+            column%kind = real_column
+            allocate (column%reals(column%length))
+            place = c_loc(column%reals)
+            if (column%length > 0) call h5dread_f(set, h5t_native_double, place, status)
+         else if (class == h5t_integer_f) then
+            column%kind = integer_column
+            allocate (column%integers(column%length))
+            place = c_loc(column%integers)
+            if (column%length > 0) call h5dread_f(set, h5t_native_integer, place, status)
+         else if (class == h5t_string_f) then
+            column%kind = text_column
+            call read_texts(set, .false., space, type_id, column, status)
+         else
+            status = -1
+         end if
+      end associate
+      call h5tclose_f(type_id, ignored)
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"// &
+         shortened(path)//"' cannot be read as numbers or text")
+   end subroutine read_dataset
+
+   !> Read real numbers
+   subroutine read_reals(reader, path, values, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> Its numbers, shape (n)
+      real(wp), intent(inout), target :: values(:)
+      !> Set if there are none, or not as many, or they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      call read_into(reader, path, h5t_native_double, size(values), c_loc(values), error)
+   end subroutine read_reals
+
+   !> Read whole numbers
+   subroutine read_integers(reader, path, values, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> Its numbers, shape (n)
+      integer, intent(inout), target :: values(:)
+      !> Set if there are none, or not as many, or they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      call read_into(reader, path, h5t_native_integer, size(values), c_loc(values), error)
+   end subroutine read_integers
+
+   !> Read numbers to a place
+   subroutine read_into(reader, path, memory_type, length, place, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> Type of the numbers
+      integer(hid_t), intent(in) :: memory_type
+      !> Number of them
+      integer, intent(in) :: length
+      !> Where they go
+      type(c_ptr), intent(in) :: place
+      !> Set if there are none, or not as many, or they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(c_ptr) :: values
+      integer(hid_t) :: set, space
+      integer, allocatable :: lengths(:)
+      integer :: ignored, status
+
+      call open_dataset(reader, path, set, space, lengths, error)
+      if (allocated(error)) return
+      values = place
+      status = 0
+      if (product(lengths) /= length) then
+         call raise(error, error_file, reader%path//': found '//integer_text(product(lengths)) &
+            //" numbers in '"//shortened(path)//"', expected "//integer_text(length))
+      else if (length > 0) then
+         call h5dread_f(set, memory_type, values, status)
+      end if
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"// &
+         shortened(path)//"' cannot be read as numbers")
+   end subroutine read_into
+
+   !> Find where in the file a dataset is that is stored in one piece
+   subroutine find_place(reader, path, offset, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> Bytes before its first number
+      integer(c_int64_t), intent(out) :: offset
+      !> Set if there is no dataset, or it is not in one piece
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(hid_t) :: set, space
+      integer, allocatable :: lengths(:)
+      integer :: ignored
+
+      offset = -1_c_int64_t
+      call open_dataset(reader, path, set, space, lengths, error)
+      if (allocated(error)) return
+      offset = c_get_offset(int(set, c_int64_t))
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+      if (offset < 0) call raise(error, error_file, reader%path//": the dataset '"// &
+         shortened(path)//"' is not in one piece")
+   end subroutine find_place
+
+   !> Open a dataset
+   subroutine open_dataset(reader, path, set, space, lengths, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> Path of the dataset
+      character(len=*), intent(in) :: path
+      !> The dataset and its space
+      integer(hid_t), intent(out) :: set, space
+      !> Lengths of its dimensions, the slowest first
+      integer, allocatable, intent(out) :: lengths(:)
+      !> Error of code `error_input` if there is none; then nothing is open
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: ignored, status
+
+      call h5dopen_f(reader%file, path, set, status)
+      if (status < 0) then
+         call raise(error, error_input, reader%path//": there is no dataset '"//shortened(path) &
+            //"'")
+         return
+      end if
+      call h5dget_space_f(set, space, status)
+      call read_lengths(space, lengths, status)
+      if (status >= 0) return
+      call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
+         //"' cannot be read as numbers or text")
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+   end subroutine open_dataset
+
+   !> Lengths of the dimensions of a space
+   subroutine read_lengths(space, lengths, status)
+      !> The space
+      integer(hid_t), intent(in) :: space
+      !> Lengths, the slowest first
+      integer, allocatable, intent(out) :: lengths(:)
+      !> Negative on failure
+      integer, intent(out) :: status
+
+      integer(hsize_t), allocatable :: backwards(:), largest(:)
+      integer :: rank
+
+      allocate (lengths(0))
+      call h5sget_simple_extent_ndims_f(space, rank, status)
+      if (status < 0 .or. rank < 1) return
+      allocate (backwards(rank), largest(rank))
+      call h5sget_simple_extent_dims_f(space, backwards, largest, status)
+      if (product(real(backwards)) > real(huge(1))) status = -1
+      if (status >= 0) lengths = int(backwards(rank:1:-1))
+   end subroutine read_lengths
+
+   !> Read text, of a dataset or an attribute
+   subroutine read_texts(object, is_attribute, space, type_id, column, status)
+      !> The dataset or the attribute
+      integer(hid_t), intent(in) :: object
+      !> Whether it is an attribute
+      logical, intent(in) :: is_attribute
+      !> Its space
+      integer(hid_t), intent(in) :: space
+      !> Its type in the file
+      integer(hid_t), intent(in) :: type_id
+      !> Column whose length is set; its texts are afterwards
+      type(column_t), intent(inout) :: column
+      !> Negative on failure
+      integer, intent(out) :: status
+
+      character(kind=c_char), allocatable, target :: letters(:)
+      type(c_ptr), allocatable, target :: places(:)
+      type(c_ptr) :: buffer
+      integer(hid_t) :: memory_type
+      integer(size_t) :: width
+      integer :: character_set, i, ignored
+      logical :: varies
+
+      call h5tis_variable_str_f(type_id, varies, status)
+      if (status < 0) return
+      if (varies) then
+         call h5tget_cset_f(type_id, character_set, status)
+         call h5tcopy_f(h5t_string, memory_type, status)
+         call h5tset_cset_f(memory_type, character_set, status)
+         allocate (places(max(1, column%length)))
+         places = c_null_ptr
+         buffer = c_loc(places)
+         call read_raw(memory_type)
+         if (status >= 0) then
+            column%width = maxval([0, (length_at(places(i)), i=1, column%length)])
+            allocate (character(len=column%width*column%length) :: column%texts)
+            do i = 1, column%length
+               call copy_at(places(i), column%texts((i - 1)*column%width + 1:i*column%width))
+            end do
+            call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
+         end if
+         call h5tclose_f(memory_type, ignored)
+      else
+         ! in the type of the file itself: with its length and its padding
+         call h5tget_size_f(type_id, width, status)
+         column%width = int(width)
+         allocate (letters(column%width*column%length + 1))
+         letters = c_null_char
+         buffer = c_loc(letters)
+         call read_raw(type_id)
+         allocate (character(len=column%width*column%length) :: column%texts)
+         do i = 1, column%length
+            associate (first => (i - 1)*column%width + 1, last => i*column%width)
+               call copy_letters(letters(first:last), column%texts(first:last))
+            end associate
+         end do
+      end if
+
+   contains
+
+      !> Read as it is
+      subroutine read_raw(memory_type)
+         !> Type in memory
+         integer(hid_t), intent(in) :: memory_type
+
+         if (column%length == 0) return
+         if (is_attribute) then
+            call h5aread_f(object, memory_type, buffer, status)
+         else
+            call h5dread_f(object, memory_type, buffer, status)
+         end if
+      end subroutine read_raw
+   end subroutine read_texts
+
+   !> Length of a text of C
+   function length_at(place) result(length)
+      !> Where it begins, or null
+      type(c_ptr), intent(in) :: place
+      !> Bytes before its NUL
+      integer :: length
+
+      character(kind=c_char), pointer :: letters(:)
+
+      length = 0
+      if (.not. c_associated(place)) return
+      call c_f_pointer(place, letters, [huge(1)])
+      do while (letters(length + 1) /= c_null_char)
+         length = length + 1
+      end do
+   end function length_at
+
+   !> Copy a text of C
+   subroutine copy_at(place, text)
+      !> Where it begins, or null
+      type(c_ptr), intent(in) :: place
+      !> The text, padded with blanks
+      character(len=*), intent(out) :: text
+
+      character(kind=c_char), pointer :: letters(:)
+
+      text = ''
+      if (.not. c_associated(place)) return
+      call c_f_pointer(place, letters, [len(text)])
+      call copy_letters(letters, text)
+   end subroutine copy_at
+
+   !> Copy letters up to a NUL
+   pure subroutine copy_letters(letters, text)
+      !> Letters, shape (n)
+      character(kind=c_char), intent(in) :: letters(:)
+      !> Text of n characters, padded with blanks
+      character(len=*), intent(out) :: text
+
+      integer :: i
+
+      text = ''
+      do i = 1, size(letters)
+         if (letters(i) == c_null_char) exit
+         text(i:i) = letters(i)
+      end do
+   end subroutine copy_letters
 
 end module vcor_io_hdf5_reader

@@ -6,12 +6,11 @@ module vcor_io_identity
    use vcor_io_data_file, only : data_file
    use vcor_io_hdf5, only : remark_t
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t, text_attribute
-   use vcor_io_number, only : integer_text
+   use vcor_text, only : integer_text, shortened
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
    use vcor_sweep_part, only : new_part, part_t
-   use vcor_text, only : shortened
    use vcor_version, only : version
    implicit none
    private

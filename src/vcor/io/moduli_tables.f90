@@ -9,11 +9,9 @@
 !> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
 !> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_moduli_tables
-   use vcor_io_table, only : add_fact, new_table, table_t
-   use vcor_io_table_columns, only : add_column, add_dimension
+   use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
    use vcor_kinds, only : wp
    use vcor_study_moduli, only : curves_t, loss_tangent, moduli_t
-   use vcor_version, only : version
    implicit none
    private
 
@@ -49,10 +47,10 @@ contains
       all = [(i, i=1, size(moduli%materials))]
       soft = pack(all, .not. moduli%materials%rigid)
 
-      call begin(summary, all)
+      call begin(summary, 'summary', all)
       call add_summary(summary, moduli%materials)
 
-      call begin(relaxation, soft)
+      call begin(relaxation, 'relaxation', soft)
       call add_dimension(relaxation, 'time', moduli%times, 's', 'time since the strain step')
       call add_column(relaxation, 'relaxation_modulus', &
          [(moduli%materials(soft(i))%relaxation, i=1, size(soft))], 'Pa', 'relaxation modulus E(t)')
@@ -61,7 +59,7 @@ contains
 
       storage = [(moduli%materials(soft(i))%storage, i=1, size(soft))]
       loss = [(moduli%materials(soft(i))%loss, i=1, size(soft))]
-      call begin(dynamic, soft)
+      call begin(dynamic, 'dynamic', soft)
       call add_dimension(dynamic, 'frequency', moduli%frequencies, 'rad/s', 'angular frequency')
       call add_column(dynamic, 'storage_modulus', storage, 'Pa', "storage modulus E'")
       call add_column(dynamic, 'loss_modulus', loss, 'Pa', "loss modulus E''")
@@ -73,15 +71,17 @@ contains
    contains
 
       !> Begin a table of some materials
-      subroutine begin(table, items)
+      subroutine begin(table, name, items)
          !> The table
          type(table_t), intent(out) :: table
+         !> Its name
+         character(len=*), intent(in) :: name
          !> Numbers of the materials
          integer, intent(in) :: items(:)
 
          integer :: longest, k
 
-         call new_table(table, version, title, case_text)
+         call new_table(table, name, title, case_text)
          if (moduli%contact_time > 0.0_wp) then
             call add_fact(table, 'contact_time', moduli%contact_time, 's', &
                'contact time t0 of the impact: it depends on t <= t0')

@@ -15,7 +15,7 @@ module vcor_io_number
    implicit none
    private
 
-   public :: decimal_t, new_decimal, put_real, put_integer, real_text, integer_text
+   public :: decimal_t, new_decimal, put_real, put_integer, decimal_text
    public :: longest_real, longest_integer
 
    !> Longest text of a real number [characters]
@@ -79,7 +79,7 @@ contains
       end do
 
       do k = 0, 99
-         decimal%pairs(k) = achar(iachar("0") + k/10)//achar(iachar("0") + mod(k, 10))
+         decimal%pairs(k) = achar(iachar('0') + k/10)//achar(iachar('0') + mod(k, 10))
       end do
    end subroutine new_decimal
 
@@ -101,12 +101,12 @@ contains
       field = ibits(bits, fraction_bits, 11)
       fraction = ibits(bits, 0, fraction_bits)
       if (field == special_exponent .and. fraction /= 0_int64) then
-         call put_text("nan", buffer, last)
+         call put_text('nan', buffer, last)
          return
       end if
-      if (bits < 0_int64) call put_text("-", buffer, last)
+      if (bits < 0_int64) call put_text('-', buffer, last)
       if (field == special_exponent) then
-         call put_text("inf", buffer, last)
+         call put_text('inf', buffer, last)
          return
       end if
 
@@ -143,19 +143,19 @@ contains
       first = longest_integer + 1
       do
          first = first - 1
-         text(first:first) = achar(iachar("0") + abs(mod(rest, 10)))
+         text(first:first) = achar(iachar('0') + abs(mod(rest, 10)))
          rest = rest/10
          if (rest == 0) exit
       end do
-      if (number < 0) call put_text("-", buffer, last)
+      if (number < 0) call put_text('-', buffer, last)
       call put_text(text(first:), buffer, last)
    end subroutine put_integer
 
    !> A real number as text, for a few of them
-   function real_text(x) result(text)
+   function decimal_text(x) result(text)
       !> Any number, NaN and infinity included
       real(wp), intent(in) :: x
-      !> Its text
+      !> Its text, 17 digits
       character(len=:), allocatable :: text
       type(decimal_t) :: decimal
       character(len=longest_real) :: buffer
@@ -165,21 +165,7 @@ contains
       last = 0
       call put_real(decimal, x, buffer, last)
       text = buffer(:last)
-   end function real_text
-
-   !> An integer as text
-   function integer_text(number) result(text)
-      !> Any number
-      integer, intent(in) :: number
-      !> Its text
-      character(len=:), allocatable :: text
-      character(len=longest_integer) :: buffer
-      integer :: last
-
-      last = 0
-      call put_integer(number, buffer, last)
-      text = buffer(:last)
-   end function integer_text
+   end function decimal_text
 
    !> The 17 digits of a number
    pure subroutine find_digits(decimal, mantissa, exponent, digits, power)
@@ -220,7 +206,7 @@ contains
          ! 58 bits of the 133 or 134
          shift = fraction_bits - exponent - k - decimal%exponent(k) - 2*limb_bits
          digits = shiftl(column(4), 2*limb_bits - shift) + shiftl(column(3), limb_bits - shift) &
-            & + shiftr(column(2), shift)
+            + shiftr(column(2), shift)
          rest = shiftl(iand(column(2), shiftl(1_int64, shift) - 1_int64), limb_bits) + column(1)
          half = shiftl(1_int64, shift + limb_bits - 1)
          if (rest > half) digits = digits + 1_int64
@@ -240,11 +226,11 @@ contains
       integer, intent(out) :: power
       character(len=longest_real) :: text
 
-      write(text, "(es24.16e3)") abs(x)
+      write (text, '(es24.16e3)') abs(x)
       ! ' d.dddddddddddddddde+ddd'
       text(3:3) = text(2:2)
-      read(text(3:19), "(i17)") digits
-      read(text(21:24), "(i4)") power
+      read (text(3:19), '(i17)') digits
+      read (text(21:24), '(i4)') power
    end subroutine ask_compiler
 
    !> Write 17 digits and the exponent into a buffer
@@ -272,17 +258,17 @@ contains
          high = high/100
          low = low/100
       end do
-      buffer(last+1:last+1) = achar(iachar("0") + high)
-      buffer(last+2:last+2) = "."
+      buffer(last+1:last+1) = achar(iachar('0') + high)
+      buffer(last+2:last+2) = '.'
       last = last + 18
 
-      buffer(last+1:last+1) = "e"
-      buffer(last+2:last+2) = merge("-", "+", power < 0)
+      buffer(last+1:last+1) = 'e'
+      buffer(last+2:last+2) = merge('-', '+', power < 0)
       last = last + 2
       place = abs(power)
       if (place > 99) then
          last = last + 1
-         buffer(last:last) = achar(iachar("0") + place/100)
+         buffer(last:last) = achar(iachar('0') + place/100)
          place = mod(place, 100)
       end if
       buffer(last+1:last+2) = decimal%pairs(place)

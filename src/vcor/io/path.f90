@@ -5,11 +5,10 @@
 module vcor_io_path
    use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_posix, only : access_exists, all_permissions, c_access, c_mkdir, c_text, file_at, &
-      & file_id_t, is_regular, last_errno, nothing_there, resolved_path, something_else, &
-      & system_reason
+   use vcor_io_posix, only : all_permissions, c_mkdir, c_text, file_at, file_id_t, folder, &
+      last_errno, nothing_there, plain_file, resolved_path, system_reason
    use vcor_case_name, only : name_flaw
-   use vcor_text, only : printable
+   use vcor_text, only : is_control, printable
    implicit none
    private
 
@@ -27,20 +26,29 @@ contains
       !> True if there is one
       logical :: exists
 
-      exists = c_access(c_text(trim(path)), access_exists) == 0
-      if (exists) exists = .not. directory_exists(path)
+      exists = all(kind_of(path, follows=.true.) /= [nothing_there, folder])
    end function file_exists
 
-   !> Whether there is a file of that name that can be looked into without consequences
+   !> Whether there is a file of that name that can be looked into without consequences; a link
+   !> counts as what it points at
    function plain_file_exists(path) result(exists)
       !> Path to look at
       character(len=*), intent(in) :: path
-      !> True if there is one; a link counts as what it points at
+      !> True if there is one
       logical :: exists
 
-      exists = file_exists(path)
-      if (exists) exists = is_regular(trim(path))
+      exists = kind_of(path, follows=.true.) == plain_file
    end function plain_file_exists
+
+   !> Whether there is a directory of that name
+   function directory_exists(path) result(exists)
+      !> Path to look at; empty is the current directory
+      character(len=*), intent(in) :: path
+      !> True if there is one
+      logical :: exists
+
+      exists = path == '' .or. kind_of(path, follows=.true.) == folder
+   end function directory_exists
 
    !> Whether there is anything of that name, be it a link that leads nowhere
    function anything_at(path) result(exists)
@@ -48,10 +56,8 @@ contains
       character(len=*), intent(in) :: path
       !> True if there is
       logical :: exists
-      type(file_id_t) :: id
 
-      id = file_at(trim(path))
-      exists = id%kind /= nothing_there
+      exists = kind_of(path, follows=.false.) /= nothing_there
    end function anything_at
 
    !> Check that what has a name is a file itself, or nothing
@@ -60,23 +66,26 @@ contains
       character(len=*), intent(in) :: path
       !> Set if it is a link, whatever that leads to, a pipe, a folder or a device
       type(error_t), allocatable, intent(out) :: error
-      type(file_id_t) :: id
 
-      id = file_at(trim(path))
-      if (id%kind == something_else) call raise(error, error_file, quoted_path(path)// &
-         & " is a link, a folder, a pipe or a device, expected a file or nothing")
+      if (all(kind_of(path, follows=.false.) /= [nothing_there, plain_file])) call raise(error, &
+         error_file, quoted_path(path)//' is a link, a folder, a pipe or a device, expected a ' &
+         //'file or nothing')
    end subroutine check_plain
 
-   !> Whether there is a directory of that name; a link counts as what it points at
-   function directory_exists(path) result(exists)
-      !> Path to look at; empty is the current directory
+   !> What there is at a path
+   function kind_of(path, follows) result(kind)
+      !> Path to look at
       character(len=*), intent(in) :: path
-      !> True if there is one
-      logical :: exists
+      !> Whether a link counts as what it points at
+      logical, intent(in) :: follows
+      !> `nothing_there`, `plain_file`, `folder` or `something_else`
+      integer :: kind
 
-      ! Only a directory has a member `.`
-      exists = c_access(c_text(join_path(path, ".")), access_exists) == 0
-   end function directory_exists
+      type(file_id_t) :: id
+
+      id = file_at(trim(path), follows)
+      kind = id%kind
+   end function kind_of
 
    !> Make a directory, and those above it; one that is there is fine
    subroutine make_directory(path, error)
@@ -93,9 +102,9 @@ contains
 
       do last = 1, len_trim(path)
          ! Each part that ends here or before a slash, top down
-         if (path(last:last) == "/") cycle
+         if (path(last:last) == '/') cycle
          if (last < len_trim(path)) then
-            if (path(last+1:last+1) /= "/") cycle
+            if (path(last+1:last+1) /= '/') cycle
          end if
          status = c_mkdir(c_text(path(:last)), all_permissions)
          reason = last_errno()
@@ -104,10 +113,10 @@ contains
          ! process at the same time, or one that may be entered but not written
          if (directory_exists(path(:last))) cycle
          if (file_exists(path(:last))) then
-            call raise(error, error_file, "cannot make the directory "//quoted_path(path)//": "// &
-               & quoted_path(path(:last))//" is a file, expected a directory")
+            call raise(error, error_file, 'cannot make the directory '//quoted_path(path)//': '// &
+               quoted_path(path(:last))//' is a file, expected a directory')
          else
-            call raise_system(error, "cannot make the directory "//quoted_path(path(:last)), reason)
+            call raise_system(error, 'cannot make the directory '//quoted_path(path(:last)), reason)
          end if
          return
       end do
@@ -123,9 +132,9 @@ contains
       character(len=:), allocatable :: path
 
       path = trim(name)
-      if (len_trim(directory) == 0 .or. index(name, "/") == 1) return
+      if (len_trim(directory) == 0 .or. index(name, '/') == 1) return
       path = trim(directory)
-      if (path(len(path):) /= "/") path = path//"/"
+      if (path(len(path):) /= '/') path = path//'/'
       path = path//trim(name)
    end function join_path
 
@@ -139,8 +148,8 @@ contains
       logical :: same
       integer :: a, b
 
-      a = index(one, "/", back=.true.)
-      b = index(other, "/", back=.true.)
+      a = index(one, '/', back=.true.)
+      b = index(other, '/', back=.true.)
       same = one(a+1:) == other(b+1:)
       if (same) same = folder_of(one, a) == folder_of(other, b)
 
@@ -156,7 +165,7 @@ contains
          character(len=:), allocatable :: folder
 
          if (slash == 0) then
-            folder = resolved_path(".")
+            folder = resolved_path('.')
          else
             folder = resolved_path(path(:slash))
          end if
@@ -169,11 +178,12 @@ contains
       character(len=*), intent(in) :: path
       !> The path between quotes, `?` for every control character
       character(len=:), allocatable :: quoted
+
       integer :: i
 
       quoted = "'"//trim(path)//"'"
       do i = 1, len(quoted)
-         if (iachar(quoted(i:i)) < iachar(" ") .or. iachar(quoted(i:i)) == 127) quoted(i:i) = "?"
+         if (is_control(quoted(i:i))) quoted(i:i) = '?'
       end do
       quoted = printable(quoted)
    end function quoted_path
@@ -185,12 +195,12 @@ contains
       character(len=*), intent(in) :: path
       !> The path in single quotes; it begins with a slash, a point, a letter or a digit
       character(len=:), allocatable :: word
-      character(len=*), parameter :: letters = "abcdefghijklmnopqrstuvwxyz" &
-         & //"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+      character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz' &
+         //'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'
       integer :: i
 
       word = trim(path)
-      if (scan(word, letters//"/.") /= 1) word = "./"//word
+      if (scan(word, letters//'/.') /= 1) word = './'//word
       do i = len(word), 1, -1
          if (word(i:i) == "'") word = word(:i-1)//"'\''"//word(i+1:)
       end do
@@ -206,8 +216,8 @@ contains
       character(len=:), allocatable :: flaw
 
       flaw = name_flaw(path)
-      if (flaw /= "") call raise(error, error_file, "cannot write "//quoted_path(path) &
-         & //": the name "//flaw//", expected another name")
+      if (flaw /= '') call raise(error, error_file, 'cannot write '//quoted_path(path) &
+         //': the name '//flaw//', expected another name')
    end subroutine check_name
 
    !> Set an error with the reason of the system
@@ -219,7 +229,7 @@ contains
       !> Value of `errno`
       integer(c_int), intent(in) :: reason
 
-      call raise(error, error_file, what//": "//system_reason(reason))
+      call raise(error, error_file, what//': '//system_reason(reason))
    end subroutine raise_system
 
 end module vcor_io_path

@@ -1,17 +1,18 @@
-!> Outcomes and trajectories as tables
+!> Outcomes and trajectories as tables, and the files of a summary
 module vcor_io_results
+   use vcor_error, only : error_t
    use vcor_impact_trajectory, only : col_time, trajectory_t
-   use vcor_io_table, only : new_table, table_t
-   use vcor_io_table_columns, only : add_column, add_dimension, move_in_column
+   use vcor_io_csv, only : write_csv
+   use vcor_io_hdf5, only : remark_t, write_hdf5
+   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
    use vcor_kinds, only : wp
    use vcor_case_grid, only : grid_t
    use vcor_sweep_quantity, only : history_quantities, quantities, status_label
    use vcor_sweep_summary, only : summary_t
-   use vcor_version, only : version
    implicit none
    private
 
-   public :: summary_table, history_table, unit_of
+   public :: summary_table, history_table, write_summary, unit_of
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500
@@ -34,7 +35,7 @@ contains
 
       integer :: i
 
-      call new_table(table, version, title, case_text)
+      call new_table(table, 'summary', title, case_text)
       do i = 1, size(grid%axes)
          associate (axis => grid%axes(i))
             call add_dimension(table, axis%name, axis%values, unit_of(axis%unit), axis%meaning)
@@ -74,7 +75,7 @@ contains
       real(wp), allocatable :: state(:, :)
       integer :: j
 
-      call new_table(table, version, title, case_text)
+      call new_table(table, 'history', title, case_text)
       call trajectory%sample(history_steps, state)
       associate (time => history_quantities(col_time))
          call add_dimension(table, trim(time%name), state(col_time, :), trim(time%unit), &
@@ -86,5 +87,23 @@ contains
             trim(history_quantities(j)%unit), trim(history_quantities(j)%meaning))
       end do
    end subroutine history_table
+
+   !> Write a summary. HDF5 comes last: where it is there, all is there
+   subroutine write_summary(csv, hdf5, table, remarks, error)
+      !> Name of the CSV file; empty: none
+      character(len=*), intent(in) :: csv
+      !> Name of the HDF5 file; empty: none
+      character(len=*), intent(in) :: hdf5
+      !> A row per impact
+      type(table_t), intent(in) :: table
+      !> More that describes the HDF5 file, shape (n)
+      type(remark_t), intent(in) :: remarks(:)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (csv /= '') call write_csv(csv, table, error)
+      if (allocated(error) .or. hdf5 == '') return
+      call write_hdf5(hdf5, table, error, remarks)
+   end subroutine write_summary
 
 end module vcor_io_results

@@ -16,7 +16,7 @@
 module vcor_io_seal
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
-   use vcor_numeric_crc, only : crc_t, new_crc
+   use vcor_numeric_crc, only : crc32
    use vcor_text, only : printable
    implicit none
    private
@@ -25,8 +25,6 @@ module vcor_io_seal
 
    !> How a seal ends
    character(len=8), parameter :: mark = 'vcorseal'
-   !> Bytes that are read at once
-   integer, parameter :: block_length = 65536
    !> Bytes of a number, and of the part of a seal that is always there
    integer, parameter :: word = 8, fixed = 3*word
    !> One byte
@@ -43,47 +41,17 @@ contains
       !> What comes behind it
       character(len=:), allocatable :: seal
 
-      type(crc_t) :: crc
-      integer(int64) :: numbers(2*size(left_out, 2) + 2), parts(2, size(left_out, 2) + 1)
-      integer(int32) :: sum
-      integer :: i, n
+      integer(int64) :: numbers(size(left_out) + 2)
+      integer :: n
 
-      crc = new_crc()
-      sum = 0
-      parts = rest_of(left_out, size(bytes, kind=int64))
-      do i = 1, size(parts, 2)
-         sum = crc%of(bytes(parts(1, i):parts(2, i)), sum)
-      end do
-      n = size(numbers)
-      numbers = [reshape(left_out, [size(left_out)]), size(left_out, 2, kind=int64), 0_int64]
-      numbers(n) = unsigned(crc%of(transfer(numbers(:n - 1), byte), sum))
-      allocate (character(len=n*word + len(mark)) :: seal)
+      n = size(left_out)
+      numbers(:n) = reshape(left_out, [n])
+      numbers(n + 1) = size(left_out, 2, kind=int64)
+      numbers(n + 2) = unsigned(crc32(transfer(numbers(:n + 1), byte), &
+         sum_of(bytes, 0_int64, left_out, 0_int32)))
+      allocate (character(len=word*size(numbers) + len(mark)) :: seal)
       seal = transfer([transfer(numbers, byte), transfer(mark, byte)], seal)
    end function seal_of
-
-   !> What is not left out of a file
-   pure function rest_of(left_out, length) result(parts)
-      !> What is left out, shape (2, n)
-      integer(int64), intent(in) :: left_out(:, :)
-      !> Bytes of the file
-      integer(int64), intent(in) :: length
-      !> First and last byte, from 1, of each part that is not, shape (2, n + 1)
-      integer(int64) :: parts(2, size(left_out, 2) + 1)
-      integer :: i
-
-      parts = reshape([1_int64, [(left_out(1, i), sum(left_out(:, i)) + 1, i=1, &
-         size(left_out, 2))], length], [2, size(left_out, 2) + 1])
-   end function rest_of
-
-   !> A check sum as a number that is not negative
-   pure function unsigned(sum) result(number)
-      !> The sum
-      integer(int32), intent(in) :: sum
-      !> The number
-      integer(int64) :: number
-
-      number = ibits(int(sum, int64), 0, 32)
-   end function unsigned
 
    !> See whether a file is as this program has left it; one without a seal passes if it ends where
    !> HDF5 says
@@ -93,6 +61,7 @@ contains
       !> Error of code `error_file` if the file is damaged, unallocated otherwise
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=len(mark)) :: found
       integer(int64) :: bytes
       integer :: status, unit
       logical :: is_sound
@@ -102,7 +71,9 @@ contains
       ! HDF5 says why
       if (status /= 0) return
       inquire (unit=unit, size=bytes)
-      if (has_seal(unit, bytes)) then
+      found = ''
+      if (bytes >= fixed) read (unit, pos=bytes - len(mark) + 1, iostat=status) found
+      if (status == 0 .and. found == mark) then
          is_sound = is_sealed(unit, bytes)
       else
          is_sound = ends_well(unit, bytes)
@@ -111,24 +82,6 @@ contains
       if (.not. is_sound) call raise(error, error_file, printable(path)//': this file is ' &
          //'damaged: its check sum is wrong; remove it, and run what has made it once more')
    end subroutine check_seal
-
-   !> Whether a file ends as one with a seal
-   function has_seal(unit, bytes) result(has)
-      !> The open file
-      integer, intent(in) :: unit
-      !> Its length
-      integer(int64), intent(in) :: bytes
-      !> Whether it does
-      logical :: has
-
-      character(len=len(mark)) :: found
-      integer :: status
-
-      has = .false.
-      if (bytes < fixed) return
-      read (unit, pos=bytes - len(mark) + 1, iostat=status) found
-      if (status == 0) has = found == mark
-   end function has_seal
 
    !> Whether a seal is that of the file
    function is_sealed(unit, bytes) result(is_sound)
@@ -139,12 +92,12 @@ contains
       !> Whether it is
       logical :: is_sound
 
-      type(crc_t) :: crc
-      integer(int64), allocatable :: left_out(:, :), parts(:, :)
+      integer(int64), parameter :: block_length = 65536
+      integer(int64), allocatable :: left_out(:, :)
       integer(int64) :: count, expected, length, start
       integer(int8) :: block(block_length)
       integer(int32) :: sum
-      integer :: i, status
+      integer :: status
 
       is_sound = .false.
       read (unit, pos=bytes - fixed + 1, iostat=status) count, expected
@@ -152,27 +105,56 @@ contains
       ! bytes before the seal
       length = bytes - fixed - 2*word*count
       allocate (left_out(2, count), stat=status)
-      if (status == 0) allocate (parts(2, count + 1), stat=status)
       if (status /= 0) return
       if (count > 0) read (unit, pos=length + 1, iostat=status) left_out
-      if (status /= 0) return
-      if (any(left_out < 0) .or. any(left_out > length)) return
-      parts = rest_of(left_out, length)
-      if (any(parts(2, :) < parts(1, :) - 1)) return
-      crc = new_crc()
+      if (status /= 0 .or. any(left_out < 0) .or. any(left_out > length)) return
       sum = 0
-      do i = 1, size(parts, 2)
-         do start = parts(1, i), parts(2, i), block_length
-            associate (part => block(:min(int(block_length, int64), parts(2, i) - start + 1)))
-               read (unit, pos=start, iostat=status) part
-               if (status /= 0) return
-               sum = crc%of(part, sum)
-            end associate
-         end do
+      do start = 0, length - 1, block_length
+         associate (part => block(:min(block_length, length - start)))
+            read (unit, pos=start + 1, iostat=status) part
+            if (status /= 0) return
+            sum = sum_of(part, start, left_out, sum)
+         end associate
       end do
-      sum = crc%of(transfer([reshape(left_out, [size(left_out)]), count], byte), sum)
+      sum = crc32(transfer([reshape(left_out, [size(left_out)]), count], byte), sum)
       is_sound = expected == unsigned(sum)
    end function is_sealed
+
+   !> Check sum of what is not left out of a part of a file
+   pure function sum_of(bytes, start, left_out, before) result(sum)
+      !> The part
+      integer(int8), intent(in), contiguous :: bytes(:)
+      !> Number of bytes before it in the file
+      integer(int64), intent(in) :: start
+      !> What is left out of the file, ascending, shape (2, n)
+      integer(int64), intent(in) :: left_out(:, :)
+      !> Sum of what is before it
+      integer(int32), intent(in) :: before
+      !> The sum
+      integer(int32) :: sum
+
+      integer(int64) :: first, last
+      integer :: i
+
+      sum = before
+      first = 1
+      do i = 1, size(left_out, 2)
+         last = min(left_out(1, i) - start, size(bytes, kind=int64))
+         if (last >= first) sum = crc32(bytes(first:last), sum)
+         first = max(first, left_out(1, i) + left_out(2, i) - start + 1)
+      end do
+      if (first <= size(bytes, kind=int64)) sum = crc32(bytes(first:), sum)
+   end function sum_of
+
+   !> A check sum as a number that is not negative
+   pure function unsigned(sum) result(number)
+      !> The sum
+      integer(int32), intent(in) :: sum
+      !> The number
+      integer(int64) :: number
+
+      number = ibits(int(sum, int64), 0, 32)
+   end function unsigned
 
    !> Whether a file ends where HDF5 says, or does not say where it ends in the way of this program
    function ends_well(unit, bytes) result(is_sound)

@@ -1,43 +1,65 @@
-!> Tables of results: named columns over one or more named dimensions, and what describes them
+!> Tables of results: named columns over one or more named dimensions
 !>
-!>     call new_table(summary, version, title, case_text)
-!>     call add_dimension(summary, "impact", rows)
-!>     call add_column(summary, "cor", cor, "1", "coefficient of restitution")
+!>     call new_table(summary, 'summary', title, case_text)
+!>     call add_dimension(summary, 'impact', rows)
+!>     call add_column(summary, 'cor', cor, '1', 'coefficient of restitution')
 !>
-!> A plain table has one dimension. Its coordinates are numbers of their own, such as the times of a
-!> history, or just the row numbers 1, 2, 3 ... A grid has more dimensions; the rows of its columns
-!> run through them with the last dimension the fastest, as in nested loops, the first one outside.
+!> All dimensions come before the first column. The rows of a column run through the dimensions with
+!> the last one the fastest, as in nested loops; its length is the product of their lengths.
 !>
-!> Building a table cannot fail at the caller's hand: the first fault (lengths that do not match, a
-!> name twice) is kept, and `check_table`, which every writer calls, makes an error of it. All
-!> components are public for the writers and for reading; they are set by the procedures below and
-!> those of `vcor_io_table_columns` only.
+!> A unit is `1` for numbers without dimension, such as ratios and counts, the SI unit otherwise, as
+!> in `m/s` and `N s`, and empty for text.
+!>
+!> Building a table raises no error: the first fault (lengths that do not match, a name twice) is
+!> kept, and `check_table`, which every writer calls, makes an error of it. All components are
+!> public for the writers; only the procedures below set them.
 module vcor_io_table
    use vcor_error, only : error_internal, error_t, raise
-   use vcor_io_column, only : column_t, describe, move_column
    use vcor_kinds, only : wp
+   use vcor_text, only : has_control
+   use vcor_version, only : version
    implicit none
    private
 
-   public :: table_t, dimension_t, fact_t
-   public :: new_table, add_fact, check_table, row_count, coordinate_row
-   public :: take_column, take_dimension
+   public :: table_t, column_t, fact_t, real_column, integer_column, text_column
+   public :: new_table, add_fact, add_dimension, add_column, move_in_column
+   public :: check_table, row_count, coordinate_row, place_in_table, join_texts, text_value
 
-   !> One dimension
-   type :: dimension_t
-      !> Coordinates; their name is that of the dimension, their number its length
-      type(column_t) :: coordinate
-      !> True if the coordinates are the numbers 1, 2, 3 ... and say nothing by themselves
+   !> What the values of a column are
+   integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
+
+   !> Named values of one kind: a column, or the coordinates of a dimension
+   type :: column_t
+      !> One line
+      character(len=:), allocatable :: name
+      !> `1` without dimension, empty for text
+      character(len=:), allocatable :: unit
+      !> What it is, one line
+      character(len=:), allocatable :: long_name
+      !> `real_column`, `integer_column` or `text_column`: which of the following is allocated
+      integer :: kind = real_column
+      !> Shape (length)
+      real(wp), allocatable :: reals(:)
+      !> Shape (length)
+      integer, allocatable :: integers(:)
+      !> All values one after the other, each `width` characters, padded with blanks: a million
+      !> texts need no memory of their own
+      character(len=:), allocatable :: texts
+      !> Characters per text
+      integer :: width = 0
+      !> Number of values
+      integer :: length = 0
+      !> True for the coordinates 1, 2, 3 ... that say nothing by themselves
       logical :: is_index = .false.
-   end type dimension_t
+   end type column_t
 
    !> A number that holds for a table as a whole
    type :: fact_t
-      !> Name, one word
+      !> One word
       character(len=:), allocatable :: name
       !> The number
       real(wp) :: value = 0.0_wp
-      !> Unit
+      !> Its unit
       character(len=:), allocatable :: unit
       !> What it is, one line
       character(len=:), allocatable :: long_name
@@ -45,47 +67,78 @@ module vcor_io_table
 
    !> A table
    type :: table_t
+      !> What its group in an HDF5 file is called
+      character(len=:), allocatable :: name
       !> Version of the program that made it
       character(len=:), allocatable :: version
       !> Title of the case
       character(len=:), allocatable :: title
       !> Full case, any number of lines
       character(len=:), allocatable :: case_text
-      !> Dimensions, the slowest first; those in use are 1 to `dimension_count`
-      type(dimension_t), allocatable :: dimensions(:)
-      !> Number of dimensions
-      integer :: dimension_count = 0
-      !> Columns; those in use are 1 to `column_count`
+      !> Coordinates of the dimensions, the slowest first
+      type(column_t), allocatable :: dimensions(:)
+      !> Columns
       type(column_t), allocatable :: columns(:)
-      !> Number of columns
-      integer :: column_count = 0
-      !> Numbers that hold for all of it; those in use are 1 to `fact_count`
-      type(fact_t) :: facts(4)
-      !> Number of these
-      integer :: fact_count = 0
-      !> First fault in building the table; not allocated if there is none
+      !> Numbers that hold for all of it
+      type(fact_t), allocatable :: facts(:)
+      !> First fault in building the table; unallocated if there is none
       character(len=:), allocatable :: fault
    end type table_t
+
+   !> Add a dimension: its name and length, or its name, coordinates, unit and meaning
+   interface add_dimension
+      module procedure add_index_dimension
+      module procedure add_real_dimension
+      module procedure add_integer_dimension
+      module procedure add_text_dimension
+   end interface add_dimension
+
+   !> Add a column: its name, values, unit and meaning
+   interface add_column
+      module procedure add_real_column
+      module procedure add_integer_column
+      module procedure add_text_column
+   end interface add_column
+
+   !> Add a column whose values move to the table, so that there are not two of a million
+   interface move_in_column
+      module procedure move_in_real_column
+      module procedure move_in_integer_column
+   end interface move_in_column
 
 contains
 
    !> Begin a table
-   pure subroutine new_table(table, version, title, case_text)
+   pure subroutine new_table(table, name, title, case_text)
       !> Table without dimensions and columns
       type(table_t), intent(out) :: table
-      !> Version of the program
-      character(len=*), intent(in) :: version
+      !> What its group in an HDF5 file is called
+      character(len=*), intent(in) :: name
       !> Title of the case
       character(len=*), intent(in) :: title
       !> Full case, any number of lines
       character(len=*), intent(in) :: case_text
 
+      table%name = name
       table%version = version
       table%title = trim(title)
       table%case_text = case_text
-      allocate(table%dimensions(4))
-      allocate(table%columns(32))
+      allocate (table%dimensions(0), table%columns(0), table%facts(0))
    end subroutine new_table
+
+   !> Check that a table is complete and sound
+   pure subroutine check_table(table, error)
+      !> Table to check
+      type(table_t), intent(in) :: table
+      !> Error of code `error_internal`: the first fault in building the table
+      type(error_t), allocatable, intent(out) :: error
+
+      if (allocated(table%fault)) then
+         call raise(error, error_internal, table%fault)
+      else if (size(table%dimensions) == 0) then
+         call raise(error, error_internal, 'the table has no dimension, expected at least one')
+      end if
+   end subroutine check_table
 
    !> Number of rows: the product of the lengths of the dimensions
    pure function row_count(table) result(rows)
@@ -93,12 +146,8 @@ contains
       type(table_t), intent(in) :: table
       !> Number of rows
       integer :: rows
-      integer :: i
 
-      rows = 1
-      do i = 1, table%dimension_count
-         rows = rows*table%dimensions(i)%coordinate%length
-      end do
+      rows = product(table%dimensions%length)
    end function row_count
 
    !> Which coordinate of a dimension a row has
@@ -111,152 +160,322 @@ contains
       integer, intent(in) :: row
       !> Number of the coordinate, from 1
       integer :: place
-      integer :: i, stride
 
-      stride = 1
-      do i = number + 1, table%dimension_count
-         stride = stride*table%dimensions(i)%coordinate%length
-      end do
-      place = mod((row - 1)/stride, table%dimensions(number)%coordinate%length) + 1
+      place = mod((row - 1)/product(table%dimensions(number + 1:)%length), &
+         table%dimensions(number)%length) + 1
    end function coordinate_row
 
-   !> Check that a table is complete and sound
-   pure subroutine check_table(table, error)
-      !> Table to check
+   !> Place of a dimension or a column
+   pure function place_in_table(table, name) result(place)
+      !> Table
       type(table_t), intent(in) :: table
-      !> Set to the first fault in building it
-      type(error_t), allocatable, intent(out) :: error
+      !> Name to look for
+      character(len=*), intent(in) :: name
+      !> Number of the dimension, or of the column after all dimensions; 0 if there is neither
+      integer :: place
 
-      if (allocated(table%fault)) then
-         call raise(error, error_internal, table%fault)
-      else if (table%dimension_count == 0) then
-         call raise(error, error_internal, "the table has no dimension, expected at least one")
-      end if
-   end subroutine check_table
+      do place = 1, size(table%dimensions)
+         if (table%dimensions(place)%name == name) return
+      end do
+      do place = size(table%dimensions) + 1, size(table%dimensions) + size(table%columns)
+         if (table%columns(place - size(table%dimensions))%name == name) return
+      end do
+      place = 0
+   end function place_in_table
+
+   !> Value of a text column
+   pure function text_value(column, row) result(text)
+      !> Text column
+      type(column_t), intent(in) :: column
+      !> Number of the value, from 1
+      integer, intent(in) :: row
+      !> The value, without blanks at its end
+      character(len=:), allocatable :: text
+
+      text = trim(column%texts((row - 1)*column%width + 1:row*column%width))
+   end function text_value
 
    !> Add a number that holds for a table as a whole
    pure subroutine add_fact(table, name, value, unit, long_name)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Name
+      !> One word
       character(len=*), intent(in) :: name
       !> The number
       real(wp), intent(in) :: value
-      !> Unit
+      !> Its unit
       character(len=*), intent(in) :: unit
-      !> What it is
+      !> What it is, one line
       character(len=*), intent(in) :: long_name
 
-      if (table%fact_count == size(table%facts)) then
-         table%fault = "a table has more facts than there is room for"
-         return
-      end if
-      table%fact_count = table%fact_count + 1
-      associate (fact => table%facts(table%fact_count))
-         fact%name = name
-         fact%value = value
-         fact%unit = unit
-         fact%long_name = long_name
-      end associate
+      table%facts = [table%facts, fact_t(name, value, unit, long_name)]
    end subroutine add_fact
 
-   !> Make room for a column and describe it; its values are set by the caller
-   pure subroutine take_column(table, name, unit, long_name, kind, length)
+   !> Add a dimension with the coordinates 1, 2, 3 ...
+   pure subroutine add_index_dimension(table, name, length)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Name of the column
+      !> Name of the dimension
       character(len=*), intent(in) :: name
-      !> Unit
-      character(len=*), intent(in) :: unit
-      !> What it is
-      character(len=*), intent(in) :: long_name
-      !> One of the kinds of columns
-      integer, intent(in) :: kind
-      !> Number of values
+      !> Its length, not negative
       integer, intent(in) :: length
-      type(column_t), allocatable :: more(:)
+
+      type(column_t) :: coordinates
       integer :: i
 
-      call check_name(table, name)
-      if (allocated(table%fault)) return
-      if (table%dimension_count == 0) then
-         table%fault = "column '"//name//"' comes before the first dimension of its table"
-         return
-      else if (length /= row_count(table)) then
-         table%fault = "column '"//name//"' has another length than its table"
-         return
-      end if
+      coordinates%integers = [(i, i=1, length)]
+      coordinates%is_index = .true.
+      call take_dimension(table, coordinates, name, '1', 'number of the '//name)
+   end subroutine add_index_dimension
 
-      ! Columns move to the larger array, their values stay where they are in memory
-      if (table%column_count == size(table%columns)) then
-         allocate(more(2*size(table%columns)))
-         do i = 1, table%column_count
-            call move_column(table%columns(i), more(i))
-         end do
-         call move_alloc(more, table%columns)
-      end if
-      table%column_count = table%column_count + 1
-      call describe(table%columns(table%column_count), name, unit, long_name, kind, length)
-   end subroutine take_column
-
-   !> Add a dimension
-   pure subroutine take_dimension(table, coordinate, is_index)
+   !> Add a dimension with real coordinates
+   pure subroutine add_real_dimension(table, name, values, unit, long_name)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Coordinates; not allocated afterwards
-      type(column_t), intent(inout) :: coordinate
-      !> Whether they are just numbers in a row
-      logical, intent(in) :: is_index
-      type(dimension_t), allocatable :: more(:)
+      !> Name, unit and meaning of the dimension
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Coordinates, shape (length)
+      real(wp), intent(in) :: values(:)
+
+      type(column_t) :: coordinates
+
+      coordinates%reals = values
+      call take_dimension(table, coordinates, name, unit, long_name)
+   end subroutine add_real_dimension
+
+   !> Add a dimension with whole numbers as coordinates
+   pure subroutine add_integer_dimension(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit and meaning of the dimension
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Coordinates, shape (length)
+      integer, intent(in) :: values(:)
+
+      type(column_t) :: coordinates
+
+      coordinates%integers = values
+      call take_dimension(table, coordinates, name, unit, long_name)
+   end subroutine add_integer_dimension
+
+   !> Add a dimension with names as coordinates
+   pure subroutine add_text_dimension(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit (empty) and meaning of the dimension
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Coordinates, shape (length); blanks at their ends do not count
+      character(len=*), intent(in) :: values(:)
+
+      type(column_t) :: coordinates
+
+      call join_texts(coordinates, values)
+      call take_dimension(table, coordinates, name, unit, long_name)
+   end subroutine add_text_dimension
+
+   !> Add a column of real numbers
+   pure subroutine add_real_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit and meaning of the column
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (rows); NaN and infinity are allowed
+      real(wp), intent(in) :: values(:)
+
+      type(column_t) :: column
+
+      column%reals = values
+      call take_column(table, column, name, unit, long_name)
+   end subroutine add_real_column
+
+   !> Add a column of whole numbers
+   pure subroutine add_integer_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit and meaning of the column
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (rows)
+      integer, intent(in) :: values(:)
+
+      type(column_t) :: column
+
+      column%integers = values
+      call take_column(table, column, name, unit, long_name)
+   end subroutine add_integer_column
+
+   !> Add a column of text
+   pure subroutine add_text_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit (empty) and meaning of the column
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (rows); blanks at their ends do not count
+      character(len=*), intent(in) :: values(:)
+
+      type(column_t) :: column
+
+      call join_texts(column, values)
+      call take_column(table, column, name, unit, long_name)
+   end subroutine add_text_column
+
+   !> Add a column of real numbers, which move
+   pure subroutine move_in_real_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit and meaning of the column
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (rows); unallocated afterwards
+      real(wp), allocatable, intent(inout) :: values(:)
+
+      type(column_t) :: column
+
+      call move_alloc(values, column%reals)
+      call take_column(table, column, name, unit, long_name)
+   end subroutine move_in_real_column
+
+   !> Add a column of whole numbers, which move
+   pure subroutine move_in_integer_column(table, name, values, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Name, unit and meaning of the column
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (rows); unallocated afterwards
+      integer, allocatable, intent(inout) :: values(:)
+
+      type(column_t) :: column
+
+      call move_alloc(values, column%integers)
+      call take_column(table, column, name, unit, long_name)
+   end subroutine move_in_integer_column
+
+   !> Set the values of a text column
+   pure subroutine join_texts(column, values)
+      !> Column to set
+      type(column_t), intent(inout) :: column
+      !> Values, shape (length)
+      character(len=*), intent(in) :: values(:)
+
       integer :: i
 
-      call check_name(table, coordinate%name)
-      if (allocated(table%fault)) return
-      if (table%column_count > 0) then
-         table%fault = "dimension '"//coordinate%name//"' comes after the first column of its table"
-         return
-      end if
+      column%width = 0
+      if (size(values) > 0) column%width = maxval(len_trim(values))
+      column%length = size(values)
+      allocate (character(len=column%width*size(values)) :: column%texts)
+      do i = 1, size(values)
+         column%texts((i - 1)*column%width + 1:i*column%width) = values(i)
+      end do
+   end subroutine join_texts
 
-      if (table%dimension_count == size(table%dimensions)) then
-         allocate(more(2*size(table%dimensions)))
-         do i = 1, table%dimension_count
-            more(i)%is_index = table%dimensions(i)%is_index
-            call move_column(table%dimensions(i)%coordinate, more(i)%coordinate)
-         end do
-         call move_alloc(more, table%dimensions)
+   !> Put a dimension at the end of a table, or keep the fault of it
+   pure subroutine take_dimension(table, coordinates, name, unit, long_name)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> Coordinates, which move
+      type(column_t), intent(inout) :: coordinates
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+
+      call describe(table, coordinates, name, unit, long_name)
+      if (allocated(table%fault)) return
+      if (size(table%columns) > 0) then
+         table%fault = "dimension '"//name//"' comes after the first column of its table"
+      else
+         call append(table%dimensions, coordinates)
       end if
-      table%dimension_count = table%dimension_count + 1
-      table%dimensions(table%dimension_count)%is_index = is_index
-      call move_column(coordinate, table%dimensions(table%dimension_count)%coordinate)
    end subroutine take_dimension
 
-   !> Keep a fault if a name is empty, not on one line or taken
-   pure subroutine check_name(table, name)
-      !> Table
+   !> Put a column at the end of a table, or keep the fault of it
+   pure subroutine take_column(table, column, name, unit, long_name)
+      !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Name of a new column or dimension
-      character(len=*), intent(in) :: name
-      logical :: taken
-      integer :: i
+      !> Column, whose values move
+      type(column_t), intent(inout) :: column
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+
+      call describe(table, column, name, unit, long_name)
+      if (allocated(table%fault)) return
+      if (size(table%dimensions) == 0) then
+         table%fault = "column '"//name//"' comes before the first dimension of its table"
+      else if (column%length /= row_count(table)) then
+         table%fault = "column '"//name//"' has another length than its table"
+      else
+         call append(table%columns, column)
+      end if
+   end subroutine take_column
+
+   !> Describe a column whose values are set; keep a fault if its name is empty, not on one line or
+   !> taken
+   pure subroutine describe(table, column, name, unit, long_name)
+      !> Table that it is for
+      type(table_t), intent(inout) :: table
+      !> Column with its values
+      type(column_t), intent(inout) :: column
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+
+      column%name = trim(name)
+      column%unit = trim(unit)
+      column%long_name = trim(long_name)
+      if (allocated(column%reals)) then
+         column%kind = real_column
+         column%length = size(column%reals)
+      else if (allocated(column%integers)) then
+         column%kind = integer_column
+         column%length = size(column%integers)
+      else
+         column%kind = text_column
+      end if
 
       if (allocated(table%fault)) return
       if (.not. allocated(table%columns)) then
          table%fault = "'"//name//"' is added to a table that was not begun"
-         return
+      else if (name == '') then
+         table%fault = 'a column of a table has no name'
+      else if (has_control(name)) then
+         table%fault = 'the name of a column of a table is not a single line of text'
+      else if (place_in_table(table, name) > 0) then
+         table%fault = "two columns of a table are called '"//name//"'"
       end if
-      taken = .false.
-      do i = 1, table%column_count
-         taken = taken .or. table%columns(i)%name == name
+   end subroutine describe
+
+   !> Move a column to the end of a list; the values of all of them stay where they are in memory
+   pure subroutine append(list, column)
+      !> Columns
+      type(column_t), allocatable, intent(inout) :: list(:)
+      !> Column to move
+      type(column_t), intent(inout) :: column
+
+      type(column_t), allocatable :: longer(:)
+      integer :: i
+
+      allocate (longer(size(list) + 1))
+      do i = 1, size(list)
+         call move(list(i), longer(i))
       end do
-      do i = 1, table%dimension_count
-         taken = taken .or. table%dimensions(i)%coordinate%name == name
-      end do
-      if (taken) table%fault = "two columns of a table are called '"//name//"'"
-      if (len_trim(name) == 0) table%fault = "a column of a table has no name"
-      do i = 1, len(name)
-         if (iachar(name(i:i)) < iachar(" ")) &
-            & table%fault = "the name of a column of a table is not a single line of text"
-      end do
-   end subroutine check_name
+      call move(column, longer(size(longer)))
+      call move_alloc(longer, list)
+
+   contains
+
+      !> Move one column
+      pure subroutine move(from, to)
+         !> Column without values afterwards
+         type(column_t), intent(inout) :: from
+         !> Where it goes
+         type(column_t), intent(inout) :: to
+
+         call move_alloc(from%name, to%name)
+         call move_alloc(from%unit, to%unit)
+         call move_alloc(from%long_name, to%long_name)
+         call move_alloc(from%reals, to%reals)
+         call move_alloc(from%integers, to%integers)
+         call move_alloc(from%texts, to%texts)
+         to%kind = from%kind
+         to%width = from%width
+         to%length = from%length
+         to%is_index = from%is_index
+      end subroutine move
+   end subroutine append
 
 end module vcor_io_table

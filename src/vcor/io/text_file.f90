@@ -12,9 +12,9 @@ module vcor_io_text_file
    !> Largest file that is read [bytes]; a case has a few hundred, a long Prony series a few
    !> thousand, a table of 10,000 points half a million
    integer, parameter :: largest_file = 4*1024**2
-   character(len=*), parameter :: too_large = "the file is larger than 4 MB, expected "
+   character(len=*), parameter :: too_large = 'the file is larger than 4 MB, expected '
    !> What a file is unless the caller says otherwise
-   character(len=*), parameter :: usual_kind = "a case file"
+   character(len=*), parameter :: usual_kind = 'a case file'
 
 contains
 
@@ -37,40 +37,40 @@ contains
       expected = usual_kind
       if (present(kind)) expected = kind
       if (len_trim(filename) == 0) then
-         call raise(error, error_file, "the name of the file is empty, expected that of "//expected)
+         call raise(error, error_file, 'the name of the file is empty, expected that of '//expected)
          return
       end if
       ! gfortran opens a directory as if it were a file
-      inquire(file=trim(filename)//"/.", exist=found)
+      inquire (file=trim(filename)//'/.', exist=found)
       if (found) then
          call raise(error, error_file, printable(filename) &
-            & //": found a directory, expected "//expected)
+            //': found a directory, expected '//expected)
          return
       end if
-      inquire(file=trim(filename), exist=found)
+      inquire (file=trim(filename), exist=found)
       if (.not. found) then
-         call raise(error, error_file, printable(filename)//": there is no such file")
+         call raise(error, error_file, printable(filename)//': there is no such file')
          return
       end if
-      open(newunit=unit, file=trim(filename), status="old", action="read", access="stream", &
-         & form="unformatted", iostat=status, iomsg=message)
+      open (newunit=unit, file=trim(filename), status='old', action='read', access='stream', &
+         form='unformatted', iostat=status, iomsg=message)
       if (status /= 0) then
-         call raise(error, error_file, printable(filename)//": cannot open the file: " &
-            & //reason(message))
+         call raise(error, error_file, printable(filename)//': cannot open the file: ' &
+            //reason(message))
          return
       end if
-      inquire(unit=unit, size=bytes)
+      inquire (unit=unit, size=bytes)
       if (bytes > largest_file) then
-         call raise(error, error_input, printable(filename)//": "//too_large//expected)
+         call raise(error, error_input, printable(filename)//': '//too_large//expected)
       else if (bytes > 0) then
-         allocate(character(len=int(bytes)) :: text)
-         read(unit, iostat=status, iomsg=message) text
+         allocate (character(len=int(bytes)) :: text)
+         read (unit, iostat=status, iomsg=message) text
          if (status /= 0) call raise(error, error_file, &
-            & printable(filename)//": cannot read the file: "//reason(message))
+            printable(filename)//': cannot read the file: '//reason(message))
       else
          call read_pipe(unit, filename, expected, text, error)
       end if
-      close(unit)
+      close (unit)
    end subroutine read_text_file
 
    !> Read what has no size beforehand, such as a pipe, byte by byte
@@ -91,17 +91,17 @@ contains
       integer :: status
 
       do
-         read(unit, iostat=status, iomsg=message) byte
+         read (unit, iostat=status, iomsg=message) byte
          if (status /= 0) exit
          call buffer%add(byte)
          if (buffer%length > largest_file) then
-            call raise(error, error_input, printable(filename)//": "//too_large//expected)
+            call raise(error, error_input, printable(filename)//': '//too_large//expected)
             return
          end if
       end do
       text = buffer%text()
       if (.not. is_iostat_end(status)) call raise(error, error_file, &
-         & printable(filename)//": cannot read the file: "//reason(message))
+         printable(filename)//': cannot read the file: '//reason(message))
    end subroutine read_pipe
 
    !> The system's reason out of a message of the compiler's library, which repeats the file name
@@ -112,7 +112,7 @@ contains
       !> What stands after the last colon
       character(len=:), allocatable :: text
 
-      text = shortened(trim(adjustl(message(index(message, ": ", back=.true.)+1:))))
+      text = shortened(trim(adjustl(message(index(message, ': ', back=.true.)+1:))))
    end function reason
 
 end module vcor_io_text_file

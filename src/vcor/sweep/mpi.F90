@@ -34,7 +34,7 @@ contains
 #endif
    end subroutine join_ranks
 
-   !> Finalise, after all ranks have come here
+   !> End: waits for all ranks
    subroutine leave_ranks()
 #ifdef VCOR_MPI
       call mpi_finalize()
