@@ -82,8 +82,8 @@ contains
       call build_material(sampled%case, sampled%item, material, error)
       if (allocated(error)) return
       sampled%name = material%name
-      sampled%density = material%density
-      sampled%poisson_ratio = material%poisson_ratio
+      sampled%density = material%density()
+      sampled%poisson_ratio = material%poisson_ratio()
       if (material%rigid .or. material%elastic()) then
          call raise(error, error_input, filename//": the material '"//printable(material%name) &
             //"' does not relax: nothing is there to be fitted")

@@ -6,7 +6,7 @@ module vcor_interval
    implicit none
    private
 
-   public :: interval_t, contains_number, is_computable, interval_text, largest, smallest
+   public :: interval_t, contains_number, is_within, is_computable, interval_text, largest, smallest
 
    !> Largest magnitude of a number that is read
    real(wp), parameter :: largest = 1.0e300_wp
@@ -39,14 +39,27 @@ contains
       !> True if it is within; false for NaN, infinity and magnitudes beyond what can be computed
       logical :: yes
 
-      yes = .false.
+      yes = is_within(range, number)
+      if (yes) yes = is_computable(number)
+   end function contains_number
+
+   !> Whether a number is finite and within the bounds of a range
+   pure function is_within(range, number) result(yes)
+      !> The range
+      type(interval_t), intent(in) :: range
+      !> The number, finite or not
+      real(wp), intent(in) :: number
+      !> True if it is
+      logical :: yes
+
       ! On its own, since comparing a NaN traps in a debug build
-      if (.not. ieee_is_finite(number)) return
-      yes = number >= range%lower .and. number <= range%upper
+      yes = ieee_is_finite(number)
+      if (.not. yes) return
+      yes = (number >= range%lower .or. range%lower <= -largest) &
+         .and. (number <= range%upper .or. range%upper >= largest)
       if (range%lower_open) yes = yes .and. number > range%lower
       if (range%upper_open) yes = yes .and. number < range%upper
-      yes = yes .and. is_computable(number)
-   end function contains_number
+   end function is_within
 
    !> Whether a finite number is zero or of a magnitude that can be computed with
    pure function is_computable(number) result(yes)

@@ -16,7 +16,7 @@ module vcor_material
    implicit none
    private
 
-   public :: material_t, material_data_t, new_material
+   public :: material_t, material_data_t, new_material, set_constants_of
    public :: models, identifiable_models, model_parameter_t, model_parameters, parameters_of
 
    !> Names of the models, separated by blanks
@@ -171,20 +171,17 @@ contains
    end subroutine set_list
 
    !> A number by the name of its parameter
-   pure function number(self, name, default)
+   pure function number(self, name)
       !> The description
       class(material_data_t), intent(in) :: self
       !> Name
       character(len=*), intent(in) :: name
-      !> Value where none was set; absent: 0
-      real(wp), intent(in), optional :: default
-      !> Its value
+      !> Its value, 0 where none was set
       real(wp) :: number
 
       integer :: place
 
       number = 0.0_wp
-      if (present(default)) number = default
       place = self%place_of(name)
       if (place > 0) number = self%value(place)%number
    end function number
@@ -242,6 +239,22 @@ contains
          end associate
       end do
    end function has_all_of
+
+   !> Give a material the density and Poisson's ratio of a description, as far as it has them
+   pure subroutine set_constants_of(material, data, error)
+      !> The material
+      class(material_t), intent(inout) :: material
+      !> The description
+      type(material_data_t), intent(in) :: data
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (data%place_of('density') > 0) &
+         call material%set_constants(error, density=data%number('density'))
+      if (allocated(error)) return
+      if (data%place_of('poisson_ratio') > 0) &
+         call material%set_constants(error, poisson_ratio=data%number('poisson_ratio'))
+   end subroutine set_constants_of
 
    !> Build a material
    subroutine new_material(material, data, error)
@@ -317,9 +330,7 @@ contains
          if (allocated(error)) return
          allocate (material, source=built)
          material%name = data%name
-         material%density = data%number('density')
-         material%poisson_ratio = data%number('poisson_ratio', default=0.5_wp)
-         call material%check_constants(error)
+         call set_constants_of(material, data, error)
          if (allocated(error)) deallocate (material)
       end subroutine accept
    end subroutine new_material

@@ -90,9 +90,10 @@ contains
       real(wp), intent(in), optional :: radius
 
       type(prony_t) :: rigid
+      type(error_t), allocatable :: error
 
       call new_rigid(rigid)
-      rigid%density = 7800.0_wp
+      call rigid%set_constants(error, density=7800.0_wp)
       call body_on_body(rigid, material, waves, velocity, impact, mass, radius)
    end subroutine rigid_on_plate
 
@@ -123,11 +124,12 @@ contains
       r = 0.01_wp
       if (present(radius)) r = radius
       m = usual_density
-      if (sphere%density > 0.0_wp) m = sphere%density
+      if (sphere%density() > 0.0_wp) m = sphere%density()
       m = 4.0_wp/3.0_wp*pi*r**3*m
       if (present(mass)) m = mass
       allocate (surface, source=material)
-      if (.not. surface%density > 0.0_wp) surface%density = usual_density
+      if (.not. surface%density() > 0.0_wp) &
+         call surface%set_constants(error, density=usual_density)
 
       call new_contact_modulus(modulus, sphere, surface, .false., error)
       if (.not. allocated(error)) call new_plate(plate, surface, half_thickness, waves, error)

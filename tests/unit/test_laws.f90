@@ -62,7 +62,7 @@ contains
       integer :: i, waves
 
       call new_elastic(material, 15.0e6_wp, error)
-      material%density = 1100.0_wp
+      call material%set_constants(error, density=1100.0_wp)
       call new_rigid(rigid)
       call new_contact_modulus(modulus, rigid, material, .false., error)
       do i = 1, size(lambda)
@@ -310,7 +310,7 @@ contains
          end do
          waves = random%among(waves_none, waves_relaxing)
          call new_prony(material, equilibrium, moduli(:n), rates(:n), 0.0_wp, error)
-         material%density = random%log_between(500.0_wp, 8000.0_wp)
+         call material%set_constants(error, density=random%log_between(500.0_wp, 8000.0_wp))
          call rigid_on_plate(material, waves, random%log_between(0.1_wp, 50.0_wp), impact, &
             mass=random%log_between(1.0e-3_wp, 0.1_wp), &
             radius=random%log_between(0.002_wp, 0.05_wp))

@@ -72,7 +72,7 @@ contains
       call check_close(terms%error, 0.0_wp, 0.0_wp, "and that sum exactly")
       call check(material%elastic(), "it is elastic")
       call check(.not. material%rigid, "it is not rigid")
-      material%poisson_ratio = 0.3_wp
+      call material%set_constants(error, poisson_ratio=0.3_wp)
       call check_relative(material%plane_strain_factor(), 1.0_wp/0.91_wp, rounding, &
          "plane strain factor 1/(1 - nu^2)")
    end subroutine test_elastic
@@ -363,7 +363,7 @@ contains
       call new_elastic(prony, -1.0_wp, error)
       call refused(error, "a negative modulus", "")
       call new_sls(prony, 0.0_wp, 1.0_wp, 2.0_wp, error)
-      call refused(error, "an SLS without glassy modulus", "glassy modulus")
+      call refused(error, "an SLS without glassy modulus", "glassy_modulus")
       call new_sls(prony, 1.0_wp, 2.0_wp, 1.0_wp, error)
       call refused(error, "an SLS that gets stiffer", "rubbery modulus exceeds")
       call new_sls(prony, 1.0_wp, -1.0_wp, 1.0_wp, error)
@@ -496,8 +496,9 @@ contains
          call check(allocated(material), data%model//" is there")
          if (.not. allocated(material)) cycle
          call check_text(material%name, 'some rubber', data%model//" has its name")
-         call check_close(material%density, 1100.0_wp, 0.0_wp, data%model//" has its density")
-         call check_close(material%poisson_ratio, 0.45_wp, 0.0_wp, data%model//": Poisson's ratio")
+         call check_close(material%density(), 1100.0_wp, 0.0_wp, data%model//" has its density")
+         call check_close(material%poisson_ratio(), 0.45_wp, 0.0_wp, &
+            data%model//": Poisson's ratio")
          call check(material%rigid .eqv. i == 1, data%model//": only the rigid body is rigid")
          select case (i)
          case (2)

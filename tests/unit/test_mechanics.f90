@@ -273,8 +273,7 @@ contains
       integer :: i, digits
 
       call make_rubber(rubber)
-      rubber%poisson_ratio = poisson_ratio
-      rubber%density = density
+      call rubber%set_constants(error, density, poisson_ratio)
       call rigid_on_plate(rubber, waves_relaxing, velocity, impact)
       impact%law%receding = .true.
       call make_product(0.0_wp, 1.0e-4_wp, product)
@@ -536,7 +535,7 @@ contains
       call new_prony(prony(3), 0.0_wp, [1.0e6_wp, 1.0e6_wp], [1.0e5_wp, 1.0_wp], 0.0_wp, error)
       call success(error, "a fluid is built")
       do i = 1, size(prony)
-         prony(i)%density = density
+         call prony(i)%set_constants(error, density=density)
          call new_plate(plate, prony(i), half_thickness, waves_hereditary, error)
          call success(error, "a hereditary plate is built")
          do j = 1, size(window)

@@ -86,8 +86,7 @@ contains
             [972.0_wp, 6426.0_wp, 34221.0_wp], 0.0_wp, error)
       end if
       call check(.not. allocated(error), "the material is built")
-      material%density = 1100.0_wp
-      material%poisson_ratio = 0.5_wp
+      call material%set_constants(error, density=1100.0_wp)
    end subroutine paper_material
 
    !> Both methods with and without the second term, on both plates

@@ -9,7 +9,7 @@ module vcor_case_blueprint
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t, material_t, new_material
+   use vcor_material, only : material_data_t, material_t, new_material, set_constants_of
    use vcor_solver, only : solver_settings_t
    use vcor_case_describe, only : describe_material, describe_solver, number
    use vcor_case_entries, only : entries_t
@@ -297,7 +297,7 @@ contains
       if (allocated(error)) return
       mass = self%mass
       if (.not. mass > 0.0_wp) &
-         mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density
+         mass = 4.0_wp/3.0_wp*pi*self%radius**3*self%sphere%material%density()
       ! modulus and plate are in their place already: copies of them would take longer than all else
       call new_impact(motion, self%velocity, mass, self%radius, self%surface_radius, no_modulus, &
          no_plate, error, self%law)
@@ -357,7 +357,7 @@ contains
          allocate (self%plate%material, source=self%sphere%material)
          self%plate%is_current = .true.
       else
-         call set_constants(self%plate)
+         call set_constants_of(self%plate%material, self%plate%data, error)
       end if
    end subroutine build_materials
 
@@ -371,7 +371,8 @@ contains
       type(place_t), intent(inout) :: cause
 
       if (body%is_current) then
-         call set_constants(body)
+         call set_constants_of(body%material, body%data, error)
+         if (allocated(error)) cause = place_t('material', 'name', body%item)
          return
       end if
       call new_material(body%material, body%data, error)
@@ -381,14 +382,5 @@ contains
       end if
       body%is_current = .true.
    end subroutine build_material_of
-
-   !> Set what does not take part in the modulus
-   pure subroutine set_constants(body)
-      !> The body, its material built
-      type(body_t), intent(inout) :: body
-
-      body%material%density = body%data%number('density')
-      body%material%poisson_ratio = body%data%number('poisson_ratio', default=0.5_wp)
-   end subroutine set_constants
 
 end module vcor_case_blueprint

@@ -6,7 +6,7 @@ module vcor_impact_contact
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
    use vcor_material_series, only : new_series
-   use vcor_material_signed_fit, only : fit_signed, signed_fit_times
+   use vcor_material_signed_fit, only : new_signed_fit, signed_fit_t
    use vcor_material_type, only : material_t
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, graded_rule
@@ -41,6 +41,8 @@ module vcor_impact_contact
       real(wp), allocatable :: node(:)
       !> Their weights, shape (n)
       real(wp), allocatable :: weight(:)
+      !> What fits sums of exponentials to a pair; not allocated where they need not be fitted
+      type(signed_fit_t), allocatable :: fit
    contains
       !> E'(t)
       procedure :: relaxation
@@ -68,8 +70,8 @@ contains
 
    !> Combine the materials of sphere and plate
    pure subroutine new_contact_modulus(self, sphere, plate, same, error, pair)
-      !> Contact modulus
-      type(contact_modulus_t), intent(out) :: self
+      !> Contact modulus; of an earlier one what fits its sums is kept, which takes longest to make
+      type(contact_modulus_t), intent(inout) :: self
       !> Material of the sphere
       class(material_t), intent(in) :: sphere
       !> Material of the plate
@@ -88,12 +90,12 @@ contains
       integer :: i
       real(wp), parameter :: ends(0:parts) = [(factor**(i - parts), i=0, parts)]
       type(prony_t) :: elastic
+      type(signed_fit_t), allocatable :: fit
       real(wp) :: a, b
       logical :: series
 
-      call sphere%check_constants(error)
-      if (.not. allocated(error)) call plate%check_constants(error)
-      if (allocated(error)) return
+      call move_alloc(self%fit, fit)
+      call clear(self)
       series = .false.
       if (present(pair)) series = pair == pair_series
       if (sphere%rigid .and. plate%rigid) then
@@ -128,8 +130,32 @@ contains
          self%first_factor = sphere%plane_strain_factor()
          self%second_factor = plate%plane_strain_factor()
          call graded_rule(ends, self%node, self%weight)
+         if (.not. expands(self)) then
+            if (.not. allocated(fit)) then
+               allocate (fit)
+               call new_signed_fit(fit)
+            end if
+            call move_alloc(fit, self%fit)
+         end if
       end if
    end subroutine new_contact_modulus
+
+   !> Forget what a modulus was
+   pure subroutine clear(self)
+      !> Contact modulus
+      type(contact_modulus_t), intent(out) :: self
+   end subroutine clear
+
+   !> Whether one body of a pair is elastic and the other one a sum of exponentials
+   pure function expands(self) result(yes)
+      !> Contact modulus of a pair
+      type(contact_modulus_t), intent(in) :: self
+      !> Whether it is
+      logical :: yes
+
+      yes = self%first%elastic() .and. self%second%discrete &
+         .or. self%second%elastic() .and. self%first%discrete
+   end function expands
 
    !> Contact modulus E'(t) at t > 0, Eq. (1)
    elemental function relaxation(self, t) result(value)
@@ -311,7 +337,7 @@ contains
    end function viscosity
 
    !> The contact modulus as a sum of exponentials
-   subroutine exponentials(self, window, accuracy, terms)
+   pure subroutine exponentials(self, window, accuracy, terms)
       !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
@@ -328,14 +354,14 @@ contains
 
       if (allocated(self%second)) then
          call expand_pair(self, window, accuracy, terms, is_found)
-         if (.not. is_found) call fit(terms)
+         if (.not. is_found) call fit_values(terms)
       else
          call self%first%exponentials(window, accuracy, one)
          terms = one%scaled(self%first_factor)
          ! a spectrum with peaks that no rule resolves
          if (self%series .and. .not. self%first%discrete .and. &
              terms%error > max(poor, far*accuracy)) then
-            call fit(one)
+            call fit_values(one)
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
          end if
@@ -344,12 +370,20 @@ contains
    contains
 
       !> Fit a sum to the values of the modulus
-      subroutine fit(terms)
+      pure subroutine fit_values(terms)
          !> The sum
          type(exponential_sum_t), intent(out) :: terms
 
-         call fit_signed(window, self%relaxation(window*signed_fit_times()), terms)
-      end subroutine fit
+         type(signed_fit_t) :: other
+
+         if (allocated(self%fit)) then
+            call self%fit%fit(window, self%relaxation(window*self%fit%time), terms)
+         else
+            ! seldom: an expansion that is too long, or a spectrum that no rule resolves
+            call new_signed_fit(other)
+            call other%fit(window, self%relaxation(window*other%time), terms)
+         end if
+      end subroutine fit_values
    end subroutine exponentials
 
    !> Sum of exponentials for a pair of an elastic body and one that is itself such a sum, in powers

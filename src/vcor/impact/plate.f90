@@ -91,14 +91,12 @@ contains
       real(wp), parameter :: largest = 1.0e60_wp
 
       if (waves == waves_none .or. material%rigid) return
-      call material%check_constants(error)
-      if (allocated(error)) return
       if (.not. half_thickness > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs a positive half_thickness')
-      else if (.not. material%density > 0.0_wp) then
+      else if (.not. material%density() > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its material')
-      else if (max(half_thickness, material%density) > largest &
-               .or. min(half_thickness, material%density) < 1.0_wp/largest) then
+      else if (max(half_thickness, material%density()) > largest &
+               .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
          call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
             //'that can be computed')
       else if (.not. material%glassy() > 0.0_wp .and. waves /= waves_hereditary) then
@@ -107,8 +105,8 @@ contains
       end if
       if (allocated(error)) return
 
-      self%coefficient = sqrt(3.0_wp*material%density/material%plane_strain_factor()) &
-         /(16.0_wp*material%density*half_thickness**2)
+      self%coefficient = sqrt(3.0_wp*material%density()/material%plane_strain_factor()) &
+         /(16.0_wp*material%density()*half_thickness**2)
       if (material%glassy() > 0.0_wp) self%initial = self%coefficient/sqrt(material%glassy())
       self%waves = waves
       if (waves == waves_hereditary) then

@@ -186,7 +186,7 @@ contains
    end function kernel_step_integrals
 
    !> The kernel as a sum of exponentials, Eq. (17): itself where it is one, else an approximation
-   subroutine kernel_exponentials(self, window, accuracy, terms)
+   pure subroutine kernel_exponentials(self, window, accuracy, terms)
       !> The impact
       class(impact_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0

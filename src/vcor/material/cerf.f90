@@ -3,11 +3,11 @@
 module vcor_material_cerf
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
    use vcor_constants, only : pi, sqrt_pi
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : equilibrium_modulus, parameter_t, poisson_ratio, positive, &
-      relaxing_modulus
+   use vcor_material_parameter, only : check_values, equilibrium_modulus, parameter_t, &
+      poisson_ratio, positive, relaxing_modulus
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    implicit none
@@ -55,11 +55,8 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. (equilibrium >= 0.0_wp .and. relaxing > 0.0_wp .and. beta > 0.0_wp)) then
-         call raise(error, error_input, &
-            'a CERF material needs equilibrium_modulus >= 0, relaxing_modulus > 0 and beta > 0')
-         return
-      end if
+      call check_values('cerf', cerf_parameters(2:), [equilibrium, relaxing, beta], error)
+      if (allocated(error)) return
 
       self%equilibrium = equilibrium
       self%relaxing = relaxing

@@ -7,8 +7,8 @@ module vcor_material_mittag_leffler
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_interval, only : interval_t
-   use vcor_material_parameter, only : equilibrium_modulus, parameter_t, poisson_ratio, positive, &
-      relaxing_modulus
+   use vcor_material_parameter, only : check_values, equilibrium_modulus, parameter_t, &
+      poisson_ratio, positive, relaxing_modulus
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
@@ -67,13 +67,11 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. (equilibrium >= 0.0_wp .and. relaxing > 0.0_wp .and. time > 0.0_wp)) then
-         call raise(error, error_input, 'a Mittag-Leffler material needs ' &
-            //'equilibrium_modulus >= 0, relaxing_modulus > 0 and time > 0')
-      else if (.not. (exponent > 0.0_wp .and. exponent < 1.0_wp)) then
-         call raise(error, error_input, &
-            'the exponent of a Mittag-Leffler material must lie between 0 and 1')
-      end if
+      call check_values('mittag_leffler', mittag_leffler_parameters(2:), &
+         [equilibrium, relaxing, exponent, time], error)
+      if (allocated(error)) return
+      if (.not. exponent < 1.0_wp) call raise(error, error_input, &
+         'with an exponent of 1 a Mittag-Leffler material is a Prony series of one term')
       if (allocated(error)) return
 
       self%equilibrium = equilibrium

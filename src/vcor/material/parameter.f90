@@ -2,7 +2,7 @@
 !> `&material`, the checks of its constructor and the bounds of a fit are made from it
 module vcor_material_parameter
    use vcor_error, only : error_input, error_t, raise
-   use vcor_interval, only : contains_number, interval_t, interval_text
+   use vcor_interval, only : interval_t, interval_text, is_within
    use vcor_kinds, only : wp
    use vcor_text, only : real_text
    implicit none
@@ -78,7 +78,7 @@ contains
       integer :: i
 
       do i = 1, size(parameters)
-         if (contains_number(parameters(i)%range, values(i))) cycle
+         if (is_within(parameters(i)%range, values(i))) cycle
          unit = ''
          if (parameters(i)%unit /= '') unit = ' ['//trim(parameters(i)%unit)//']'
          call raise(error, error_input, what//', '//trim(parameters(i)%name)//': found ' &

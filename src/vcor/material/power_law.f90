@@ -2,11 +2,11 @@
 !> Torvik fitted to BUTYL B252
 module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : between_0_and_1, equilibrium_modulus, parameter_t, &
-      poisson_ratio, positive
+   use vcor_material_parameter, only : between_0_and_1, check_values, equilibrium_modulus, &
+      parameter_t, poisson_ratio, positive
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    implicit none
@@ -58,12 +58,8 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (.not. (equilibrium >= 0.0_wp .and. coefficient > 0.0_wp)) then
-         call raise(error, error_input, &
-            'a power law needs equilibrium_modulus >= 0 and coefficient > 0')
-      else if (.not. (exponent > 0.0_wp .and. exponent < 1.0_wp)) then
-         call raise(error, error_input, 'the exponent of a power law must lie between 0 and 1')
-      end if
+      call check_values('power_law', power_law_parameters(2:), &
+         [equilibrium, coefficient, exponent], error)
       if (allocated(error)) return
 
       self%equilibrium = equilibrium

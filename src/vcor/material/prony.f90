@@ -6,8 +6,8 @@ module vcor_material_prony
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_material_parameter, only : equilibrium_modulus, linear, not_negative, parameter_t, &
-      poisson_ratio, positive
+   use vcor_material_parameter, only : check_values, equilibrium_modulus, linear, not_negative, &
+      parameter_t, poisson_ratio, positive
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -111,10 +111,9 @@ contains
 
       real(wp) :: rubbery_fraction
 
-      if (.not. glassy_modulus > 0.0_wp) then
-         call raise(error, error_input, &
-            'the glassy modulus of a standard linear solid must be positive')
-      else if (.not. (alpha >= 0.0_wp .and. beta >= alpha)) then
+      call check_values('sls', sls_parameters(2:), [glassy_modulus, alpha, beta], error)
+      if (allocated(error)) return
+      if (.not. beta >= alpha) then
          call raise(error, error_input, 'a standard linear solid needs 0 <= alpha <= beta, ' &
             //'or its rubbery modulus exceeds the glassy one')
       end if

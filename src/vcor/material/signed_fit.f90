@@ -6,10 +6,10 @@
 !> mixture of exponentials; a coarser one misses single relaxation times between its rates.
 !>
 !> In units of the window and of the mean modulus everything but the modulus is the same for all
-!> fits: samples, weights, rates, and so the factors Q R of the matrix. They are made once in a
-!> process; a fit is the product with Q^T, and R solved for. Columns are exchanged so that each is
-!> the one that depends least on those before it: with more of them the misfit falls and the moduli
-!> grow, and a fit takes as many as pay.
+!> fits: samples, weights, rates, and so the factors Q R of the matrix. They take some milliseconds
+!> and are made once; a fit is the product with Q^T, and R solved for. Columns are exchanged so that
+!> each is the one that depends least on those before it: with more of them the misfit falls and the
+!> moduli grow, and a fit takes as many as pay.
 module vcor_material_signed_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -18,7 +18,7 @@ module vcor_material_signed_fit
    implicit none
    private
 
-   public :: signed_fit_times, fit_signed
+   public :: signed_fit_t, new_signed_fit
 
    !> Times over the window up to which the integral of a modulus is found. The modulus may be
    !> singular at the beginning, and is smooth on the logarithmic scale afterwards
@@ -31,9 +31,10 @@ module vcor_material_signed_fit
    real(wp), parameter :: dependent(*) = [1.0e-13_wp, 1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
 
    !> What all fits have in common, in units of the window
-   type :: rule_t
+   type :: signed_fit_t
+      private
       !> Times of the samples, then the nodes of the integrals, shape (samples + nodes)
-      real(wp), allocatable :: time(:)
+      real(wp), allocatable, public :: time(:)
       !> Number of samples
       integer :: samples = 0
       !> Weights of the samples, shape (samples)
@@ -54,36 +55,26 @@ module vcor_material_signed_fit
       integer :: last(size(ends)) = 0
       !> Weights of the nodes, shape (nodes)
       real(wp), allocatable :: share(:)
-   end type rule_t
-
-   !> The rule, made by the first who needs it
-   type(rule_t) :: rule
-   !> Whether it is made
-   logical :: is_made = .false.
+   contains
+      !> Fit a modulus
+      procedure :: fit
+   end type signed_fit_t
 
 contains
 
-   !> Times at which a modulus has to be known to be fitted
-   function signed_fit_times() result(times)
-      !> Times over the window, 0 .. 1, shape (n)
-      real(wp), allocatable :: times(:)
+   !> Make what all fits have in common
+   pure subroutine new_signed_fit(self)
+      !> It; without factors, if LAPACK fails, the error of every sum is huge
+      type(signed_fit_t), intent(out) :: self
 
-      logical :: is_there
-
-!$omp critical (vcor_signed_fit)
-      if (.not. is_made) then
-         call set_nodes(rule)
-         call set_factors(rule, is_there)
-         is_made = is_there
-      end if
-!$omp end critical (vcor_signed_fit)
-      times = rule%time
-   end function signed_fit_times
+      call set_nodes(self)
+      call set_factors(self)
+   end subroutine new_signed_fit
 
    !> Samples, and nodes of the integrals
    pure subroutine set_nodes(self)
       !> The rule
-      type(rule_t), intent(inout) :: self
+      type(signed_fit_t), intent(inout) :: self
 
       ! slowest and fastest rate; ratio of two, logarithmic
       real(wp), parameter :: slowest = 0.2_wp, fastest = 1.0e7_wp, spacing = 0.15_wp
@@ -111,11 +102,9 @@ contains
    end subroutine set_nodes
 
    !> Factors of the matrix
-   pure subroutine set_factors(self, is_there)
+   pure subroutine set_factors(self)
       !> The rule, its nodes set
-      type(rule_t), intent(inout) :: self
-      !> Whether there are any
-      logical, intent(out) :: is_there
+      type(signed_fit_t), intent(inout) :: self
 
       real(wp), allocatable :: matrix(:, :), work(:)
       real(wp) :: tau(size(self%rate)), length(size(self%rate))
@@ -141,8 +130,7 @@ contains
          self%r = matrix(:n, :n)
          call dorgqr(self%samples, n, n, matrix, self%samples, tau, work, size(work), info)
       end if
-      is_there = info == 0
-      if (.not. is_there) return
+      if (info /= 0) return
       self%q = transpose(matrix(:, :n))
       self%rate = self%rate(pivot(:n))
       self%length = length(pivot(:n))
@@ -153,10 +141,12 @@ contains
    end subroutine set_factors
 
    !> Fit a modulus
-   pure subroutine fit_signed(window, modulus, terms)
+   pure subroutine fit(self, window, modulus, terms)
+      !> The rule
+      class(signed_fit_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Modulus at the times `signed_fit_times` of the window [Pa], >= 0, shape (n)
+      !> Modulus at the times `time` of the window [Pa], >= 0, shape (n)
       real(wp), intent(in) :: modulus(:)
       !> The sum, its moduli of either sign; its error is that which an impact feels, see
       !> `error_of_integral`, or that of the integral at earlier times
@@ -164,25 +154,25 @@ contains
 
       ! how much faster the term is that has decayed by the first sample
       real(wp), parameter :: faster = 1.0e3_wp
-      real(wp) :: moduli(size(rule%rate)), integrals(size(ends)), excess(checked), mean
+      real(wp) :: moduli(size(self%rate)), integrals(size(ends)), excess(checked), mean
       integer :: i, n
 
-      if (.not. is_made) then
+      if (.not. allocated(self%q)) then
          terms%error = huge(terms%error)
          allocate (terms%moduli(0), terms%rates(0))
          return
       end if
-      associate (integrand => rule%share*modulus(rule%samples + 1:), last => rule%last)
+      associate (integrand => self%share*modulus(self%samples + 1:), last => self%last)
          integrals(1) = sum(integrand(:last(1)))
          do i = 2, size(ends)
             integrals(i) = integrals(i - 1) + sum(integrand(last(i - 1) + 1:last(i)))
          end do
       end associate
       mean = integrals(size(ends))
-      call find_moduli(modulus(:rule%samples)/mean, integrals(checked)/mean, moduli, n, &
+      call find_moduli(self, modulus(:self%samples)/mean, integrals(checked)/mean, moduli, n, &
          terms%error)
       terms%equilibrium = mean*moduli(1)
-      terms%rates = [rule%rate(2:n), faster*maxval(rule%rate)]/window
+      terms%rates = [self%rate(2:n), faster*maxval(self%rate)]/window
       terms%moduli = mean*[moduli(2:n), 0.0_wp]
       ! the fastest term makes the integral up to the time from which on values count
       do i = 1, checked
@@ -192,13 +182,15 @@ contains
       ! what the impulse feels of the early error
       excess = abs(excess - excess(checked))/(integrals(checked)*window)
       terms%error = max(terms%error, maxval(excess))
-   end subroutine fit_signed
+   end subroutine fit
 
    !> Error that an impact feels: the force is the integral of the modulus with a rate that is
    !> smooth, and the error oscillates, so it is that of the integral from the time on from which
    !> values count. Loading and unloading may feel it with different signs: three times that one was
    !> never exceeded by more than a factor of two where it was above the rounding
-   pure function error_of_integral(deviation, sample, early) result(error)
+   pure function error_of_integral(self, deviation, sample, early) result(error)
+      !> The rule
+      type(signed_fit_t), intent(in) :: self
       !> Error at the samples, over the mean modulus, shape (samples)
       real(wp), intent(in) :: deviation(:)
       !> Modulus at the samples, over the mean, shape (samples)
@@ -216,8 +208,8 @@ contains
       lost = 0.0_wp
       whole = early
       do i = 2, size(sample)
-         if (rule%time(i - 1) < ends(checked)) cycle
-         step = 0.5_wp*(rule%time(i) - rule%time(i - 1))
+         if (self%time(i - 1) < ends(checked)) cycle
+         step = 0.5_wp*(self%time(i) - self%time(i - 1))
          lost = lost + step*(deviation(i - 1) + deviation(i))
          whole = whole + step*(sample(i - 1) + sample(i))
          error = max(error, felt*abs(lost)/whole)
@@ -225,7 +217,9 @@ contains
    end function error_of_integral
 
    !> Moduli of the rates, of as many as pay
-   pure subroutine find_moduli(sample, early, moduli, n, error)
+   pure subroutine find_moduli(self, sample, early, moduli, n, error)
+      !> The rule
+      type(signed_fit_t), intent(in) :: self
       !> Modulus at the samples over its mean, shape (samples)
       real(wp), intent(in) :: sample(:)
       !> Its integral up to the time from which on values count, over the mean
@@ -240,32 +234,32 @@ contains
       ! what a unit of the moduli costs: moduli of opposite signs cost digits, and so do the
       ! eigenvectors of the panels; 4e-15 were measured, more where the contact recedes
       real(wp), parameter :: lost = 2.0e-14_wp, lost_at_most = 1.0e-12_wp
-      real(wp), dimension(size(rule%rate)) :: right, x, late
+      real(wp), dimension(size(self%rate)) :: right, x, late
       real(wp), dimension(size(sample)) :: weighted, deviation
       real(wp) :: misfit, size_of_all, cost, least
       integer :: i, info
 
-      weighted = rule%weight*sample
-      right = matmul(rule%q, weighted)
-      late = exp(-rule%rate*ends(checked))
+      weighted = self%weight*sample
+      right = matmul(self%q, weighted)
+      late = exp(-self%rate*ends(checked))
       least = huge(least)
-      n = rule%ranks(1)
+      n = self%ranks(1)
       moduli = 0.0_wp
       error = huge(error)
       do i = 1, size(dependent)
          x = right
-         call dtrtrs('U', 'N', 'N', rule%ranks(i), 1, rule%r, size(x), x, size(x), info)
-         x(rule%ranks(i) + 1:) = 0.0_wp
-         x = x/rule%length
-         deviation = matmul(rule%decay, x) - sample
-         misfit = maxval(abs(deviation), mask=rule%time(:rule%samples) >= ends(checked))
+         call dtrtrs('U', 'N', 'N', self%ranks(i), 1, self%r, size(x), x, size(x), info)
+         x(self%ranks(i) + 1:) = 0.0_wp
+         x = x/self%length
+         deviation = matmul(self%decay, x) - sample
+         misfit = maxval(abs(deviation), mask=self%time(:self%samples) >= ends(checked))
          size_of_all = sum(abs(x*late))
          cost = misfit + lost_at_most*size_of_all
          if (cost >= least) cycle
          least = cost
-         n = rule%ranks(i)
+         n = self%ranks(i)
          moduli = x
-         error = error_of_integral(deviation, sample, early) + lost*size_of_all
+         error = error_of_integral(self, deviation, sample, early) + lost*size_of_all
       end do
    end subroutine find_moduli
 

@@ -1,23 +1,25 @@
 !> What a solver may ask of a linear viscoelastic material
 module vcor_material_type
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : pi
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_parameter, only : check_values, density_range => density, &
+      poisson_ratio_range => poisson_ratio
    implicit none
    private
 
    public :: material_t
 
-   !> A material; immutable once built, so that threads can share it
+   !> A material; what its modulus is made of does not change once it is built, so that threads can
+   !> share it
    type, abstract :: material_t
       !> Name that cases call it by
       character(len=:), allocatable :: name
-      !> Mass density [kg/m3], > 0; 0 = not known
-      real(wp) :: density = 0.0_wp
-      !> Poisson's ratio [-], -1 < nu <= 0.5, constant in time
-      real(wp) :: poisson_ratio = 0.5_wp
+      !> Mass density [kg/m3]; 0 = not known
+      real(wp), private :: mass_density = 0.0_wp
+      !> Poisson's ratio [-]
+      real(wp), private :: nu = 0.5_wp
       !> Does not deform at all: the modulus is infinite
       logical :: rigid = .false.
       !> Whether the modulus is a finite sum of exponentials, or is represented by one whatever the
@@ -49,8 +51,12 @@ module vcor_material_type
       procedure :: elastic
       !> Factor 1/(1 - nu^2) from E to the plane-strain modulus E' of Eq. (1)
       procedure :: plane_strain_factor
-      !> Check density and Poisson's ratio
-      procedure :: check_constants
+      !> Mass density
+      procedure :: density
+      !> Poisson's ratio
+      procedure :: poisson_ratio
+      !> Set both, within their ranges
+      procedure :: set_constants
    end type material_t
 
    abstract interface
@@ -138,29 +144,49 @@ contains
       !> 1/(1 - nu^2) [-]
       real(wp) :: factor
 
-      factor = 1.0_wp/(1.0_wp - self%poisson_ratio**2)
+      factor = 1.0_wp/(1.0_wp - self%nu**2)
    end function plane_strain_factor
 
-   !> Check density and Poisson's ratio, which whoever builds a material sets by himself
-   pure subroutine check_constants(self, error)
+   !> Mass density
+   elemental function density(self)
       !> The material
       class(material_t), intent(in) :: self
+      !> Density [kg/m3], > 0; 0 = not known
+      real(wp) :: density
+
+      density = self%mass_density
+   end function density
+
+   !> Poisson's ratio, constant in time
+   elemental function poisson_ratio(self)
+      !> The material
+      class(material_t), intent(in) :: self
+      !> The ratio [-], -1 < nu <= 0.5
+      real(wp) :: poisson_ratio
+
+      poisson_ratio = self%nu
+   end function poisson_ratio
+
+   !> Set density and Poisson's ratio, which do not take part in the relaxation modulus: for the one
+   !> who has built the material, before others share it
+   pure subroutine set_constants(self, error, density, poisson_ratio)
+      !> The material; unchanged on failure
+      class(material_t), intent(inout) :: self
       !> Error of code `error_input`, unallocated if both are within their ranges
       type(error_t), allocatable, intent(out) :: error
+      !> Density [kg/m3], > 0; absent: as it was, at first not known
+      real(wp), intent(in), optional :: density
+      !> Poisson's ratio, in (-1, 0.5]; absent: as it was, at first 0.5
+      real(wp), intent(in), optional :: poisson_ratio
 
-      logical :: sound
-
-      sound = ieee_is_finite(self%density)
-      if (sound) sound = self%density >= 0.0_wp
-      if (.not. sound) then
-         call raise(error, error_input, 'the density of a material must be a number >= 0 [kg/m3]')
-         return
-      end if
-      sound = ieee_is_finite(self%poisson_ratio)
-      if (sound) sound = self%poisson_ratio > -1.0_wp .and. self%poisson_ratio <= 0.5_wp
-      if (.not. sound) call raise(error, error_input, &
-         "Poisson's ratio of a material must be a number in (-1, 0.5]")
-   end subroutine check_constants
+      if (present(density)) call check_values('material', [density_range], [density], error)
+      if (allocated(error)) return
+      if (present(poisson_ratio)) &
+         call check_values('material', [poisson_ratio_range], [poisson_ratio], error)
+      if (allocated(error)) return
+      if (present(density)) self%mass_density = density
+      if (present(poisson_ratio)) self%nu = poisson_ratio
+   end subroutine set_constants
 
    !> Whether the modulus is constant: the material neither relaxes nor flows
    pure function elastic(self)

@@ -155,8 +155,8 @@ contains
 
       curves%name = material%name
       curves%rigid = material%rigid
-      curves%density = material%density
-      curves%poisson_ratio = material%poisson_ratio
+      curves%density = material%density()
+      curves%poisson_ratio = material%poisson_ratio()
       curves%viscosity = material%viscosity
       curves%glassy = material%glassy()
       curves%rubbery = material%rubbery()

@@ -16,7 +16,7 @@ program from_code
 
    call new_rigid(steel)
    call new_sls(rubber, glassy_modulus=15.0e6_wp, alpha=300.0_wp, beta=1200.0_wp, error=error)
-   rubber%poisson_ratio = 0.5_wp
+   if (.not. allocated(error)) call rubber%set_constants(error, poisson_ratio=0.5_wp)
    if (.not. allocated(error)) call new_contact_modulus(modulus, steel, rubber, .false., error)
    if (.not. allocated(error)) call new_plate(block, rubber, 0.0_wp, waves_none, error)
    if (.not. allocated(error)) call new_solver(solver, solver_settings_t(), error)
