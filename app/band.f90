@@ -7,6 +7,7 @@ module vcor_app_band
    use vcor_case_case, only : case_t
    use vcor_error, only : error_t
    use vcor_impact_trajectory, only : contact_separated
+   use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_study_reliance, only : find_reliance, reliance_t
    use vcor_sweep_quantity, only : quantities
@@ -51,7 +52,7 @@ contains
       type(reliance_t) :: reliance, worst
       type(case_t) :: case
       type(error_t), allocatable :: error
-      integer :: points(2), i, k, time, worst_point
+      integer :: points(2), i, k, time, worst_point, unseen
       logical, allocatable :: known(:)
 
       if (.not. (job%case%given('material', 'valid_from', item) &
@@ -79,6 +80,9 @@ contains
          worst = reliance
          worst_point = points(i)
       end do
+      unseen = 0
+      if (worst_point > 0 .and. worst%ends(1)) &
+         unseen = count(known .and. summary%values(time)%at <= worst%band(1))
       if (worst_point > 0) write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
          //message(worst, worst_point)
 
@@ -104,14 +108,18 @@ contains
          !> One line
          character(len=:), allocatable :: text
 
-         character(len=:), allocatable :: name, place
+         character(len=:), allocatable :: name, place, lead
 
          call job%case%get('material', 'name', name, item)
          place = ''
+         lead = ''
          if (job%sweep%is_grid()) place = ' (at '//coordinates(job, point)//')'
+         if (job%sweep%is_grid() .and. unseen > 0) lead = integer_text(unseen)//' of ' &
+            //integer_text(size(known))//" contacts lie wholly before the data of '" &
+            //printable(name)//"'; where cor changes most "
          associate (contact_time => summary%values(time)%at(point), &
                     cor => summary%values(place_of('cor'))%at(point))
-            text = 'the contact lasts '//short(contact_time)//' s'//place//', and ' &
+            text = lead//'the contact lasts '//short(contact_time)//' s'//place//', and ' &
                //share_outside(found%band, found%ends, contact_time)//" the data of '" &
                //printable(name)//"' ("
             if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'

@@ -176,7 +176,12 @@ contains
       !> Lines
       character(len=:), allocatable :: text
 
-      text = new_line('a')//'! method: '//job%method//new_line('a')
+      character(len=:), allocatable :: method
+
+      call job%case%get('solver', 'method', method)
+      text = job%method
+      if (method == 'auto') text = method//' ('//text//')'
+      text = new_line('a')//'! method: '//text//new_line('a')
       if (.not. job%case%given('solver', 'accuracy')) text = text//'! accuracy: ' &
          //short(default_accuracy(job%method))//new_line('a')
       if (job%sweep%is_grid()) then

@@ -1,7 +1,7 @@
 !> The files of a run, and its bare numbers
 module vcor_app_files
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : endings, job_t
+   use vcor_app_job, only : directory_of, job_t
    use vcor_error, only : error_t
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_io_csv, only : write_csv, write_rows
@@ -14,30 +14,12 @@ module vcor_app_files
    implicit none
    private
 
-   public :: make_place, write_files, write_numbers, threads_of
+   public :: write_files, write_numbers, threads_of
 
 contains
 
-   !> Make the folder that the files of a case go to
-   subroutine make_place(request, job, error)
-      !> The request
-      type(request_t), intent(in) :: request
-      !> The case
-      type(job_t), intent(in) :: job
-      !> Unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: directory
-
-      call job%case%get('output', 'directory', directory)
-      if (allocated(request%directory)) directory = request%directory
-      call make_directory(directory, error)
-   end subroutine make_place
-
    !> Write the files of a case
-   subroutine write_files(request, job, identity, summary, trajectory, files, error)
-      !> The request
-      type(request_t), intent(in) :: request
+   subroutine write_files(job, identity, summary, trajectory, files, error)
       !> The case
       type(job_t), intent(in) :: job
       !> What it is about
@@ -59,23 +41,23 @@ contains
       if (.not. any(job%writes)) return
       if (job%history) call history_table(course, summary%title, summary%case_text, trajectory)
 
-      call make_place(request, job, error)
+      call make_directory(directory_of(job), error)
       if (allocated(error)) return
       ! the sum over the data, where there are any
       remarks = remarks_of(identity)
       n = merge(1, 0, len(identity%data) > 0)
       if (job%history) then
-         if (job%writes(1)) call write_csv(job%path//trim(endings(1)), summary, error)
+         if (job%writes(1)) call write_csv(job%path//trim(job%endings(1)), summary, error)
          if (allocated(error)) return
-         if (job%writes(2)) call write_csv(job%path//trim(endings(2)), course, error)
+         if (job%writes(2)) call write_csv(job%path//trim(job%endings(2)), course, error)
          if (allocated(error)) return
-         if (job%writes(3)) call write_hdf5(job%path//trim(endings(3)), summary, error, &
+         if (job%writes(3)) call write_hdf5(job%path//trim(job%endings(3)), summary, error, &
             remarks(:n), more=[course])
       else
          call write_summary(name_of(1), name_of(3), summary, remarks(:n), error)
       end if
       if (allocated(error)) return
-      do i = 1, size(endings)
+      do i = 1, size(job%endings)
          if (job%writes(i)) files = files//'  written '//name_of(i)//new_line('a')
       end do
 
@@ -89,7 +71,7 @@ contains
          character(len=:), allocatable :: name
 
          name = ''
-         if (job%writes(i)) name = job%path//trim(endings(i))
+         if (job%writes(i)) name = job%path//trim(job%endings(i))
       end function name_of
    end subroutine write_files
 

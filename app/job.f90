@@ -10,8 +10,9 @@ module vcor_app_job
    use vcor_impact_problem, only : impact_t
    use vcor_io_case_reader, only : override, read_case
    use vcor_io_data_file, only : data_file, read_data
+   use vcor_io_drawing, only : split_path
+   use vcor_io_path, only : directory_exists, join_path, same_file
    use vcor_text, only : integer_text, printable
-   use vcor_io_path, only : join_path, same_file
    use vcor_nearest, only : suggestion
    use vcor_solver, only : method_for
    use vcor_sweep_part, only : new_part, part_t
@@ -20,7 +21,7 @@ module vcor_app_job
    implicit none
    private
 
-   public :: job_t, prepare, endings, material_endings, shard_text
+   public :: job_t, prepare, directory_of, endings, material_endings, shard_text
 
    !> Letters of the longest ending
    integer, parameter :: longest_ending = 24
@@ -58,84 +59,103 @@ contains
 
    !> Read, override, validate and build all cases of a request
    subroutine prepare(request, jobs, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The cases
+      !> The cases, shape (files of the request)
       type(job_t), allocatable, intent(out) :: jobs(:)
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: directory, stem, method, scheme
-      logical :: csv, hdf5, history
       integer :: i, j
 
       allocate (jobs(size(request%files)))
       do i = 1, size(jobs)
-         associate (job => jobs(i))
-            call read_case(job%case, request%files(i)%text, error)
-            if (allocated(error)) return
-            do j = 1, size(request%settings)
-               call override(job%case, request%settings(j)%text, error)
-               if (allocated(error)) return
-            end do
-            call job%case%validate(error)
-            if (.not. allocated(error)) call refuse_unread(job%case, &
-               any(request%command == ['material', 'fit     ']), error)
-            if (allocated(error)) return
-            call read_data(job%case, error)
-            if (allocated(error)) return
-            call new_sweep(job%sweep, job%case, error)
-            if (allocated(error)) return
-            if (.not. job%sweep%is_grid()) then
-               call single_impact(job%sweep, job%case, job%impact, error)
-            else if (request%command == 'verify') then
-               call raise(error, error_input, job%case%location('sweep', 'parameter', 1) &
-                  //': verify takes single impacts, found a &sweep group')
-            end if
-            if (allocated(error)) return
-            call check_names(request, job%sweep%grid, error)
-            if (allocated(error)) return
-
-            call job%case%get('solver', 'method', method)
-            call job%case%get('solver', 'scheme', scheme)
-            job%method = method_for(method, scheme)
-            call job%case%get('output', 'directory', directory)
-            if (allocated(request%directory)) directory = request%directory
-            call job%case%get('output', 'stem', stem)
-            job%path = join_path(directory, stem)
-            call check_output_name(job, 'directory', directory, error)
-            if (.not. allocated(error)) call check_output_name(job, 'stem', stem, error)
-            if (allocated(error)) return
-            job%part = new_part(job%sweep%grid%count(), 1, 1)
-            call job%case%get('output', 'csv', csv)
-            call job%case%get('output', 'hdf5', hdf5)
-            call job%case%get('output', 'history', history)
-            ! a time history is that of one impact
-            history = history .and. .not. job%sweep%is_grid()
-            job%history = history
-            if (request%command == 'material') then
-               job%endings = material_endings
-               job%writes = [csv, csv, csv, hdf5]
-            else
-               job%endings = endings
-               job%writes = [csv, csv .and. history, hdf5]
-            end if
-            ! bare numbers are for scripts, which would be surprised by files
-            if (size(request%names) > 0 .and. .not. allocated(request%directory)) &
-               job%writes = .false.
-            if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
-            call take_shard(request, job, error)
-            if (allocated(error)) return
-            if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
-               '--resume: no file is written that could be resumed; --print needs --output for it')
-            if (allocated(error)) return
-         end associate
+         call read_job(request, request%files(i)%text, jobs(i), error)
+         if (.not. allocated(error)) call name_files(request, jobs(i), error)
          do j = 1, i
-            call refuse_clash(request, jobs, i, j, error)
-            if (allocated(error)) return
+            if (.not. allocated(error)) call refuse_clash(request, jobs, i, j, error)
          end do
+         if (allocated(error)) return
       end do
    end subroutine prepare
+
+   !> Read, override, validate and build one case
+   subroutine read_job(request, filename, job, error)
+      type(request_t), intent(in) :: request
+      !> The case file
+      character(len=*), intent(in) :: filename
+      !> The case, the names of its files left out
+      type(job_t), intent(inout) :: job
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: method, scheme
+      integer :: i
+
+      call read_case(job%case, filename, error)
+      do i = 1, size(request%settings)
+         if (.not. allocated(error)) call override(job%case, request%settings(i)%text, error)
+      end do
+      if (.not. allocated(error)) call job%case%validate(error)
+      if (.not. allocated(error)) call refuse_unread(job%case, &
+         any(request%command == ['material', 'fit     ']), error)
+      if (.not. allocated(error)) call read_data(job%case, error)
+      if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
+      if (allocated(error)) return
+      if (.not. job%sweep%is_grid()) then
+         call single_impact(job%sweep, job%case, job%impact, error)
+      else if (request%command == 'verify') then
+         call raise(error, error_input, job%case%location('sweep', 'parameter', 1) &
+            //': verify takes single impacts, found a &sweep group')
+      end if
+      if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
+      if (allocated(error)) return
+      call job%case%get('solver', 'method', method)
+      call job%case%get('solver', 'scheme', scheme)
+      job%method = method_for(method, scheme)
+   end subroutine read_job
+
+   !> Find out which files a case writes, and where
+   subroutine name_files(request, job, error)
+      type(request_t), intent(in) :: request
+      !> A case that was read
+      type(job_t), intent(inout) :: job
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory, stem
+      logical :: csv, hdf5
+
+      call job%case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call job%case%get('output', 'stem', stem)
+      call check_output_name(job, 'directory', directory, error)
+      if (.not. allocated(error)) call check_output_name(job, 'stem', stem, error)
+      if (allocated(error)) return
+      job%path = join_path(directory, stem)
+      call job%case%get('output', 'csv', csv)
+      call job%case%get('output', 'hdf5', hdf5)
+      call job%case%get('output', 'history', job%history)
+      ! a time history is that of one impact
+      job%history = job%history .and. .not. job%sweep%is_grid()
+      if (request%command == 'material') then
+         job%endings = material_endings
+         job%writes = [csv, csv, csv, hdf5]
+      else
+         job%endings = endings
+         job%writes = [csv, csv .and. job%history, hdf5]
+      end if
+      ! bare numbers are for scripts, which would be surprised by files
+      if (size(request%names) > 0 .and. .not. allocated(request%directory)) job%writes = .false.
+      if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
+      job%part = new_part(job%sweep%grid%count(), 1, 1)
+      call take_shard(request, job, error)
+      if (allocated(error)) return
+      if (size(request%files) == 1) call take_file_name(request, job)
+      if (request%shards > 0) job%path = job%path//'_shard_'//integer_text(request%shard) &
+         //'_of_'//integer_text(request%shards)
+      if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
+         '--resume: no file is written that could be resumed; --print needs --output for it')
+   end subroutine name_files
 
    !> Check a name that files are written under
    subroutine check_output_name(job, key, name, error)
@@ -181,10 +201,46 @@ contains
          return
       end if
       job%part = new_part(job%part%points, request%shard, request%shards)
-      job%path = job%path//'_shard_'//number//'_of_'//parts
       ! what vcor merge reads
       job%writes = [.false., .false., .true.]
    end subroutine take_shard
+
+   !> The value of --output is the file itself, where one file is written and the name ends as its
+   !> name does
+   subroutine take_file_name(request, job)
+      type(request_t), intent(in) :: request
+      !> The case, whose path and ending change
+      type(job_t), intent(inout) :: job
+
+      character(len=:), allocatable :: directory, extension, name
+      integer :: one, last
+      logical :: is_file
+
+      if (.not. allocated(request%directory) .or. count(job%writes) /= 1) return
+      one = findloc(job%writes, .true., dim=1)
+      extension = trim(job%endings(one)(index(job%endings(one), '.'):))
+      call split_path(request%directory, directory, name)
+      last = len(name) - len(extension)
+      is_file = .not. directory_exists(request%directory)
+      if (is_file .and. last > 0) is_file = name(last + 1:) == extension
+      if (is_file .and. last > 0) then
+         job%path = directory//name(:last)
+         job%endings(one) = extension
+      end if
+   end subroutine take_file_name
+
+   !> Directory of the files of a case
+   pure function directory_of(job) result(directory)
+      type(job_t), intent(in) :: job
+      !> Its path, empty for the current one
+      character(len=:), allocatable :: directory
+
+      integer :: slash
+
+      slash = index(job%path, '/', back=.true.)
+      if (slash > 1) slash = slash - 1
+      directory = job%path(:slash)
+   end function directory_of
 
    !> Which shard, for messages
    function shard_text(part) result(text)

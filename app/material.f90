@@ -2,7 +2,7 @@
 module vcor_app_material
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : job_t
+   use vcor_app_job, only : directory_of, job_t
    use vcor_app_screen, only : short, significant
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor_case_case, only : case_t
@@ -49,15 +49,13 @@ contains
       if (allocated(error)) return
 
       call case%get('case', 'title', title)
-      call write_files(request, job, case, title, moduli, summary, files, error)
+      call write_files(job, case, title, moduli, summary, files, error)
       if (allocated(error) .or. request%quiet) return
       call write_stdout(report(job%case%source, title, moduli)//notes//files//nl, error)
    end subroutine show_materials
 
    !> Write the files
-   subroutine write_files(request, job, case, title, moduli, summary, files, error)
-      !> The request
-      type(request_t), intent(in) :: request
+   subroutine write_files(job, case, title, moduli, summary, files, error)
       !> What is written, and where
       type(job_t), intent(in) :: job
       !> The case, for the heads of the files
@@ -74,16 +72,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(table_t) :: curves(2)
-      character(len=:), allocatable :: directory
       integer :: i
 
       files = ''
       call moduli_tables(moduli, title, case%to_text(complete=.true.), summary, curves(1), &
          curves(2))
       if (.not. any(job%writes)) return
-      call case%get('output', 'directory', directory)
-      if (allocated(request%directory)) directory = request%directory
-      call make_directory(directory, error)
+      call make_directory(directory_of(job), error)
       if (.not. allocated(error) .and. job%writes(1)) &
          call write_csv(job%path//trim(job%endings(1)), summary, error)
       do i = 1, size(curves)

@@ -270,7 +270,7 @@ contains
       end do
       whole = identity
       whole%part = new_part(identity%part%points, 1, 1)
-      call look_at(path, [csv, .false., hdf5], whole, previous)
+      call look_at(path, endings, [csv, .false., hdf5], whole, previous)
 
       call summary_table(table, identity%title, identity%case_text, grid, summary)
       remarks = remarks_of(identity)

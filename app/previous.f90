@@ -2,7 +2,7 @@
 module vcor_app_previous
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : endings, job_t
+   use vcor_app_job, only : job_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_checkpoint, only : attach, checkpoint_t
    use vcor_io_file, only : write_stdout
@@ -40,13 +40,15 @@ contains
       !> What is there
       type(previous_t), intent(out) :: previous
 
-      call look_at(job%path, job%writes, expected, previous)
+      call look_at(job%path, job%endings, job%writes, expected, previous)
    end subroutine look_back
 
    !> Look for results in files of some names
-   subroutine look_at(path, writes, expected, previous)
+   subroutine look_at(path, endings, writes, expected, previous)
       !> Directory and stem of the files
       character(len=*), intent(in) :: path
+      !> What their names end with: summary as text, history, HDF5
+      character(len=*), intent(in) :: endings(:)
       !> Which are to be written, in the order of `endings`
       logical, intent(in) :: writes(:)
       !> What they should be about

@@ -87,11 +87,13 @@ contains
 
       call warn_of_bands(job, summary)
       call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-      call write_files(request, job, identity, table, worker%trajectory, files, trouble)
+      call write_files(job, identity, table, worker%trajectory, files, trouble)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, table, trouble)
+         if (.not. request%quiet .and. len(inexact(outcome)) > 0) &
+            call remark(job%case%source//': '//inexact(outcome))
       else if (.not. request%quiet) then
          call write_stdout(report(job%case%source, identity%title, &
             method_of(job, worker%trajectory), outcome, &
@@ -157,9 +159,7 @@ contains
 
       text = ''
       if (outcome%status /= contact_separated) return
-      if (outcome%misses()) call add('the estimated error, ' &
-         //short(max(outcome%cor_error, outcome%cor_sphere_error)) &
-         //', is above the accuracy asked for, '//short(outcome%accuracy))
+      if (len(inexact(outcome)) > 0) call add(inexact(outcome))
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
       call job%case%get('sphere', 'radius', radius)
@@ -210,6 +210,20 @@ contains
          text = text//as_line('note: '//line)
       end subroutine add
    end function remarks_on
+
+   !> What is said of a result that is less accurate than asked for
+   pure function inexact(outcome) result(text)
+      !> The outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Words; nothing where it is as accurate as asked for
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (outcome%status /= contact_separated) return
+      if (outcome%misses()) text = 'the estimated error, ' &
+         //short(max(outcome%cor_error, outcome%cor_sphere_error)) &
+         //', is above the accuracy asked for, '//short(outcome%accuracy)
+   end function inexact
 
    !> An impact without separation has no coefficient of restitution: say why
    subroutine end_of(job, outcome, trajectory, error)

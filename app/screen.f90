@@ -10,7 +10,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, short, shown, significant
+   public :: report, short, shown, significant, visible
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -148,18 +148,22 @@ contains
       end function share
    end function budget
 
-   !> A number, 0 where it is below the eight digits that the screen shows of its scale: that is
+   !> A number, 0 where it is below the digits that can be trusted of its scale: what is there is
    !> rounding and numerical error
-   pure function visible(value, scale)
-      !> The number
+   pure function visible(value, scale, digits)
       real(wp), intent(in) :: value
-      !> What it is a part of, > 0
+      !> What the number is a part of, > 0
       real(wp), intent(in) :: scale
-      !> The number, or 0
+      !> Digits of the scale, absent: 8
+      integer, intent(in), optional :: digits
       real(wp) :: visible
 
+      integer :: d
+
+      d = 8
+      if (present(digits)) d = digits
       visible = value
-      if (abs(value) <= 1.0e-8_wp*scale) visible = 0.0_wp
+      if (abs(value) <= 10.0_wp**(-d)*scale) visible = 0.0_wp
    end function visible
 
    !> A number with so many significant digits, right-justified

@@ -5,12 +5,12 @@ module vcor_app_sweep
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : make_place, threads_of, write_files, write_numbers
-   use vcor_app_job, only : endings, job_t, shard_text
+   use vcor_app_files, only : threads_of, write_files, write_numbers
+   use vcor_app_job, only : directory_of, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
       replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
-   use vcor_app_sweep_screen, only : coordinates, shard_report, sweep_report
+   use vcor_app_sweep_screen, only : coordinates, inexact, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : trajectory_t
@@ -19,7 +19,7 @@ module vcor_app_sweep
    use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout
    use vcor_io_identity, only : identity_of, identity_t, number_of
    use vcor_text, only : integer_text
-   use vcor_io_path, only : anything_at, quoted_path
+   use vcor_io_path, only : anything_at, make_directory, quoted_path
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
    use vcor_sweep_failures, only : failures_t
@@ -128,7 +128,7 @@ contains
             //' is given up, the sweep begins anew (--resume would go on with it)')
       else if (watch%keeps) then
          ! better now than after hours
-         call make_place(request, job, error)
+         call make_directory(directory_of(job), error)
       end if
       if (allocated(error)) return
       ! files do not hold why a point has no result: it is solved again, to the same bits
@@ -259,13 +259,15 @@ contains
       call warn_of_bands(job, summary)
       associate (identity => watch%identity)
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(request, job, identity, table, none, files, error)
+         call write_files(job, identity, table, none, files, error)
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
          call watch%old%remove()
          if (size(request%names) > 0) then
             call write_numbers(request, table, error)
+            if (failures%inexact > 0 .and. .not. request%quiet) &
+               call remark(job%case%source//': '//inexact(job, failures))
          else if (.not. request%quiet) then
             call write_stdout(sweep_report(job, identity%title, table, failures, files), error)
          end if
@@ -287,7 +289,7 @@ contains
 
       character(len=:), allocatable :: path
 
-      path = job%path//trim(endings(3))
+      path = job%path//trim(job%endings(3))
       call watch%file%close_as(path, error)
       if (.not. allocated(error) .and. .not. request%quiet) &
          call write_stdout(shard_report(job, watch%identity%title, failures, path), error)

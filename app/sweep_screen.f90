@@ -13,7 +13,7 @@ module vcor_app_sweep_screen
    implicit none
    private
 
-   public :: sweep_report, shard_report, coordinates
+   public :: sweep_report, shard_report, coordinates, inexact
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -41,7 +41,7 @@ contains
          //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
+      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
       if (history .and. any(job%writes)) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
@@ -66,7 +66,7 @@ contains
          //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', ' &
          //method_shown(job)//nl
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//inexact(job, failures)
+      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       text = text//nl//'  written '//path//nl//nl
    end function shard_report
 
@@ -188,14 +188,13 @@ contains
       type(job_t), intent(in) :: job
       !> What there is to say of the points
       type(failures_t), intent(in) :: failures
-      !> Lines
+      !> One line
       character(len=:), allocatable :: text
 
-      text = '  note: '//integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
+      text = integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
          //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
-         //'asked for'//nl &
-         //'            first at point '//integer_text(failures%first_inexact)//': ' &
-         //coordinates(job, failures%first_inexact)//nl
+         //'asked for, the first one is point '//integer_text(failures%first_inexact)//': ' &
+         //coordinates(job, failures%first_inexact)
    end function inexact
 
    !> Parameters of a point

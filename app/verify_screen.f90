@@ -1,7 +1,7 @@
 !> What the screen shows of verifications
 module vcor_app_verify_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_app_screen, only : short, significant
+   use vcor_app_screen, only : short, significant, visible
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
@@ -117,7 +117,8 @@ contains
                text = text//significant(this%outcome%cor, 8, 16) &
                   //significant(this%outcome%cor_sphere, 8, 16) &
                   //significant(this%outcome%contact_time, 8, 18) &
-                  //significant(this%outcome%residual_indentation, 8, 26)//nl
+                  //significant(visible(this%outcome%residual_indentation, &
+                  this%outcome%max_indentation), 8, 26)//nl
             end if
          end associate
       end do
@@ -178,13 +179,24 @@ contains
       do i = 1, size(comparison%compared)
          associate (this => comparison%compared(i))
             name = this%name
-            text = text//'  '//name//significant(this%value(attempt_first), 12, 19)
-            if (comparison%two_methods) &
-               text = text//significant(this%value(attempt_refined), 12, 19)
-            text = text//significant(this%direct%limit, 12, 19)//order_text(this%direct%order) &
+            text = text//'  '//name//value_text(this%value(attempt_first))
+            if (comparison%two_methods) text = text//value_text(this%value(attempt_refined))
+            text = text//value_text(this%direct%limit)//order_text(this%direct%order) &
                //right(integer_text(this%digits), 8)//nl
          end associate
       end do
+
+   contains
+
+      !> A value of the quantity, 0 where no digit of it can be trusted
+      function value_text(value)
+         real(wp), intent(in) :: value
+         character(len=:), allocatable :: value_text
+
+         associate (this => comparison%compared(i))
+            value_text = significant(visible(value, this%scale, this%digits), 12, 19)
+         end associate
+      end function value_text
    end function values_text
 
    !> Distances of all solutions from the best value

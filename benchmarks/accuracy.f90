@@ -8,9 +8,10 @@
 !> that cannot do an impact, or takes longer than half a second for it, has no row
 program accuracy
    use, intrinsic :: iso_fortran_env, only : error_unit, output_unit
-   use vcor, only : case_t, error_t, override, read_case, read_case_text, real_text, wp
+   use vcor, only : case_t, error_t, override, read_case, read_case_text, wp
    use vcor_benchmark_reference, only : reference_cor
    use vcor_benchmark_stopwatch, only : measure, measurement_t, seconds, stop_on
+   use vcor_text, only : real_text
    implicit none
 
    !> Longest time of an impact [s]

@@ -1,8 +1,9 @@
 !> Time per impact, as every benchmark takes it
 module vcor_benchmark_stopwatch
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor, only : build_impact, build_solver, case_t, error_t, evaluate, impact_t, outcome_t, &
-      solver_t, trajectory_t, wp
+   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, outcome_t, solver_t, &
+      trajectory_t, wp
+   use vcor_impact_outcome, only : evaluate
    implicit none
    private
 

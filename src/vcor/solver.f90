@@ -1,13 +1,15 @@
 !> Solvers by the name of their method
 module vcor_solver
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver_auto, only : auto_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_marching, only : marching_t, new_marching
    use vcor_solver_product, only : new_product, product_t
-   use vcor_solver_solution, only : solve_impact
+   use vcor_solver_solution, only : solve_by => solve_impact
    use vcor_solver_type, only : solver_t
    implicit none
    private
@@ -60,6 +62,12 @@ module vcor_solver
       !> Go on after the separation
       logical :: ghost = .false.
    end type solver_settings_t
+
+   !> Solve an impact: by a solver, or by the one that a case without &solver has
+   interface solve_impact
+      procedure :: solve_by
+      module procedure solve_in_short
+   end interface solve_impact
 
    !> Build a solver
    interface new_solver
@@ -161,6 +169,26 @@ contains
          call raise(error, error_input, hereditary_without_papers_scheme)
       end if
    end subroutine check_mechanics
+
+   !> Solve an impact by the method auto, or as it is to be solved
+   subroutine solve_in_short(impact, outcome, error, settings)
+      type(impact_t), intent(in) :: impact
+      !> Its outcome; one that is no separation has a status and no numbers
+      type(outcome_t), intent(out) :: outcome
+      !> Error of code `error_input` if the settings do not go with the impact, `error_numerical` if
+      !> the solution fails or is far from the accuracy asked for; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> How it is to be solved; absent: all defaults
+      type(solver_settings_t), intent(in), optional :: settings
+
+      class(solver_t), allocatable :: solver
+      type(solver_settings_t) :: wanted
+      type(trajectory_t) :: trajectory
+
+      if (present(settings)) wanted = settings
+      call new_solver(solver, wanted, impact, error)
+      if (.not. allocated(error)) call solve_by(solver, impact, trajectory, outcome, error)
+   end subroutine solve_in_short
 
    !> Build a solver for an impact
    subroutine new_solver_for_impact(solver, settings, impact, error)

@@ -107,7 +107,7 @@ class Vcor:
 
     def numbers(self, *words, **options):
         """All columns of the summary as text, by name."""
-        values = self.succeeds("run", *words, "--print", ALL, **options).split()
+        values = self.succeeds("run", *words, "--print", ALL, "--quiet", **options).split()
         assert len(values) == len(NAMES)
         return dict(zip(NAMES, values, strict=True))
 

@@ -704,6 +704,19 @@ def test_sweep_leans(vcor):
     assert "impact.velocity = 50" in done.err
 
 
+def test_contacts_of_a_sweep_before_all_data(vcor):
+    """How many of the contacts the data do not see at all is said first, then the change of cor."""
+    words = [PAPER.parent / "sweeps" / "butyl_power_law_velocity.nml", "--set", "sweep.count=3"]
+    times = vcor.succeeds("run", *words, "--print", "contact_time").split()
+    middle = sorted(map(float, times))[1]
+    done = vcor("run", *words, "--quiet", "--set", f"butyl.valid_from={1.01 * middle}")
+    assert done.code == SUCCESS and done.err.count("\n") == 1
+    assert "2 of 3 contacts lie wholly before the data of 'butyl'; where cor changes" in done.err
+    assert "cor changes by" in done.err
+    done = vcor("run", *words, "--quiet", "--set", "butyl.valid_from=1e-6")
+    assert "wholly" not in done.err
+
+
 def test_band_of_a_fit(vcor):
     """What fit writes, run reads. Of the kernel before 1 us, which carries 1e-2, the fit makes up
     one half."""

@@ -6,7 +6,7 @@ from itertools import product
 import h5py
 import pytest
 from cases import SLS, case_text, edit
-from program import FILE, INPUT, NAMES, NUMERICAL, complaint, contents
+from program import FILE, INPUT, NAMES, NUMERICAL, SUCCESS, complaint, contents
 
 FLAGS = list(product([True, False], repeat=3))
 
@@ -43,6 +43,42 @@ def test_which_files(vcor, csv, hdf5, history):
     if hdf5:
         with h5py.File(folder / "case.h5") as file:
             assert set(file) == ({"summary", "history"} if history else {"summary"})
+
+
+def test_output_names_the_file_where_there_is_one(sls):
+    """--output y.h5 is the file, as of fit and plot; of several files, or cases, it is the folder."""
+    words = ["run", "case.nml", "--set"]
+    out = sls.succeeds(*words, "output.csv=.false.", "--output", "y.h5")
+    assert "  written y.h5\n" in out and results(sls.folder) == {"y.h5"}
+    assert (sls.folder / "y.h5").is_file()
+    sls.succeeds(*words, "output.csv=.false.", "--output", "a/b/z.h5", "--quiet")
+    assert results(sls.folder / "a/b") == {"z.h5"}
+    only = ["output.hdf5=.false.", "--set", "output.history=.false.", "--output", "z.csv"]
+    sls.succeeds(*words, *only)
+    assert (sls.folder / "z.csv").read_text().startswith("# vcor")
+    # what is there is seen under that name
+    done = sls(*words, "output.csv=.false.", "--output", "y.h5", "--set", "impact.velocity=2")
+    assert done.code == SUCCESS and "replaced: 'y.h5' is of another" in done.out + done.err
+    # another extension, several files, a folder of this name
+    sls.succeeds(*words, "output.csv=.false.", "--output", "y.csv", "--quiet")
+    assert results(sls.folder / "y.csv") == {"case.h5"}
+    sls.succeeds("run", "case.nml", "--output", "w.h5", "--quiet")
+    assert results(sls.folder / "w.h5") == {"case_summary.csv", "case.csv", "case.h5"}
+    assert sls(*words, "output.csv=.false.", "--output", "w.h5", "--quiet").code == SUCCESS
+    assert results(sls.folder / "w.h5") == {"case_summary.csv", "case.csv", "case.h5"}
+    sls.succeeds("material", "case.nml", "--set", "output.csv=.false.", "--output", "m.h5")
+    assert (sls.folder / "m.h5").is_file()
+
+
+def test_output_names_the_file_of_a_sweep(vcor):
+    text = SLS + "&sweep parameter = 'impact.velocity', values = 1, 2, 3 /\n"
+    vcor.write(text + "&output csv = .false. /\n" if "&output" not in SLS else text)
+    words = ["run", "case.nml", "--set", "output.csv=.false.", "--output", "y.h5"]
+    vcor.succeeds(*words)
+    assert results(vcor.folder) == {"y.h5"}
+    assert "finished" in vcor.succeeds(*words, "--resume")
+    vcor.succeeds(*words[:-1], "s.h5", "--shard", "2/3")
+    assert results(vcor.folder) == {"y.h5", "s_shard_2_of_3.h5"}
 
 
 @pytest.mark.parametrize("value", ["F", ".F.", "false", ".FALSE."])

@@ -433,7 +433,20 @@ def test_error_above_the_accuracy(table):
     for share, code, notes in [(1.1, 0, 0), (0.9, 0, 1), (0.011, 0, 1), (0.009, NUMERICAL, 0)]:
         done = table("run", "case.nml", *ive, f"solver.accuracy={share * error}")
         assert (done.code, done.out.count(note)) == (code, notes)
+    bare = ["run", "case.nml", *ive, f"solver.accuracy={0.1 * error}", "--print", "cor"]
+    done = table(*bare)
+    assert done.code == 0 and done.out.count("\n") == 1
+    assert done.err.count("\n") == 1 and done.err.startswith("vcor: note: case.nml: ")
+    assert note in done.err
+    done = table(*bare, "--quiet")
+    assert (done.code, done.err) == (0, "")
     table.write(TABLE + "&sweep parameter = 'impact.velocity', values = 10, 20 /\n")
+    done = table(*bare)
+    assert done.code == 0 and done.out.count("\n") == 2
+    assert done.err.count("\n") == 1
+    assert f"vcor: note: case.nml: 2 of 2 points have an estimated error {note}" in done.err
+    done = table(*bare, "--quiet")
+    assert (done.code, done.err) == (0, "")
     words = ["run", "case.nml", "--output", "other"]
     out = table.succeeds(*words, *ive, f"solver.accuracy={0.1 * error}")
     assert f"2 of 2 points have an estimated error {note}" in out

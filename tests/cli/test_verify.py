@@ -67,6 +67,17 @@ def digits(out):
     return found
 
 
+def test_nothing_left_is_shown_as_zero(vcor):
+    """An elastic contact leaves no indentation: what rounding leaves is none."""
+    vcor.write(case_text("elastic"))
+    lines = vcor.succeeds("verify", "case.nml").splitlines()
+    (values,) = [line.split() for line in lines if re.match(r"  residual_indentation .* \d+$", line)]
+    assert values[1:4] == ["0", "0", "0"]
+    first = next(i for i, line in enumerate(lines) if "residual_indentation [m]" in line)
+    shown = [line.split()[-1] for line in lines[first + 1 :] if line]
+    assert len(shown) == 10 and set(shown) == {"0"}
+
+
 # ------------------------------------------------------------------------------ the table of laws
 
 

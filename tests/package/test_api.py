@@ -48,3 +48,23 @@ def test_the_first_page_has_the_example(pages):
     first = (pages[0] / "index.html").read_text(encoding="utf-8")
     assert "from_code" in first and "new_contact_modulus" in first
     assert "[[" not in first and "{!" not in first
+
+
+def names_in(text, pattern):
+    """Names of a list that a statement of Fortran has, its continuation lines joined."""
+    found = set()
+    for part in re.findall(pattern, re.sub(r"&\s*\n\s*", "", text)):
+        found |= {name.strip() for name in part.split(",")}
+    return found
+
+
+def test_the_facade_is_used():
+    """A program that uses module vcor alone takes every name of it; so do the examples."""
+    facade = (ROOT / "src/vcor.f90").read_text()
+    public = names_in(facade, r"public :: (.*)")
+    assert 50 < len(public) < 80
+    text = (ROOT / "tests/unit/test_library.f90").read_text()
+    assert names_in(text, r"use vcor, only : (.*)") == public
+    assert set(re.findall(r"use (\w+), only", text)) == {"vcor", "vcor_test"}
+    for name in public:
+        assert len(re.findall(rf"\b{name}\b", text)) > 1, f"{name} is not used"

@@ -34,7 +34,7 @@ contains
 #endif
    end subroutine join_ranks
 
-   !> End: waits for all ranks
+   !> Finalise, after all ranks have come here
    subroutine leave_ranks()
 #ifdef VCOR_MPI
       call mpi_finalize()

@@ -1,7 +1,7 @@
 !> The impact of a case file, with another velocity
 program from_case
-   use vcor, only : build_impact, build_solver, case_t, error_t, evaluate, impact_t, outcome_t, &
-      override, read_case, solver_t, trajectory_t
+   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, outcome_t, override, &
+      read_case, solve_impact, solver_t, trajectory_t
    implicit none
    type(case_t) :: case
    type(impact_t) :: impact
@@ -15,11 +15,10 @@ program from_case
    if (.not. allocated(error)) call case%validate(error)
    if (.not. allocated(error)) call build_impact(case, impact, error)
    if (.not. allocated(error)) call build_solver(case, impact, solver, error)
-   if (.not. allocated(error)) call solver%solve(impact, trajectory, error)
+   if (.not. allocated(error)) call solve_impact(solver, impact, trajectory, outcome, error)
    if (allocated(error)) then
       print '(a)', error%message
       stop 1
    end if
-   outcome = evaluate(impact, trajectory)
    print '(a, f11.8, a, es8.1)', 'COR ', outcome%cor, ' +- ', outcome%cor_error
 end program from_case

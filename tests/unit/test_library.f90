@@ -1,0 +1,278 @@
+!> The public interface as another program uses it: every name of module vcor, and no other module
+!> of the library. What the procedures compute is tested where they are; here it is that they fit
+!> together
+program test_library
+   use vcor, only : build_impact, build_material, build_solver, case_t, cerf_t, contact_lasting, &
+      contact_law_t, contact_modulus_t, contact_separated, contact_sticking, error_file, &
+      error_input, error_numerical, error_t, error_usage, failures_t, fit_material, fit_t, &
+      history_table, impact_t, material_t, mittag_leffler_t, new_cerf, new_contact_law, &
+      new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, new_part, new_plate, &
+      new_power_law, new_prony, new_rigid, new_sls, new_solver, new_summary, new_sweep, &
+      new_tabulated, outcome_t, override, pair_eq1, pair_series, parameter_t, plate_t, &
+      power_law_t, prony_t, quantities, read_case, read_case_text, read_data, samples_t, &
+      solve_impact, solve_points, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
+      table_t, tabulated_t, trajectory_t, version, waves_constant, waves_frozen, &
+      waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
+   use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
+   implicit none
+
+   !> COR of the paper's SLS plate at 10 m/s by `vcor verify`, and the accuracy of method ive
+   real(wp), parameter :: sls_cor = 0.431986898647_wp, tolerance = 1.0e-8_wp
+   !> The same case by a file
+   character(len=*), parameter :: sls_file = 'examples/paper/sls.nml'
+
+   call suite("library")
+   call check(index(version, '.') > 0, "the version has a dot")
+   call test_materials()
+   call test_impacts()
+   call test_case()
+   call test_errors()
+   call test_sweep()
+   call test_fit()
+   call finish()
+
+contains
+
+   !> Check that nothing went wrong
+   subroutine success(error, what)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(in) :: error
+      !> What was done
+      character(len=*), intent(in) :: what
+
+      if (allocated(error)) then
+         call check(.false., what//": "//error%message)
+      else
+         call check(.true., what)
+      end if
+   end subroutine success
+
+   !> One modulus of each model: E = 1 + 2 f(t) MPa at t = 1 s
+   subroutine test_materials()
+      real(wp), parameter :: mega = 1.0e6_wp, e = exp(1.0_wp)
+      type(prony_t) :: prony
+      type(power_law_t) :: power_law
+      type(cerf_t) :: cerf
+      type(mittag_leffler_t) :: mittag_leffler
+      type(tabulated_t) :: tabulated
+      type(error_t), allocatable :: error
+
+      call new_rigid(prony)
+      call check(prony%rigid, "a rigid body is one")
+      call new_elastic(prony, mega, error)
+      call success(error, "an elastic solid is built")
+      call compare(prony, 1.0_wp, "elastic")
+      call new_sls(prony, 3.0_wp*mega, 1.0_wp, 3.0_wp, error)
+      call success(error, "an SLS is built")
+      call compare(prony, 1.0_wp + 2.0_wp*e**(-3), "sls")
+      call new_prony(prony, mega, [2.0_wp*mega], [1.0_wp], 0.0_wp, error)
+      call success(error, "a Prony series is built")
+      call compare(prony, 1.0_wp + 2.0_wp/e, "prony")
+      call new_power_law(power_law, mega, 2.0_wp*mega, 0.5_wp, error)
+      call success(error, "a power law is built")
+      call compare(power_law, 1.0_wp + 2.0_wp/sqrt(acos(-1.0_wp)), "power law")
+      call new_cerf(cerf, mega, 2.0_wp*mega, 1.0_wp, error)
+      call success(error, "a CERF is built")
+      call compare(cerf, 1.0_wp + 2.0_wp*e*erfc(1.0_wp), "cerf")
+      call new_mittag_leffler(mittag_leffler, mega, 2.0_wp*mega, 0.5_wp, 1.0_wp, error)
+      call success(error, "a Mittag-Leffler material is built")
+      call compare(mittag_leffler, 1.0_wp + 2.0_wp*e*erfc(1.0_wp), "mittag_leffler, a = 1/2")
+      call new_tabulated(tabulated, [0.1_wp, 1.0_wp, 10.0_wp], [3.0_wp, 2.0_wp, 1.0_wp]*mega, error)
+      call success(error, "a table is built")
+      call compare(tabulated, 2.0_wp, "table")
+   end subroutine test_materials
+
+   !> Compare a modulus at 1 s
+   subroutine compare(material, modulus, what)
+      class(material_t), intent(in) :: material
+      !> Expected modulus [MPa]
+      real(wp), intent(in) :: modulus
+      !> Name of the model
+      character(len=*), intent(in) :: what
+
+      real(wp), parameter :: mega = 1.0e6_wp, rounding = 1.0e-12_wp
+
+      call check_relative(material%relaxation(1.0_wp), modulus*mega, rounding, &
+         what//": modulus at 1 s")
+   end subroutine compare
+
+   !> A steel ball on rubber: every plate, law and pair, by the short way and by a solver
+   subroutine test_impacts()
+      integer, parameter :: waves(5) = [waves_none, waves_constant, waves_relaxing, &
+         waves_hereditary, waves_frozen]
+      type(prony_t) :: steel, rubber
+      type(contact_modulus_t) :: modulus
+      type(plate_t) :: plate
+      type(contact_law_t) :: law
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome, other
+      type(trajectory_t) :: trajectory
+      class(solver_t), allocatable :: solver
+      type(solver_settings_t) :: settings
+      type(error_t), allocatable :: error
+      real(wp) :: mass
+      integer :: i
+
+      call new_rigid(steel)
+      call new_sls(rubber, 15.0e6_wp, 300.0_wp, 1200.0_wp, error)
+      call success(error, "the rubber is built")
+      call rubber%set_constants(error, density=1100.0_wp, poisson_ratio=0.5_wp)
+      call success(error, "density and Poisson's ratio are set")
+      mass = 4.0_wp/3.0_wp*acos(-1.0_wp)*0.01_wp**3*7800.0_wp
+      do i = 1, size(waves)
+         call new_contact_modulus(modulus, steel, rubber, .false., error, &
+            pair=merge(pair_series, pair_eq1, i == 1))
+         call success(error, "the contact modulus is built")
+         call new_plate(plate, rubber, 0.02_wp, waves(i), error)
+         call success(error, "the plate is built")
+         call new_contact_law(law, 1.5_wp, i == 2, error)
+         call success(error, "the contact law is built")
+         call new_impact(impact, 10.0_wp, mass, 0.01_wp, 0.0_wp, modulus, plate, error, &
+            law=law)
+         call success(error, "the impact is built")
+         call solve_impact(impact, outcome, error)
+         call success(error, "the impact is solved")
+         call check(outcome%status == contact_separated .and. outcome%cor > 0.0_wp &
+            .and. outcome%cor < 1.0_wp, "a ball comes back")
+         if (waves(i) /= waves_relaxing) cycle
+         call check_close(outcome%cor, sls_cor, tolerance, "the paper's impact")
+         settings%method = 'direct'
+         call new_solver(solver, settings, error)
+         call success(error, "a solver is built")
+         call solve_impact(solver, impact, trajectory, other, error)
+         call success(error, "the impact is solved by a solver")
+         call check_close(other%cor, outcome%cor, outcome%cor_error + other%cor_error, &
+            "two methods agree")
+         call solve_impact(impact, outcome, error, settings)
+         call check_close(outcome%cor, other%cor, 0.0_wp, "settings choose the same solver")
+      end do
+   end subroutine test_impacts
+
+   !> A case file, and the tables of its results
+   subroutine test_case()
+      type(case_t) :: case
+      type(impact_t) :: impact
+      type(outcome_t) :: outcome
+      type(trajectory_t) :: trajectory
+      class(solver_t), allocatable :: solver
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+      type(table_t) :: table
+
+      call read_case(case, sls_file, error)
+      if (.not. allocated(error)) call override(case, 'impact.velocity=10', error)
+      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call read_data(case, error)
+      call success(error, "a case is read")
+      call build_material(case, 2, material, error)
+      call success(error, "a material of a case is built")
+      call check_close(material%glassy(), 15.0e6_wp, 0.0_wp, "its glassy modulus")
+      call build_impact(case, impact, error)
+      call success(error, "the impact of a case is built")
+      call build_solver(case, impact, solver, error)
+      call success(error, "the solver of a case is built")
+      call solve_impact(solver, impact, trajectory, outcome, error)
+      call success(error, "the impact of a case is solved")
+      call check_close(outcome%cor, sls_cor, tolerance, "the paper's impact by its case")
+      call history_table(table, 'sls', case%to_text(complete=.true.), trajectory)
+      call check_contains(table%case_text, 'velocity', "a table has its case")
+      call write_csv('no/such/folder/x.csv', table, error)
+      call refused(error, error_file, "no folder for a text")
+      call write_hdf5('no/such/folder/x.h5', table, error=error)
+      call refused(error, error_file, "no folder for an HDF5 file")
+      ! a plate of a tenth of a millimetre takes up the blow
+      call override(case, 'plate.half_thickness=1e-4', error)
+      call success(error, "a thin plate is no error")
+      call build_impact(case, impact, error)
+      call success(error, "its impact is built")
+      call solve_impact(impact, outcome, error)
+      call check(allocated(error) .or. any(outcome%status == [contact_sticking, contact_lasting]), &
+         "a ball on a foil does not come back")
+   end subroutine test_case
+
+   !> Each kind of error
+   subroutine test_errors()
+      type(case_t) :: case
+      type(error_t), allocatable :: error
+
+      call read_case(case, 'no/such/case.nml', error)
+      call refused(error, error_file, "no file")
+      call read_case_text(case, '&impact velocity = 1 speed = 2 /', 'text', error)
+      call refused(error, error_input, "no key")
+      call read_case(case, sls_file, error)
+      call success(error, "the case is read")
+      call override(case, 'impact.velocity', error)
+      call refused(error, error_usage, "no value")
+      call check(all(error_numerical /= [error_file, error_input, error_usage]), &
+         "each kind has its code")
+   end subroutine test_errors
+
+   !> Check the code of an error
+   subroutine refused(error, code, what)
+      !> Unallocated where there is none, which fails
+      type(error_t), allocatable, intent(in) :: error
+      !> Expected code
+      integer, intent(in) :: code
+      !> What was done
+      character(len=*), intent(in) :: what
+
+      integer :: found
+
+      found = 0
+      if (allocated(error)) found = error%code
+      call check(found == code, what)
+   end subroutine refused
+
+   !> A sweep of velocities
+   subroutine test_sweep()
+      character(len=*), parameter :: nl = new_line('a')
+      type(case_t) :: case
+      type(sweep_t) :: sweep
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      type(table_t) :: table
+      type(error_t), allocatable :: error
+
+      call read_case(case, sls_file, error)
+      call success(error, "the case is read")
+      call read_case_text(case, case%to_text(complete=.false.)//nl//'&sweep parameter = ' &
+         //"'impact.velocity', values = 2.5, 5, 10 /", 'sweep', error)
+      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call new_sweep(sweep, case, error)
+      call success(error, "a sweep is built")
+      call new_summary(summary, sweep%grid%count(), error)
+      call success(error, "there is room for its outcomes")
+      call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), 2, summary, failures, error)
+      call success(error, "its points are solved")
+      call check(failures%count == 0, "all points have a result")
+      call check(quantities(1)%name == 'cor', "the first quantity is the COR")
+      call check_close(summary%values(1)%at(3), sls_cor, tolerance, "the last point")
+      call summary_table(table, 'sweep', case%to_text(complete=.true.), sweep%grid, summary)
+      call check_close(table%columns(1)%reals(3), sls_cor, tolerance, "the same in the table")
+   end subroutine test_sweep
+
+   !> Samples of an SLS give its parameters
+   subroutine test_fit()
+      type(samples_t) :: samples
+      type(fit_t) :: fit
+      type(parameter_t) :: none(0)
+      type(error_t), allocatable :: error
+      integer :: i
+
+      samples%at = [(10.0_wp**(0.1_wp*i), i=-40, -10)]
+      samples%modulus = 1.0e6_wp*(1.0_wp + 2.0_wp*exp(-300.0_wp*samples%at))
+      allocate (samples%loss(0))
+      call fit_material(fit, 'sls', 0, none, samples, error)
+      call success(error, "a material is fitted")
+      call check(size(fit%parameters) == 3, "an SLS has three parameters")
+      do i = 1, size(fit%parameters)
+         associate (found => fit%parameters(i))
+            if (found%name == 'glassy_modulus') &
+               call check_relative(found%value, 3.0e6_wp, 1.0e-6_wp, "its glassy modulus")
+            if (found%name == 'beta') &
+               call check_relative(found%value, 300.0_wp, 1.0e-6_wp, "its rate")
+         end associate
+      end do
+   end subroutine test_fit
+
+end program test_library
