@@ -31,7 +31,8 @@ module vcor_app_commands
       //"other points are solved all the same, and the exit code is 5."), &
       entry_t("--set GROUP.KEY=VALUE", "replace a value of the case; may be repeated. A material " &
       //"is addressed by its name: `--set rubber.beta=600`"), &
-      entry_t("--output DIR", "folder of the files; created if it does not exist"), &
+      entry_t("--output PATH", "folder of the files, created if it does not exist; the file " &
+      //"itself if one file is written and PATH ends as it does (.h5 or .csv)"), &
       entry_t("--print NAME,NAME", "print these numbers only, one line per impact, in place of " &
       //"the table, and write files only if `--output` is given. A name is a column " &
       //"(`vcor help output`) or a swept parameter"), &
@@ -90,7 +91,7 @@ module vcor_app_commands
       entry_t("STEM_material.h5", "all of them as /summary, /relaxation and /dynamic; t0 and " &
       //"2 pi/t0 are the attributes contact_time and min_frequency"), &
       entry_t("--set GROUP.KEY=VALUE", "replace a value of the case, as for run; repeatable"), &
-      entry_t("--output DIR", "folder of the files; created if it does not exist"), &
+      entry_t("--output PATH", "folder of the files, or the one file, as for run"), &
       entry_t("--from T", "first time [s]; default: on the glassy plateau, before the contact " &
       //"time"), &
       entry_t("--to T", "last time [s]; default: on the rubbery plateau, after the contact time. " &

@@ -73,6 +73,20 @@ def test_the_index_names_every_page():
         assert f"({page.name})" in index or f"docs/{page.name}" in index or page.name == "README.md"
 
 
+def test_modules_and_files_that_pages_name():
+    """What a page says of the sources is there."""
+    modules = set()
+    for path in [*(ROOT / "src").rglob("*.[fF]90"), *(ROOT / "app").glob("*.f90")]:
+        modules |= set(re.findall(r"^module (\w+)", path.read_text(), re.MULTILINE))
+    for page in PAGES:
+        text = page.read_text(encoding="utf-8")
+        named = set(re.findall(r"`(vcor_\w+)`|\[\[(vcor\w*)\(module\)", text))
+        missing = {one or two for one, two in named} - modules - {"vcor_needs", "vcor_material_my_model"}
+        assert not missing, f"{page.name} names modules that are not there"
+        for name in re.findall(r"`((?:app|src|scripts|cmake|tests)/[\w/.-]+\.\w+)`", text):
+            assert (ROOT / name).exists() or "my_" in name, f"{page.name} names {name}"
+
+
 # ---------------------------------------------------------------------------------- commands
 
 
