@@ -78,7 +78,6 @@ contains
    pure function has_word(list, word) result(has)
       !> Words separated by single blanks
       character(len=*), intent(in) :: list
-      !> The word
       character(len=*), intent(in) :: word
       !> Whether it is there
       logical :: has

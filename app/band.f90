@@ -24,7 +24,6 @@ contains
    !> Of a sweep the impacts of the shortest and the longest contact are looked at, in which that
    !> shows first
    subroutine warn_of_bands(job, summary)
-      !> The case
       type(job_t), intent(in) :: job
       !> Outcomes of its impacts
       type(summary_t), intent(in) :: summary
@@ -42,7 +41,6 @@ contains
 
    !> Warn of one material
    subroutine warn_of_band(job, summary, item)
-      !> The case
       type(job_t), intent(in) :: job
       !> Outcomes of its impacts
       type(summary_t), intent(in) :: summary
@@ -188,7 +186,6 @@ contains
    pure function place_of(name) result(place)
       !> Name of the quantity
       character(len=*), intent(in) :: name
-      !> Its place
       integer :: place
 
       do place = 1, size(quantities)

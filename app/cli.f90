@@ -63,7 +63,6 @@ contains
    subroutine parse(words, request, error)
       !> Words after the name of the program
       type(argument_t), intent(in) :: words(:)
-      !> The request
       type(request_t), intent(out) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -199,9 +198,7 @@ contains
    subroutine apply(option, value, request, error)
       !> Option, a known one
       character(len=*), intent(in) :: option
-      !> Its value
       character(len=*), intent(in) :: value
-      !> The request
       type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -253,7 +250,6 @@ contains
    subroutine read_shard(value, request, error)
       !> The value as it is written
       character(len=*), intent(in) :: value
-      !> The request
       type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -274,11 +270,9 @@ contains
 
    !> Split the value of --print or --quantity
    subroutine add_names(option, list, request, error)
-      !> The option
       character(len=*), intent(in) :: option
       !> Names separated by commas
       character(len=*), intent(in) :: list
-      !> The request
       type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -296,11 +290,8 @@ contains
 
    !> Add one name of --print or --quantity
    subroutine add_name(option, name, request, error)
-      !> The option
       character(len=*), intent(in) :: option
-      !> Name
       character(len=*), intent(in) :: name
-      !> The request
       type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error

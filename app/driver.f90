@@ -29,7 +29,6 @@ contains
 
    !> Do what is asked for. All ranks run cases; for the rest one is enough
    subroutine execute(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -64,7 +63,6 @@ contains
 
    !> One line on stderr; all ranks have the same to say
    subroutine complain(error)
-      !> The error
       type(error_t), intent(in) :: error
 
       if (this_rank() > 0) return
@@ -94,7 +92,6 @@ contains
 
    !> Validate cases and print them complete
    subroutine check(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -113,7 +110,6 @@ contains
 
    !> Moduli of the materials of cases
    subroutine materials(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -131,7 +127,6 @@ contains
 
    !> Verify the program, or cases
    subroutine verify(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -171,9 +166,7 @@ contains
 
    !> What the program chooses where the case says nothing, as comments
    function chosen(job) result(text)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: method
@@ -194,7 +187,6 @@ contains
    !> Run cases. All are read and validated before the first one runs, so that a mistake in the
    !> last does not come after hours
    subroutine run(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error

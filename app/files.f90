@@ -20,7 +20,6 @@ contains
 
    !> Write the files of a case
    subroutine write_files(job, identity, summary, trajectory, files, error)
-      !> The case
       type(job_t), intent(in) :: job
       !> What it is about
       type(identity_t), intent(in) :: identity
@@ -77,7 +76,6 @@ contains
 
    !> Number of threads of each rank
    function threads_of(request) result(threads)
-      !> The request
       type(request_t), intent(in) :: request
       !> Number, at least 1
       integer :: threads
@@ -88,7 +86,6 @@ contains
 
    !> Bare numbers for --print, a line per impact
    subroutine write_numbers(request, summary, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> Outcomes
       type(table_t), intent(in) :: summary

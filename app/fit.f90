@@ -26,7 +26,6 @@ contains
 
    !> Fit a model, show it and write it
    subroutine fit_data(asked, error)
-      !> The request as it was read
       type(request_t), intent(in) :: asked
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -96,13 +95,11 @@ contains
 
    !> Where the group goes: a file, or a file in a directory
    subroutine choose_path(request, source, sampled, path, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The data file, or the case
       character(len=*), intent(in) :: source
       !> What was sampled, if it was
       type(sampled_t), intent(in) :: sampled
-      !> The path
       character(len=:), allocatable, intent(out) :: path
       !> Of code `error_input` if the file is one that was read; unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -141,9 +138,7 @@ contains
 
    !> Name of a file without folder and ending
    pure function stem_of(path) result(stem)
-      !> The path
       character(len=*), intent(in) :: path
-      !> Its stem
       character(len=:), allocatable :: stem
 
       integer :: mark

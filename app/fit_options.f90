@@ -21,7 +21,6 @@ module vcor_app_fit_options
 
    !> What is to be fitted
    type :: fit_request_t
-      !> Model
       character(len=:), allocatable :: model
       !> Terms of a Prony series; 0: as many as the data support
       integer :: terms = 0
@@ -51,7 +50,6 @@ contains
       character(len=*), intent(in) :: option
       !> Its value, not blank
       character(len=*), intent(in) :: value
-      !> The request
       type(fit_request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -106,7 +104,6 @@ contains
    subroutine add_fixed(value, request, error)
       !> KEY=VALUE
       character(len=*), intent(in) :: value
-      !> The request
       type(fit_request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -129,7 +126,6 @@ contains
 
    !> Check the options of fit against each other, and fill in the defaults
    subroutine check_fit(request, files, reading, error)
-      !> The request
       type(fit_request_t), intent(inout) :: request
       !> Number of data files
       integer, intent(in) :: files
@@ -208,7 +204,6 @@ contains
 
    !> Values that a parameter may have
    pure function range_of(parameter, model) result(text)
-      !> The parameter
       type(parameter_t), intent(in) :: parameter
       !> Model that it belongs to
       character(len=*), intent(in) :: model
@@ -228,7 +223,6 @@ contains
 
    !> Whether a parameter has a value that it may have
    pure function in_range(parameter, model) result(yes)
-      !> The parameter
       type(parameter_t), intent(in) :: parameter
       !> Model that it belongs to
       character(len=*), intent(in) :: model

@@ -20,13 +20,11 @@ contains
 
    !> Report of a fit
    function fit_report(fit, source, note, samples, tail) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Data file, or case
       character(len=*), intent(in) :: source
       !> What was read
       character(len=*), intent(in) :: note
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Notes and files, one to a line
       character(len=*), intent(in) :: tail
@@ -57,11 +55,9 @@ contains
 
    !> Remarks before a group: what it was fitted to and how well
    function fit_remarks(fit, source, samples) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Data file, or case
       character(len=*), intent(in) :: source
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Lines that begin with an exclamation mark
       character(len=:), allocatable :: text
@@ -87,7 +83,6 @@ contains
    !> Whether the equilibrium modulus of a series is only what has not relaxed when the data end,
    !> and the material may go on to relax all of it
    pure function is_open(fit) result(yes)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Whether it is
       logical :: yes
@@ -100,7 +95,6 @@ contains
 
    !> Most that the first parameter can be, three standard errors above it
    pure function most_of(fit) result(value)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> The value, in its unit
       real(wp) :: value
@@ -110,7 +104,6 @@ contains
 
    !> Number of terms of a Prony series
    function terms_of(fit) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> In words; nothing for other models
       character(len=:), allocatable :: text
@@ -123,9 +116,7 @@ contains
 
    !> Where the largest misfit is
    pure function place_of(fit, samples) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> In words
       character(len=:), allocatable :: text
@@ -141,9 +132,7 @@ contains
 
    !> A ratio in percent, to two digits
    pure function percent(ratio) result(text)
-      !> The ratio
       real(wp), intent(in) :: ratio
-      !> Its text
       character(len=:), allocatable :: text
 
       !> Of exact data, rounding
@@ -169,7 +158,6 @@ contains
 
    !> Under what condition a standard error is one
    pure function condition(fit, i) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Number of the parameter
       integer, intent(in) :: i
@@ -190,11 +178,9 @@ contains
 
    !> Name of a parameter, with the number of the term of a series
    function name_of(fit, i) result(name)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Number of the parameter
       integer, intent(in) :: i
-      !> Its name
       character(len=:), allocatable :: name
 
       name = trim(fit%parameters(i)%name)
@@ -203,7 +189,6 @@ contains
 
    !> Line of a parameter
    function line(fit, i) result(text)
-      !> The fit
       type(fit_t), intent(in) :: fit
       !> Number of the parameter
       integer, intent(in) :: i

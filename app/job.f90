@@ -28,7 +28,6 @@ module vcor_app_job
 
    !> One case of a call, ready to run
    type :: job_t
-      !> The case
       type(case_t) :: case
       !> Its impacts
       type(sweep_t) :: sweep
@@ -36,7 +35,6 @@ module vcor_app_job
       type(part_t) :: part
       !> Its impact where it has one only
       type(impact_t) :: impact
-      !> Its method
       character(len=:), allocatable :: method
       !> Directory and stem of its files
       character(len=:), allocatable :: path
@@ -159,7 +157,6 @@ contains
 
    !> Check a name that files are written under
    subroutine check_output_name(job, key, name, error)
-      !> The case
       type(job_t), intent(in) :: job
       !> Key of &output
       character(len=*), intent(in) :: key
@@ -178,9 +175,7 @@ contains
 
    !> Take the part of --shard
    subroutine take_shard(request, job, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(inout) :: job
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -244,7 +239,6 @@ contains
 
    !> Which shard, for messages
    function shard_text(part) result(text)
-      !> The part
       type(part_t), intent(in) :: part
       !> Words, or nothing
       character(len=:), allocatable :: text
@@ -256,7 +250,6 @@ contains
 
    !> Names of --print with a dot are parameters that the case sweeps
    subroutine check_names(request, grid, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> Points of a case
       type(grid_t), intent(in) :: grid
@@ -280,7 +273,6 @@ contains
 
    !> No file of one case may be a file of another, nor a case file itself, nor a data file
    subroutine refuse_clash(request, jobs, new, old, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The cases
       type(job_t), intent(in) :: jobs(:)

@@ -29,9 +29,7 @@ contains
 
    !> Compute, write and show the moduli of a case
    subroutine show_materials(request, job, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
       !> Unallocated on success, with or without an impact that ends
       type(error_t), allocatable, intent(out) :: error
@@ -60,9 +58,7 @@ contains
       type(job_t), intent(in) :: job
       !> The case, for the heads of the files
       type(case_t), intent(in) :: case
-      !> Its title
       character(len=*), intent(in) :: title
-      !> The moduli
       type(moduli_t), intent(in) :: moduli
       !> A row per material
       type(table_t), intent(out) :: summary
@@ -100,7 +96,6 @@ contains
       character(len=*), intent(in) :: filename
       !> Title of the case
       character(len=*), intent(in) :: title
-      !> The moduli
       type(moduli_t), intent(in) :: moduli
       !> Text of several lines
       character(len=:), allocatable :: text
@@ -134,9 +129,7 @@ contains
 
    !> Values of one material
    function values_of(curves) result(text)
-      !> Its curves
       type(curves_t), intent(in) :: curves
-      !> Lines
       character(len=:), allocatable :: text
 
       text = line('glassy modulus', 'E(0)', curves%glassy, 'Pa') &
@@ -155,11 +148,8 @@ contains
    function line(meaning, symbol, value, unit) result(text)
       !> What it is
       character(len=*), intent(in) :: meaning
-      !> Its symbol
       character(len=*), intent(in) :: symbol
-      !> Its value
       real(wp), intent(in) :: value
-      !> Its unit
       character(len=*), intent(in) :: unit
       !> The line
       character(len=:), allocatable :: text

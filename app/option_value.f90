@@ -13,7 +13,6 @@ contains
 
    !> Read a whole number
    subroutine read_whole(option, value, least, most, number, error)
-      !> The option
       character(len=*), intent(in) :: option
       !> The number as it is written
       character(len=*), intent(in) :: value
@@ -21,7 +20,6 @@ contains
       integer, intent(in) :: least
       !> Largest number
       integer, intent(in) :: most
-      !> The number
       integer, intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -42,11 +40,9 @@ contains
 
    !> Read a number > 0
    subroutine read_positive(option, value, number, error)
-      !> The option
       character(len=*), intent(in) :: option
       !> The number as it is written
       character(len=*), intent(in) :: value
-      !> The number
       real(wp), intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -62,13 +58,11 @@ contains
 
    !> Read a number
    subroutine read_number(option, value, expected, number, error)
-      !> The option
       character(len=*), intent(in) :: option
       !> The number as it is written
       character(len=*), intent(in) :: value
       !> What is expected, for the message
       character(len=*), intent(in) :: expected
-      !> The number
       real(wp), intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error

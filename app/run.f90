@@ -29,9 +29,7 @@ contains
 
    !> Run a case; all ranks call this
    subroutine run_job(request, job, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
       !> Error of code `error_numerical` if an impact has no result, of another if there is worse;
       !> unallocated on success. All ranks have the same
@@ -47,9 +45,7 @@ contains
 
    !> Run a case of one impact
    subroutine run_impact(request, job, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
       !> Error of code `error_numerical` if the impact has no result, of another if there is worse;
       !> unallocated on success
@@ -110,7 +106,6 @@ contains
 
    !> The method that solved an impact
    function method_of(job, trajectory) result(method)
-      !> The case
       type(job_t), intent(in) :: job
       !> Course of its impact
       type(trajectory_t), intent(in) :: trajectory
@@ -135,7 +130,6 @@ contains
 
    !> What stood for a kernel that is no finite sum of exponentials
    function kernel_of(trajectory) result(text)
-      !> Trajectory
       type(trajectory_t), intent(in) :: trajectory
       !> A line, or nothing
       character(len=:), allocatable :: text
@@ -148,11 +142,8 @@ contains
 
    !> Remarks on an outcome that is beyond what the model is made for
    function remarks_on(job, outcome) result(text)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its outcome
       type(outcome_t), intent(in) :: outcome
-      !> Lines
       character(len=:), allocatable :: text
 
       real(wp) :: radius, half_thickness
@@ -227,11 +218,8 @@ contains
 
    !> An impact without separation has no coefficient of restitution: say why
    subroutine end_of(job, outcome, trajectory, error)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its outcome
       type(outcome_t), intent(in) :: outcome
-      !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
       !> Error of code `error_numerical`; unallocated where the bodies separated
       type(error_t), allocatable, intent(out) :: error

@@ -29,11 +29,9 @@ module vcor_app_sampling
 
    !> What was sampled
    type :: sampled_t
-      !> The case
       type(case_t) :: case
       !> Number of the material
       integer :: item = 0
-      !> Its name
       character(len=:), allocatable :: name
       !> Its density [kg/m3]; 0: not given
       real(wp) :: density = 0.0_wp
@@ -49,11 +47,9 @@ contains
 
    !> Sample a material of a case
    subroutine sample_model(request, sampled, samples, note, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> What was sampled
       type(sampled_t), intent(out) :: sampled
-      !> The samples
       type(samples_t), intent(out) :: samples
       !> What they are, in words
       character(len=:), allocatable, intent(out) :: note

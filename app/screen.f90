@@ -29,7 +29,6 @@ contains
       character(len=*), intent(in) :: title
       !> Method that solved it
       character(len=*), intent(in) :: method
-      !> Outcome
       type(outcome_t), intent(in) :: outcome
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
@@ -68,7 +67,6 @@ contains
          character(len=*), intent(in) :: name
          !> Its place in `quantities`
          integer, intent(in) :: j
-         !> Its value
          real(wp) :: value
 
          value = quantity_value(outcome, j)
@@ -80,7 +78,6 @@ contains
       function remark(name)
          !> Name of the quantity
          character(len=*), intent(in) :: name
-         !> Remark
          character(len=:), allocatable :: remark
 
          remark = ''
@@ -93,11 +90,8 @@ contains
    function line(meaning, symbol, value, unit, remark) result(text)
       !> What it is
       character(len=*), intent(in) :: meaning
-      !> Its symbol
       character(len=*), intent(in) :: symbol
-      !> Its value
       real(wp), intent(in) :: value
-      !> Its unit
       character(len=*), intent(in) :: unit
       !> What stands behind it
       character(len=*), intent(in) :: remark
@@ -117,9 +111,7 @@ contains
 
    !> Energy budget
    function budget(outcome) result(text)
-      !> Outcome
       type(outcome_t), intent(in) :: outcome
-      !> Lines
       character(len=:), allocatable :: text
 
       text = line('energy before the impact', 'KE_0', outcome%initial_energy, 'J', '') &
@@ -168,13 +160,11 @@ contains
 
    !> A number with so many significant digits, right-justified
    pure function significant(value, digits, width) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Digits, 2 .. 15; absent: 8
       integer, intent(in), optional :: digits
       !> Characters, at least digits + 8; absent: 16
       integer, intent(in), optional :: width
-      !> Its text
       character(len=:), allocatable :: text
 
       character(len=24) :: buffer
@@ -201,9 +191,7 @@ contains
 
    !> A number with two significant digits
    pure function short(value) result(text)
-      !> The number
       real(wp), intent(in) :: value
-      !> Its text
       character(len=:), allocatable :: text
 
       text = scientific(value, 1)

@@ -22,9 +22,7 @@ contains
 
    !> Report of a sweep: what is swept, between what the outcomes lie, what has none and why
    function sweep_report(job, title, summary, failures, files) result(text)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its title
       character(len=*), intent(in) :: title
       !> Outcomes
       type(table_t), intent(in) :: summary
@@ -51,9 +49,7 @@ contains
 
    !> Report of a shard: what is swept, what has no result and why
    function shard_report(job, title, failures, path) result(text)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its title
       character(len=*), intent(in) :: title
       !> What has no result
       type(failures_t), intent(in) :: failures
@@ -72,7 +68,6 @@ contains
 
    !> The method of the points: with auto each has its own
    function method_shown(job) result(method)
-      !> The case
       type(job_t), intent(in) :: job
       !> auto, ive or direct
       character(len=:), allocatable :: method
@@ -86,11 +81,8 @@ contains
 
    !> Program, case, title and what is swept
    function heading(job, title) result(text)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its title
       character(len=*), intent(in) :: title
-      !> Lines
       character(len=:), allocatable :: text
 
       integer :: i
@@ -125,7 +117,6 @@ contains
    function ranges(summary) result(text)
       !> Outcomes
       type(table_t), intent(in) :: summary
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: line
@@ -162,11 +153,9 @@ contains
 
    !> What has no result, and why
    function reasons(job, failures) result(text)
-      !> The case
       type(job_t), intent(in) :: job
       !> What has no result
       type(failures_t), intent(in) :: failures
-      !> Lines
       character(len=:), allocatable :: text
 
       integer :: i
@@ -184,7 +173,6 @@ contains
 
    !> How many points are less accurate than asked for
    function inexact(job, failures) result(text)
-      !> The case
       type(job_t), intent(in) :: job
       !> What there is to say of the points
       type(failures_t), intent(in) :: failures
@@ -199,7 +187,6 @@ contains
 
    !> Parameters of a point
    function coordinates(job, point) result(text)
-      !> The case
       type(job_t), intent(in) :: job
       !> Number of the point
       integer, intent(in) :: point
@@ -220,7 +207,6 @@ contains
 
    !> A text with blanks at its end
    pure function padded(text, width) result(wide)
-      !> The text
       character(len=*), intent(in) :: text
       !> Least number of characters
       integer, intent(in) :: width
@@ -232,7 +218,6 @@ contains
 
    !> A text with blanks before it
    pure function right(text, width) result(wide)
-      !> The text
       character(len=*), intent(in) :: text
       !> Least number of characters
       integer, intent(in) :: width

@@ -58,7 +58,6 @@ contains
 
    !> Solve a case by all methods and print what they agree on
    subroutine verify_case(job, quiet, error)
-      !> The case
       type(job_t), intent(in) :: job
       !> Nothing on the screen
       logical, intent(in) :: quiet

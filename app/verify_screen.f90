@@ -24,11 +24,9 @@ contains
 
    !> A law as a table
    function law_text(law, verdicts) result(text)
-      !> The law
       type(law_t), intent(in) :: law
       !> Verdicts of its rows
       type(verdict_t), intent(in) :: verdicts(:)
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=32) :: name
@@ -57,9 +55,7 @@ contains
       character(len=*), intent(in) :: filename
       !> Title of the case
       character(len=*), intent(in) :: title
-      !> The comparison
       type(comparison_t), intent(in) :: comparison
-      !> Lines
       character(len=:), allocatable :: text
 
       text = 'vcor '//version//'  '//filename//nl
@@ -92,9 +88,7 @@ contains
 
    !> A case with every plate model and both contact laws
    function models_text(models) result(text)
-      !> The models
       type(model_t), intent(in) :: models(:)
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=10) :: waves
@@ -127,9 +121,7 @@ contains
 
    !> How each solution was made, and whether its error is what it says
    function attempts_text(comparison) result(text)
-      !> The comparison
       type(comparison_t), intent(in) :: comparison
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=21) :: label
@@ -166,7 +158,6 @@ contains
    function values_text(comparison) result(text)
       !> The comparison, with numbers
       type(comparison_t), intent(in) :: comparison
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=22) :: name
@@ -203,7 +194,6 @@ contains
    function differences_text(comparison) result(text)
       !> The comparison, with numbers
       type(comparison_t), intent(in) :: comparison
-      !> Lines
       character(len=:), allocatable :: text
 
       character(len=22) :: name
@@ -234,7 +224,6 @@ contains
    pure function given(value) result(text)
       !> The number, 0 if nothing
       real(wp), intent(in) :: value
-      !> Its text
       character(len=9) :: text
 
       text = ''
@@ -243,9 +232,7 @@ contains
 
    !> An order of convergence
    pure function order_text(order) result(text)
-      !> The order
       real(wp), intent(in) :: order
-      !> Its text
       character(len=8) :: text
 
       text = right('-', 8)
@@ -254,11 +241,9 @@ contains
 
    !> A number with two digits in a column
    pure function column(value, width) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Characters
       integer, intent(in) :: width
-      !> Its text
       character(len=width) :: text
 
       text = right('nan', width)

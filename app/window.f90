@@ -53,9 +53,7 @@ contains
 
    !> Solve the impact of a case, the first one of a sweep
    subroutine find_window(job, window, notes)
-      !> The case
       type(job_t), intent(in) :: job
-      !> Its window
       type(window_t), intent(out) :: window
       !> Notes, one to a line; one more if the impact has no result
       character(len=:), allocatable, intent(inout) :: notes
