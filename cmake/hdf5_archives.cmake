@@ -19,7 +19,8 @@ function(vcor_link_hdf5_archives program)
   # what compresses
   list(APPEND archives z sz)
 
-  # the shared ones are on the same line, from the library: this leaves them out
+  # the shared ones are on the same line, from the library: this leaves them out, as long as what uses
+  # HDF5 (vcor::files) is named before the archives
   set(option -Wl,--as-needed)
   get_target_property(folders hdf5::hdf5_fortran INTERFACE_INCLUDE_DIRECTORIES)
   try_compile(vcor_has_hdf5_archives

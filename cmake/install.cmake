@@ -6,16 +6,16 @@ set(vcor_cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/vcor")
 
 # Program and library. A shared library (BUILD_SHARED_LIBS) belongs to the program; its version
 # changes with every release, since the layout of Fortran types is part of the interface
-set_target_properties(vcor PROPERTIES
+set_target_properties(${vcor_parts} PROPERTIES
   VERSION "${PROJECT_VERSION}"
-  SOVERSION "${PROJECT_VERSION}"
-  EXPORT_NAME vcor)
+  SOVERSION "${PROJECT_VERSION}")
 file(RELATIVE_PATH from_program "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
 if(BUILD_SHARED_LIBS)
   set_target_properties(vcor_program PROPERTIES INSTALL_RPATH "$ORIGIN/${from_program}")
+  set_target_properties(${vcor_parts} PROPERTIES INSTALL_RPATH "$ORIGIN")
 endif()
 install(TARGETS vcor_program RUNTIME COMPONENT program)
-install(TARGETS vcor EXPORT vcorTargets
+install(TARGETS ${vcor_parts} EXPORT vcorTargets
   LIBRARY COMPONENT program NAMELINK_COMPONENT development
   ARCHIVE COMPONENT development)
 install(DIRECTORY "${PROJECT_BINARY_DIR}/include/${vcor_module_folder}/"
@@ -39,16 +39,29 @@ install(FILES
 # not private then, and nobody has to know about --static
 file(RELATIVE_PATH vcor_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" vcor_up "${vcor_up}")
-list(REMOVE_DUPLICATES vcor_needed_libraries)
-string(JOIN " " vcor_needed ${vcor_needed_libraries})
-if(BUILD_SHARED_LIBS)
-  set(vcor_libraries "-lvcor\nLibs.private: ${vcor_needed}")
-else()
-  set(vcor_libraries "-lvcor ${vcor_needed}")
-endif()
-configure_file("${PROJECT_SOURCE_DIR}/cmake/vcor.pc.in" "${PROJECT_BINARY_DIR}/vcor.pc" @ONLY)
-install(FILES "${PROJECT_BINARY_DIR}/vcor.pc"
-  DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
+# vcor_pkg_config(<name> <part> ...): the file of some parts, those that need others first
+function(vcor_pkg_config name)
+  set(vcor_name "${name}")
+  set(own)
+  set(needed)
+  foreach(part IN LISTS ARGN)
+    list(APPEND own "-l${part}")
+    list(APPEND needed ${${part}_needed_libraries})
+  endforeach()
+  list(REMOVE_DUPLICATES needed)
+  string(JOIN " " own ${own})
+  string(JOIN " " needed ${needed})
+  if(BUILD_SHARED_LIBS)
+    set(vcor_libraries "${own}\nLibs.private: ${needed}")
+  else()
+    set(vcor_libraries "${own} ${needed}")
+  endif()
+  configure_file("${PROJECT_SOURCE_DIR}/cmake/vcor.pc.in" "${PROJECT_BINARY_DIR}/${name}.pc" @ONLY)
+  install(FILES "${PROJECT_BINARY_DIR}/${name}.pc"
+    DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
+endfunction()
+vcor_pkg_config(vcor vcor vcor_files vcor_fit vcor_core)
+vcor_pkg_config(vcor-core vcor_core)
 
 # Pages of man, compressed where there is gzip (without a time stamp: the same bytes each time)
 file(GLOB vcor_pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/man/*.[1-9]")

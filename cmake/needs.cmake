@@ -4,8 +4,8 @@
 #              [DEBIAN <package> ...])
 #
 # finds the package, links the target with it, and keeps what those need who build with an installed
-# library: the line for vcorConfig.cmake in vcor_find_dependencies, the libraries for pkg-config in
-# vcor_needed_libraries, Debian's packages in vcor_debian_packages. A module cmake/Find<package>.cmake
+# library: the line for vcorConfig.cmake in <target>_find_dependencies, the libraries for pkg-config
+# in <target>_needed_libraries, Debian's packages in vcor_debian_packages. A module cmake/Find<package>.cmake
 # of our own is installed with the package.
 #
 # A macro, since what find_package says is wanted where it is called.
@@ -21,11 +21,11 @@ macro(vcor_needs target package)
   endif()
   target_link_libraries(${target} PRIVATE ${need_TARGETS})
 
-  string(APPEND vcor_find_dependencies "find_dependency(${need_line})\n")
+  string(APPEND ${target}_find_dependencies "  find_dependency(${need_line})\n")
   list(APPEND vcor_debian_packages ${need_DEBIAN})
   foreach(need_target IN LISTS need_TARGETS)
     vcor_library_words(need_words ${need_target})
-    list(APPEND vcor_needed_libraries ${need_words})
+    list(APPEND ${target}_needed_libraries ${need_words})
   endforeach()
   if(EXISTS "${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake")
     list(APPEND vcor_find_modules "${PROJECT_SOURCE_DIR}/cmake/Find${package}.cmake")

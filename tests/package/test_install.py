@@ -117,6 +117,35 @@ def test_consumer_with_cmake(prefix, tmp_path):
     assert is_close(run(tmp_path / "from_case", cwd=PAPER))
     cor = float(run(prefix / "bin/vcor", "run", PAPER / "sls.nml", *CODE, "--print", "cor"))
     assert f"3 m/s: COR {cor:11.8f}," in run(tmp_path / "from_code")
+    # it needs the core of the library, and that needs neither HDF5 nor MINPACK
+    needs = run("ldd", tmp_path / "from_case")
+    assert "lapack" in needs and "hdf5" not in needs and "minpack" not in needs
+    assert "hdf5" not in (tmp_path / "CMakeCache.txt").read_text().lower()
+
+
+# A project that uses all of the library
+ALL = f"""\
+cmake_minimum_required(VERSION 3.20)
+project(names LANGUAGES Fortran)
+find_package(vcor REQUIRED)
+add_executable(names {ROOT}/tests/unit/harness.f90 {ROOT}/tests/unit/test_library.f90)
+target_link_libraries(names PRIVATE vcor::vcor)
+"""
+
+
+def test_all_names_with_cmake(prefix, tmp_path):
+    """Every name of module vcor from an installation."""
+    (tmp_path / "CMakeLists.txt").write_text(ALL)
+    run("cmake", "-S", tmp_path, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", tmp_path / "build")
+    assert "0 failed" in run(tmp_path / "build/names", cwd=ROOT)
+
+
+def test_component_that_is_not_there(prefix, tmp_path):
+    text = ALL.replace("REQUIRED", "REQUIRED COMPONENTS core gravity")
+    (tmp_path / "CMakeLists.txt").write_text(text)
+    words = ["-S", tmp_path, "-B", tmp_path / "build", f"-DCMAKE_PREFIX_PATH={prefix}"]
+    assert "gravity" in run("cmake", *words, code=1)
 
 
 def test_consumer_with_another_compiler(prefix, tmp_path):
@@ -132,14 +161,15 @@ def test_consumer_with_another_compiler(prefix, tmp_path):
     assert "it was built by GNU" in run(*words, code=1).replace("\n ", "")
 
 
-def test_consumer_with_pkg_config(prefix, tmp_path):
+@pytest.mark.parametrize("name", ["vcor", "vcor-core"])
+def test_consumer_with_pkg_config(prefix, tmp_path, name):
     """A plain compiler command."""
     env = {**os.environ, "PKG_CONFIG_PATH": str(library_folder(prefix) / "pkgconfig")}
-    assert run("pkg-config", "--modversion", "vcor", env=env).strip() == version()
+    assert run("pkg-config", "--modversion", name, env=env).strip() == version()
     # the shell takes the words apart, as in the documents
-    command = 'eval gfortran "$1" $(pkg-config --cflags --libs vcor) -o drop'
+    command = 'eval gfortran "$1" $(pkg-config --cflags --libs "$2") -o drop'
     source = CONSUMER / "app/from_case.f90"
-    run("sh", "-c", command, "sh", source, env=env, cwd=tmp_path)
+    run("sh", "-c", command, "sh", source, name, env=env, cwd=tmp_path)
     assert is_close(run(tmp_path / "drop", cwd=PAPER))
 
 
