@@ -66,7 +66,7 @@ contains
          case = job%case
          do k = 1, size(job%sweep%grid%axes)
             associate (axis => job%sweep%grid%axes(k), place => job%sweep%grid%places(points(i)))
-               call case%put(axis%handle, axis%values(place(k)), error)
+               call case%put(axis%address, axis%values(place(k)), error)
             end associate
             if (allocated(error)) return
          end do

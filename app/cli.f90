@@ -6,7 +6,7 @@ module vcor_app_cli
    use vcor_app_option_value, only : read_positive, read_whole
    use vcor_case_name, only : control_in, name_flaw
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_study_moduli, only : time_range_t
    use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_points, only : most_threads

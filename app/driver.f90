@@ -13,6 +13,7 @@ module vcor_app_driver
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
    use vcor_app_verify, only : verify_case, verify_program
+   use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t
    use vcor_io_file, only : write_stdout
    use vcor_io_number, only : decimal_text
@@ -102,7 +103,8 @@ contains
       call prepare(request, jobs, error)
       if (allocated(error)) return
       do i = 1, size(jobs)
-         call write_stdout(jobs(i)%case%to_text(complete=.true., remarks=.true.)//chosen(jobs(i)), &
+         call write_stdout(case_text(jobs(i)%case, complete=.true., &
+            remarks=.true.)//chosen(jobs(i)), &
             error)
          if (allocated(error)) return
       end do

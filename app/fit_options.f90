@@ -7,7 +7,7 @@ module vcor_app_fit_options
    use vcor_io_sample_file, only : reading_t
    use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_kinds, only : wp
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_text, only : printable
    implicit none
    private

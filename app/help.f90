@@ -3,7 +3,7 @@ module vcor_app_help
    use vcor_app_commands, only : commands, entry_t, get_page, texts_of
    use vcor_case_catalogue, only : described_keys, groups, key_t, range_text
    use vcor_error, only : code_names, error_t, error_usage, raise
-   use vcor_nearest, only : nearest_name, suggestion
+   use vcor_words, only : nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
       statuses
    use vcor_text, only : integer_text, printable

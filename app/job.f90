@@ -3,6 +3,7 @@ module vcor_app_job
    use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor_case_case, only : case_t
+   use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
    use vcor_case_name, only : name_flaw
    use vcor_case_unread, only : refuse_unread
@@ -13,11 +14,11 @@ module vcor_app_job
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, same_file
    use vcor_text, only : integer_text, printable
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_solver, only : method_for
    use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : quantity_names
-   use vcor_sweep_sweep, only : new_sweep, single_impact, sweep_t
+   use vcor_sweep_sweep, only : new_sweep, sweep_t
    implicit none
    private
 
@@ -93,14 +94,14 @@ contains
       do i = 1, size(request%settings)
          if (.not. allocated(error)) call override(job%case, request%settings(i)%text, error)
       end do
-      if (.not. allocated(error)) call job%case%validate(error)
+      if (.not. allocated(error)) call validate(job%case, error)
       if (.not. allocated(error)) call refuse_unread(job%case, &
          any(request%command == ['material', 'fit     ']), error)
       if (.not. allocated(error)) call read_data(job%case, error)
       if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
       if (allocated(error)) return
       if (.not. job%sweep%is_grid()) then
-         call single_impact(job%sweep, job%case, job%impact, error)
+         job%impact = job%sweep%problem%impact
       else if (request%command == 'verify') then
          call raise(error, error_input, job%case%location('sweep', 'parameter', 1) &
             //': verify takes single impacts, found a &sweep group')

@@ -6,6 +6,7 @@ module vcor_app_material
    use vcor_app_screen, only : short, significant
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor_case_case, only : case_t
+   use vcor_case_printed, only : case_text
    use vcor_error, only : error_t
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : write_stdout
@@ -71,7 +72,7 @@ contains
       integer :: i
 
       files = ''
-      call moduli_tables(moduli, title, case%to_text(complete=.true.), summary, curves(1), &
+      call moduli_tables(moduli, title, case_text(case, complete=.true.), summary, curves(1), &
          curves(2))
       if (.not. any(job%writes)) return
       call make_directory(directory_of(job), error)

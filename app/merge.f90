@@ -5,6 +5,7 @@ module vcor_app_merge
    use vcor_app_previous, only : look_at, previous_t, remark, replaced
    use vcor_case_axes, only : new_grid
    use vcor_case_case, only : case_t
+   use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
@@ -45,7 +46,7 @@ contains
       call identify(request, identity, error)
       if (allocated(error)) return
       call read_case_text(case, identity%case_text, request%files(1)%text, error)
-      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call validate(case, error)
       if (.not. allocated(error)) call new_grid(case, grid, error)
       if (allocated(error)) return
       if (grid%count() /= identity%part%points) then

@@ -4,7 +4,7 @@ module vcor_app_place
    use vcor_error, only : error_t, error_usage, raise
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, make_directory
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_text, only : printable
    implicit none
    private

@@ -12,7 +12,7 @@ module vcor_app_plot
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_text, only : integer_text, printable
    use vcor_io_path, only : same_file
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    implicit none
    private
 

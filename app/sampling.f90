@@ -4,10 +4,10 @@ module vcor_app_sampling
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t, prepare
    use vcor_app_window, only : find_window, take_first_point, window_t
-   use vcor_case_build, only : build_material
+   use vcor_case_problem, only : material_of_case
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_material
-   use vcor_case_path, only : material_names
+   use vcor_case_address, only : material_names
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_fit, only : samples_t
    use vcor_impact_outcome, only : outcome_t
@@ -16,7 +16,7 @@ module vcor_app_sampling
    use vcor_io_path, only : file_exists
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_study_moduli, only : sampled_times, time_range_t
    use vcor_study_reliance, only : solve_case
    implicit none
@@ -75,7 +75,7 @@ contains
       if (allocated(error)) return
       call find_material(sampled, filename, name, error)
       if (allocated(error)) return
-      call build_material(sampled%case, sampled%item, material, error)
+      call material_of_case(sampled%case, sampled%item, material, error)
       if (allocated(error)) return
       sampled%name = material%name
       sampled%density = material%density()

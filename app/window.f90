@@ -43,7 +43,7 @@ contains
       notes = ''
       do i = 1, size(job%sweep%grid%axes)
          associate (axis => job%sweep%grid%axes(i))
-            call case%put(axis%handle, axis%values(1), error)
+            call case%put(axis%address, axis%values(1), error)
             if (allocated(error)) return
             notes = notes//'  note: the case varies '//axis%name//', here it is ' &
                //trim(adjustl(significant(axis%values(1))))//new_line('a')
@@ -69,7 +69,7 @@ contains
          notes = notes//'  note: the impact cannot be solved ('//trouble%message &
             //'): its window is not known'//new_line('a')
       else if (outcome%status /= contact_separated) then
-         window%reference = hertz*worker%impact%time_scale()
+         window%reference = hertz*worker%problem%impact%time_scale()
          notes = notes//'  note: the impact does not end in separation: its window is not known' &
             //new_line('a')
       else

@@ -2,8 +2,8 @@
 !> is the median of several batches, so that a disturbed batch does not count
 program impacts
    use, intrinsic :: iso_fortran_env, only : output_unit
-   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, override, read_case, &
-      solver_t, trajectory_t, wp
+   use vcor, only : case_t, error_t, override, problem_of_case, problem_t, read_case, &
+      trajectory_t, validate, wp
    use vcor_benchmark_stopwatch, only : measure, measurement_t, median, seconds, stop_on
    use vcor_numeric_dot, only : dot
    implicit none
@@ -54,9 +54,8 @@ contains
       character(len=*), intent(in) :: label
 
       type(case_t) :: case
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
       type(error_t), allocatable :: error
       character(len=40) :: setting
       real(wp) :: time, total
@@ -71,14 +70,12 @@ contains
          write (setting, '(a, i0)') 'impact.velocity=', v
          call override(case, trim(setting), error)
          call stop_on(error)
-         call case%validate(error)
+         call validate(case, error)
          call stop_on(error)
-         call build_impact(case, impact, error)
-         call stop_on(error)
-         call build_solver(case, impact, solver, error)
+         call problem_of_case(problem, case, error)
          call stop_on(error)
          time = seconds()
-         call solver%solve(impact, trajectory, error)
+         call problem%solver%solve(problem%impact, trajectory, error)
          total = total + seconds() - time
          call stop_on(error)
       end do

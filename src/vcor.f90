@@ -2,8 +2,10 @@
 !> many of them, to write the results and to fit materials. Each name is explained where it is
 !> declared, and used once in tests/unit/test_library.f90
 module vcor
-   use vcor_case_build, only : build_impact, build_material, build_solver
    use vcor_case_case, only : case_t
+   use vcor_case_checks, only : validate
+   use vcor_case_printed, only : case_text
+   use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, error_usage
    use vcor_fit, only : fit_material, fit_t, parameter_t, samples_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
@@ -55,7 +57,7 @@ module vcor
    public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data
-   public :: build_impact, build_material, build_solver
+   public :: validate, case_text, problem_t, problem_of_case, material_of_case
    ! sweeps
    public :: sweep_t, new_sweep, solve_points, new_part, summary_t, new_summary, failures_t
    ! results

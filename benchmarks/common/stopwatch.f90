@@ -1,8 +1,8 @@
 !> Time per impact, as every benchmark takes it
 module vcor_benchmark_stopwatch
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, outcome_t, solver_t, &
-      trajectory_t, wp
+   use vcor, only : case_t, error_t, outcome_t, problem_of_case, problem_t, trajectory_t, &
+      validate, wp
    use vcor_impact_outcome, only : evaluate
    implicit none
    private
@@ -38,21 +38,18 @@ contains
       !> Whether one run without its time is enough; absent: no
       logical, intent(in), optional :: untimed
 
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
       real(wp) :: time(batches), start
       integer :: i, j, repeats
 
-      call case%validate(error)
+      call validate(case, error)
       if (allocated(error)) return
-      call build_impact(case, impact, error)
+      call problem_of_case(problem, case, error)
       if (allocated(error)) return
-      call build_solver(case, impact, solver, error)
+      call problem%solver%solve(problem%impact, trajectory, error)
       if (allocated(error)) return
-      call solver%solve(impact, trajectory, error)
-      if (allocated(error)) return
-      measurement%outcome = evaluate(impact, trajectory)
+      measurement%outcome = evaluate(problem%impact, trajectory)
       if (present(untimed)) then
          if (untimed) return
       end if
@@ -61,7 +58,7 @@ contains
       do
          start = seconds()
          do j = 1, repeats
-            call solver%solve(impact, trajectory, error)
+            call problem%solver%solve(problem%impact, trajectory, error)
          end do
          if (seconds() - start > batch_time) exit
          repeats = 2*repeats
@@ -69,7 +66,7 @@ contains
       do i = 1, batches
          start = seconds()
          do j = 1, repeats
-            call solver%solve(impact, trajectory, error)
+            call problem%solver%solve(problem%impact, trajectory, error)
          end do
          time(i) = 1.0e6_wp*(seconds() - start)/real(repeats, wp)
       end do

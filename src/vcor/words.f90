@@ -1,10 +1,16 @@
-!> Lists of words in one text, with blanks between them: the choices of a key, the names of groups
+!> Lists of words in one text, with blanks between them: the choices of a key, the names of groups;
+!> and the known word nearest to a misspelt one
 module vcor_words
    use vcor_text, only : lower
    implicit none
    private
 
-   public :: contains_word, spelled, join_words
+   public :: contains_word, spelled, join_words, nearest_name, edit_distance, suggestion
+
+   !> Longest name that is compared [bytes]
+   integer, parameter :: longest = 64
+   !> Shortest name that is taken for the beginning of a known one [bytes]
+   integer, parameter :: shortest_beginning = 3
 
 contains
 
@@ -54,5 +60,102 @@ contains
          end if
       end do
    end function join_words
+
+   !> What to say about an unknown name: the nearest known one, or all of them
+   pure function suggestion(name, known) result(text)
+      !> The unknown name
+      character(len=*), intent(in) :: name
+      !> Known names separated by blanks
+      character(len=*), intent(in) :: known
+      !> `did you mean '...'?` or `known: ...`
+      character(len=:), allocatable :: text
+
+      text = nearest_name(name, known)
+      if (len(text) > 0) then
+         text = "did you mean '"//text//"'?"
+      else
+         text = "known: "//join_words(known)
+      end if
+   end function suggestion
+
+   !> The known name nearest to a given one
+   pure function nearest_name(name, known) result(word)
+      !> The unknown name, any case
+      character(len=*), intent(in) :: name
+      !> Known names separated by single blanks, any case
+      character(len=*), intent(in) :: known
+      !> The nearest, empty when none is near
+      character(len=:), allocatable :: word
+      integer :: first, last, distance, least
+
+      word = ""
+      if (len_trim(name) == 0 .or. len_trim(name) > longest) return
+      ! One slip in a short name, one in three letters of a long one
+      least = max(1, (len_trim(name) + 1)/3) + 1
+      first = 1
+      do while (first <= len_trim(known))
+         last = first + index(known(first:)//" ", " ") - 2
+         distance = edit_distance(lower(trim(name)), lower(known(first:last)))
+         if (is_beginning(name, known(first:last))) distance = min(distance, 1)
+         if (distance < least) then
+            least = distance
+            word = known(first:last)
+         end if
+         first = last + 2
+      end do
+   end function nearest_name
+
+   !> Whether a name is the beginning of a known one
+   pure function is_beginning(name, word) result(yes)
+      !> The unknown name, any case
+      character(len=*), intent(in) :: name
+      !> The known one
+      character(len=*), intent(in) :: word
+      !> True if it is
+      logical :: yes
+
+      yes = len_trim(name) >= shortest_beginning
+      if (yes) yes = index(lower(word), lower(trim(name))) == 1
+   end function is_beginning
+
+   !> Least number of letters put in, left out, changed, or swapped with their neighbour that makes
+   !> one word the other
+   pure function edit_distance(a, b) result(distance)
+      !> One word
+      character(len=*), intent(in) :: a
+      !> The other
+      character(len=*), intent(in) :: b
+      !> The number
+      integer :: distance
+      ! Distances of the beginnings of a (first index) and b
+      integer :: d(-1:len(a), -1:len(b))
+      integer :: i, j, change
+
+      ! The rows and columns of index -1 are for swaps only and never the least
+      d = len(a) + len(b)
+      d(0:, 0) = [(i, i = 0, len(a))]
+      d(0, 0:) = [(j, j = 0, len(b))]
+      do j = 1, len(b)
+         do i = 1, len(a)
+            change = merge(0, 1, a(i:i) == b(j:j))
+            d(i, j) = min(d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + change)
+            if (is_swap(a(:i), b(:j))) d(i, j) = min(d(i, j), d(i-2, j-2) + 1)
+         end do
+      end do
+      distance = d(len(a), len(b))
+   end function edit_distance
+
+   !> Whether two words end with the same two letters in different order
+   pure function is_swap(a, b) result(yes)
+      !> One word
+      character(len=*), intent(in) :: a
+      !> The other
+      character(len=*), intent(in) :: b
+      !> True if they do
+      logical :: yes
+
+      yes = len(a) > 1 .and. len(b) > 1
+      if (yes) yes = a(len(a):) == b(len(b)-1:len(b)-1) .and. a(len(a)-1:len(a)-1) == b(len(b):)
+   end function is_swap
 
 end module vcor_words

@@ -79,6 +79,29 @@ def test_list(vcor):
     same(vcor, text, "rubber.rates=1000, 6000, 30000")
 
 
+def test_number_of_a_list(vcor):
+    vcor.write(case_text("prony"))
+    text, _ = edit(case_text("prony"), "material", "rates", "972.0, 6000.0, 34221.0")
+    same(vcor, text, "rubber.rates(2)=6000")
+    says = ["--set rubber.rates(4)", "(4) of a list of 3 numbers"]
+    vcor.refuses("run", "case.nml", "--set", "rubber.rates(4)=1", code=USAGE, says=says)
+    says = ["--set rubber.density(1)", "a single value"]
+    vcor.refuses("run", "case.nml", "--set", "rubber.density(1)=1", code=USAGE, says=says)
+    at = "--set rubber.rates(2)"
+    vcor.refuses("run", "case.nml", "--set", "rubber.rates(2)=-1", code=INPUT, at=at, says="> 0")
+
+
+@pytest.mark.parametrize("command", ["run", "check", "material"])
+def test_what_a_sweep_varies(sls, command):
+    """The sweep would have the last word: a value that has no effect is refused."""
+    sls.write(SLS + "&sweep parameter = 'impact.velocity', values = 1, 2 /\n")
+    line = SLS.count("\n") + 1
+    says = ["--set impact.velocity", "&sweep", f"case.nml:{line}"]
+    sls.refuses(command, "case.nml", "--set", "impact.velocity=3", code=INPUT, says=says)
+    out = sls.succeeds("run", "case.nml", "--print", "cor", "--set", "sweep.values=3,4,5")
+    assert len(out.splitlines()) == 3
+
+
 def test_several(sls):
     text, _ = edit(SLS, "impact", "velocity", "2.0")
     text, _ = edit(text, "material", "beta", "600.0")

@@ -135,12 +135,28 @@ def test_refused(vcor, way, command):
     vcor.refuses(command, "case.nml", code=INPUT, at=f"case.nml:{line}", says=says)
 
 
-@pytest.mark.parametrize("path", ["rubber.moduli", "rubber.rates", "rubber.moduli(2)"])
+@pytest.mark.parametrize("path", ["rubber.moduli", "rubber.rates", "rubber.moduli(4)"])
 def test_lists_are_refused(vcor, path):
     text = case_text("prony")
     vcor.write(text + sweep(path, "values = 1e6"))
     line = text.count("\n") + 2
     vcor.refuses("run", "case.nml", code=INPUT, at=f"case.nml:{line}", says="list")
+
+
+def test_number_of_a_list(vcor):
+    """A point is the case with that number of the list."""
+    text = case_text("prony")
+    vcor.write(text + sweep("rubber.moduli(2)", "values = 10e6, 40e6"))
+    words = ["run", "case.nml", "--print", "rubber.moduli(2),cor"]
+    rows = [line.split() for line in vcor.succeeds(*words).splitlines()]
+    vcor.write(text, "single.nml")
+    for modulus, cor in rows:
+        words = ["--print", "cor", "--set", f"rubber.moduli(2)={modulus}"]
+        assert vcor.succeeds("run", "single.nml", *words).strip() == cor
+    assert rows[0][1] != rows[1][1]
+    vcor.succeeds("run", "case.nml")
+    with h5py.File(vcor.folder / "case.h5") as file:
+        assert list(file["summary/rubber.moduli(2)"]) == [10e6, 40e6]
 
 
 @pytest.mark.parametrize("path", ["impact.velocity", "IMPACT.Velocity", " impact.velocity "])

@@ -15,8 +15,9 @@ module vcor_test_cases
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_product, only : new_product, product_t
    use vcor_solver_type, only : solver_t
-   use vcor_case_build, only : build_impact
    use vcor_case_case, only : case_t
+   use vcor_case_checks, only : validate
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_test, only : check
    implicit none
    private
@@ -65,13 +66,15 @@ contains
       !> The impact
       type(impact_t), intent(out) :: impact
 
+      type(problem_t) :: problem
       type(case_t) :: case
       type(error_t), allocatable :: error
 
       call read_case(case, filename, error)
-      if (.not. allocated(error)) call case%validate(error)
-      if (.not. allocated(error)) call build_impact(case, impact, error)
+      if (.not. allocated(error)) call validate(case, error)
+      if (.not. allocated(error)) call problem_of_case(problem, case, error)
       call success(error, filename//" is read and built")
+      impact = problem%impact
    end subroutine read_impact
 
    !> The paper's impact: a rigid sphere of 10 mm and 7800 kg/m3 on a plate of half thickness 20 mm

@@ -5,9 +5,12 @@ program test_case
    use vcor_error, only : error_input, error_internal, error_t, error_usage
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_kinds, only : wp
-   use vcor_case_case, only : case_t
+   use vcor_case_address, only : resolve
+   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_checks, only : validate
+   use vcor_case_printed, only : case_text
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
-   use vcor_nearest, only : edit_distance, nearest_name
+   use vcor_words, only : edit_distance, nearest_name
    use vcor_text, only : integer_text, is_utf8, printable, quoted, real_text, shortened
    use vcor_test, only : check, check_close, check_contains, check_text, finish, suite
    implicit none
@@ -36,7 +39,7 @@ program test_case
    call test_bodies()
    call test_overrides()
    call test_wrong_overrides()
-   call test_handles()
+   call test_addresses()
    call test_printing()
    call test_round_trips()
    call test_number_texts()
@@ -50,6 +53,10 @@ contains
       integer :: row, group
 
       do group = 1, size(groups)
+         associate (here => groups(group))
+            call check(is_short(here%name) .and. is_short(here%meaning) .and. is_short(here%label) &
+               & .and. is_short(here%selector), trim(here%name)//" does not fill its texts")
+         end associate
          call check(first_row(group) <= last_row(group), trim(groups(group)%name)//" has keys")
          call check(all(catalogue(first_row(group):last_row(group))%group == groups(group)%name), &
             & trim(groups(group)%name)//" is in one place")
@@ -61,6 +68,11 @@ contains
          call check(catalogue(row)%value_kind >= 1 .and. catalogue(row)%value_kind <= 5, &
             & trim(catalogue(row)%name)//" has a kind")
          call check(catalogue(row)%meaning /= "", trim(catalogue(row)%name)//" has a meaning")
+         associate (key => catalogue(row))
+            call check(is_short(key%group) .and. is_short(key%name) .and. is_short(key%meaning) &
+               & .and. is_short(key%unit) .and. is_short(key%choices) .and. is_short(key%default) &
+               & .and. is_short(key%models), trim(key%name)//" does not fill its texts")
+         end associate
          call check(.not. catalogue(row)%required .or. catalogue(row)%default == "", &
             & trim(catalogue(row)%name)//" is required or has a default")
       end do
@@ -69,6 +81,16 @@ contains
       call check(find_key("impact", "speed") == 0, "what is not there is not found")
       call check(find_key("impact", repeat("velocity", 20)) == 0, "nor is what is too long")
    end subroutine test_catalogue
+
+   !> Whether a text of fixed length has room at its end: one that is cut off has none
+   pure function is_short(text) result(yes)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Whether it has
+      logical :: yes
+
+      yes = len_trim(text) < len(text)
+   end function is_short
 
    !> Values and defaults of each kind
    subroutine test_values()
@@ -82,7 +104,7 @@ contains
 
       call read_case_text(case, good, "folder/run.v2.nml", error)
       call check(.not. allocated(error), "the good case is read")
-      call case%validate(error)
+      call validate(case, error)
       call check(.not. allocated(error), "the good case is valid")
 
       call case%get("impact", "velocity", number)
@@ -95,13 +117,13 @@ contains
       call check(case%count("solver") == 0, "no solver")
       call check(case%given("impact", "velocity"), "velocity is given")
       call check(.not. case%given("sphere", "mass"), "mass is not given")
-      call check(.not. case%has_value("sphere", "mass"), "mass has no value")
+      call check(.not. has_value(case, "sphere", "mass"), "mass has no value")
       call case%get("sphere", "mass", number)
       call check(ieee_is_nan(number), "the mass that is not there is NaN")
 
       call case%get("solver", "method", text)
       call check_text(text, "auto", "default of a text")
-      call check(case%has_value("solver", "method"), "a default is a value")
+      call check(has_value(case, "solver", "method"), "a default is a value")
       call check(.not. case%given("solver", "method"), "a default is not given")
       call case%get("solver", "volterra_order", whole)
       call check(whole == 1, "default of an integer")
@@ -113,8 +135,8 @@ contains
       call check(.not. flag, "default of a logical, false")
       call case%get("case", "title", text)
       call check_text(text, "", "default of the title")
-      call check(case%has_value("case", "title"), "the empty title is a value")
-      call check(.not. case%has_value("solver", "accuracy"), "the accuracy has no default")
+      call check(has_value(case, "case", "title"), "the empty title is a value")
+      call check(.not. has_value(case, "solver", "accuracy"), "the accuracy has no default")
       call case%get("output", "stem", text)
       call check_text(text, "run.v2", "the stem is from the file name")
       call case%get("material", "moduli", list, 2)
@@ -368,14 +390,14 @@ contains
       call override(case, "case.title=''", error)
       call case%get("case", "title", text)
       call check_text(text, "", "empty text by option")
-      call case%validate(error)
+      call validate(case, error)
       call check_error(error, error_input, "--set 'p.1 = x'.moduli: |moduli without rates", &
          & "contradiction by option")
 
       call read_case_text(case, impact//sphere//plate//rubber, "x.nml", error)
       call sets_number(case, "material.beta=300", "material", "beta", 1, 300.0_wp)
       call override(case, "sphere.material=sls rubber", error)
-      call case%validate(error)
+      call validate(case, error)
       call check(.not. allocated(error), "an option mends a case")
    end subroutine test_overrides
 
@@ -423,24 +445,25 @@ contains
       call refuses_option("steel.poisson_ratio=0.6", error_input, "in (-1, 0.5]")
    end subroutine test_wrong_overrides
 
-   !> Handles, for sweeps
-   subroutine test_handles()
+   !> Addresses, for sweeps
+   subroutine test_addresses()
       type(case_t) :: case, copy
       type(error_t), allocatable :: error
       character(len=:), allocatable :: message
       real(wp) :: number
-      integer :: handle, i, whole
+      type(address_t) :: address
+      integer :: i, whole
 
       call read_case_text(case, good, "x.nml", error)
-      call case%resolve("sls_rubber.beta", handle, message)
+      call resolve(case, "sls_rubber.beta", address, message)
       call check(.not. allocated(message), "a path is resolved")
-      call check(handle == case%handle("material", "beta", 2), "path and name lead to the same")
-      call check_text(case%path(handle), "sls_rubber.beta", "path of a handle")
-      call check_text(case%path(case%handle("impact", "velocity")), "impact.velocity", &
+      call check(address == case%address("material", "beta", 2), "path and name lead to the same")
+      call check_text(case%path(address), "sls_rubber.beta", "path of an address")
+      call check_text(case%path(case%address("impact", "velocity")), "impact.velocity", &
          & "another path")
       copy = case
       do i = 1, 1000
-         call copy%put(handle, real(i, wp), error)
+         call copy%put(address, real(i, wp), error)
          if (allocated(error)) exit
       end do
       call check(.not. allocated(error), "a number is put")
@@ -448,27 +471,27 @@ contains
       call check_close(number, 1000.0_wp, 0.0_wp, "the number that was put")
       call case%get("material", "beta", number, 2)
       call check_close(number, 1000.0_wp, 0.0_wp, "the other case has its own")
-      call copy%put(handle, -1.0_wp, error)
+      call copy%put(address, -1.0_wp, error)
       call check_error(error, error_input, &
          & "sls_rubber.beta: |found -1.0, expected a number >= 0 [1/s]", "negative rate")
-      call copy%put(handle, ieee_value(number, ieee_quiet_nan), error)
+      call copy%put(address, ieee_value(number, ieee_quiet_nan), error)
       call check_error(error, error_input, "found NaN", "NaN that is put")
       call copy%get("material", "beta", number, 2)
       call check_close(number, 1000.0_wp, 0.0_wp, "what is refused changes nothing")
-      handle = case%handle("solver", "volterra_order")
-      call case%put(handle, 2, error)
+      address = case%address("solver", "volterra_order")
+      call case%put(address, 2.0_wp, error)
       call case%get("solver", "volterra_order", whole)
       call check(whole == 2, "an integer is put")
       call check(case%count("solver") == 1, "its group is there then")
-      call case%put(handle, 1.5_wp, error)
+      call case%put(address, 1.5_wp, error)
       call check_error(error, error_input, &
          & "solver.volterra_order: found 1.5, expected a whole number", "half an order")
-      call case%put(case%handle("solver", "method"), 1, error)
+      call case%put(case%address("solver", "method"), 1.0_wp, error)
       call check_error(error, error_internal, "solver.method is not a number", "number for a text")
-      call case%put(0, 1, error)
-      call check_error(error, error_internal, "handle 0", "no handle")
-      call check(case%handle("material", "beta", 3) == 0, "no third material")
-   end subroutine test_handles
+      call case%put(address_t(), 1.0_wp, error)
+      call check_error(error, error_internal, "no such address", "nowhere")
+      call check(case%address("material", "beta", 3) == address_t(), "no third material")
+   end subroutine test_addresses
 
    !> A case as text
    subroutine test_printing()
@@ -478,19 +501,36 @@ contains
 
       call read_case_text(case, "&impact velocity = 5 / &case title = 'it''s' / &solver /", &
          & "x.nml", error)
-      call check_text(case%to_text(), "&case"//lf//"   title = 'it''s'"//lf//"/"//lf//lf &
+      call check_text(case_text(case), "&case"//lf//"   title = 'it''s'"//lf//"/"//lf//lf &
          & //"&impact"//lf//"   velocity = 5.0"//lf//"/"//lf//lf//"&solver"//lf//"/"//lf, &
          & "what was given")
-      text = case%to_text(complete=.true.)
+      text = case_text(case, complete=.true.)
       call check_contains(text, "   stem = 'x'"//lf, "stem of the complete case")
       call check_contains(text, "   continue_after_separation = .false."//lf, &
          & "logical of the complete case")
       call check_contains(text, "   volterra_order = 1"//lf, "integer of the complete case")
       call check(index(text, "accuracy") == 0, "what has no value is not printed")
-      text = case%to_text(complete=.true., remarks=.true.)
+      text = case_text(case, complete=.true., remarks=.true.)
       call check_contains(text, "! [m/s] Approach velocity", "remark with unit")
       call check_contains(text, "(default)", "remark on a default")
    end subroutine test_printing
+
+   !> Whether a key has a value, given or by default
+   pure function has_value(case, group, key) result(yes)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Whether it has
+      logical :: yes
+
+      type(entry_t) :: entry
+
+      entry = case%entry(case%address(group, key))
+      yes = entry%present
+   end function has_value
 
    !> Text to case to text to case
    subroutine test_round_trips()
@@ -502,7 +542,7 @@ contains
          & //"&output stem = 'it''s', csv = f, directory = '/tmp/a b' /", "many digits")
       call round_trip(good &
          & //"&material name='p' model='prony' poisson_ratio=.3 equilibrium_modulus=1e5" &
-         & //" moduli(3)=3e7, moduli(1:2)=2*1.1e6, times = .1 .01 0.001 /", "prony with sections")
+         & //" moduli = 2*1.1e6, 3e7, times = .1 .01 0.001 /", "prony with repeats")
       call round_trip(good//"&material name='p' model='prony' poisson_ratio=.3 moduli=" &
          & //repeat("0.1234567890123,", 100) &
          & //" rates="//repeat("1.5d-7 ", 100)//"/", "long lists")
@@ -578,18 +618,18 @@ contains
 
       call read_case_text(first, text, "x.nml", error)
       call check(.not. allocated(error), what//" is read")
-      call first%validate(error)
+      call validate(first, error)
       call check(.not. allocated(error), what//" is valid")
-      call read_case_text(second, first%to_text(), "x.nml", error)
+      call read_case_text(second, case_text(first), "x.nml", error)
       call check(.not. allocated(error), what//" is read again")
-      call check_text(second%to_text(), first%to_text(), what)
-      call check_text(second%to_text(complete=.true.), first%to_text(complete=.true.), what &
+      call check_text(case_text(second), case_text(first), what)
+      call check_text(case_text(second, complete=.true.), case_text(first, complete=.true.), what &
          & //", complete")
-      call read_case_text(second, first%to_text(complete=.true., remarks=.true.), "y.nml", error)
+      call read_case_text(second, case_text(first, complete=.true., remarks=.true.), "y.nml", error)
       call check(.not. allocated(error), what//" is read again with remarks")
-      call second%validate(error)
+      call validate(second, error)
       call check(.not. allocated(error), what//" is valid with its defaults")
-      call check_text(second%to_text(), first%to_text(complete=.true.), what &
+      call check_text(case_text(second), case_text(first, complete=.true.), what &
          & //", complete and given")
    end subroutine round_trip
 
@@ -629,10 +669,10 @@ contains
       character(len=:), allocatable :: before
 
       call read_case_text(case, good, "x.nml", error)
-      before = case%to_text()
+      before = case_text(case)
       call override(case, setting, error)
       call check_error(error, code, "--set |"//words, "--set "//printable(setting))
-      call check_text(case%to_text(), before, setting//" changes nothing")
+      call check_text(case_text(case), before, setting//" changes nothing")
    end subroutine refuses_option
 
    !> Check that a case is valid
@@ -646,7 +686,7 @@ contains
 
       call read_case_text(case, text, "x.nml", error)
       call check(.not. allocated(error), what//": is read")
-      call case%validate(error)
+      call validate(case, error)
       call check(.not. allocated(error), what)
    end subroutine accepts
 
@@ -671,7 +711,7 @@ contains
 
       call read_case_text(case, text, "x.nml", error)
       call check(.not. allocated(error), what//": is read")
-      call case%validate(error)
+      call validate(case, error)
       call check_error(error, error_input, words, what)
    end subroutine refuses
 

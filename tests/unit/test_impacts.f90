@@ -11,8 +11,9 @@ program test_impacts
    use vcor_solver_ive, only : ive_t
    use vcor_solver_product, only : product_t
    use vcor_solver_type, only : solver_t
-   use vcor_case_build, only : build_impact
    use vcor_case_case, only : case_t
+   use vcor_case_checks, only : validate
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_test, only : check, finish, suite
    use vcor_test_cases, only : make_ive, make_product, success
    implicit none
@@ -156,14 +157,16 @@ contains
       !> Its text
       character(len=*), intent(in) :: text
 
+      type(problem_t) :: problem
       type(case_t) :: case
       type(error_t), allocatable :: error
 
       call read_case_text(case, text, source, error)
       if (.not. allocated(error)) call read_data(case, error)
-      if (.not. allocated(error)) call case%validate(error)
-      if (.not. allocated(error)) call build_impact(case, row%impact, error)
+      if (.not. allocated(error)) call validate(case, error)
+      if (.not. allocated(error)) call problem_of_case(problem, case, error)
       if (allocated(error)) call success(error, source//" "//trim(row%name))
+      row%impact = problem%impact
    end subroutine build
 
    !> The impacts of a set by one method

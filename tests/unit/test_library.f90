@@ -2,17 +2,18 @@
 !> of the library. What the procedures compute is tested where they are; here it is that they fit
 !> together
 program test_library
-   use vcor, only : build_impact, build_material, build_solver, case_t, cerf_t, contact_lasting, &
-      contact_law_t, contact_modulus_t, contact_separated, contact_sticking, error_file, &
-      error_input, error_numerical, error_t, error_usage, failures_t, fit_material, fit_t, &
-      history_table, impact_t, material_t, mittag_leffler_t, new_cerf, new_contact_law, &
+   use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, &
+      contact_modulus_t, contact_separated, contact_sticking, error_file, error_input, &
+      error_numerical, error_t, error_usage, failures_t, fit_material, fit_t, history_table, &
+      impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, new_contact_law, &
       new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, new_part, new_plate, &
       new_power_law, new_prony, new_rigid, new_sls, new_solver, new_summary, new_sweep, &
       new_tabulated, outcome_t, override, pair_eq1, pair_series, parameter_t, plate_t, &
-      power_law_t, prony_t, quantities, read_case, read_case_text, read_data, samples_t, &
-      solve_impact, solve_points, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
-      table_t, tabulated_t, trajectory_t, version, waves_constant, waves_frozen, &
-      waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
+      power_law_t, problem_of_case, problem_t, prony_t, quantities, read_case, read_case_text, &
+      read_data, samples_t, solve_impact, solve_points, solver_settings_t, solver_t, summary_t, &
+      summary_table, sweep_t, table_t, tabulated_t, trajectory_t, validate, version, &
+      waves_constant, waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, &
+      write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
 
@@ -151,30 +152,27 @@ contains
    !> A case file, and the tables of its results
    subroutine test_case()
       type(case_t) :: case
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(outcome_t) :: outcome
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
       type(table_t) :: table
 
       call read_case(case, sls_file, error)
       if (.not. allocated(error)) call override(case, 'impact.velocity=10', error)
-      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call validate(case, error)
       if (.not. allocated(error)) call read_data(case, error)
       call success(error, "a case is read")
-      call build_material(case, 2, material, error)
+      call material_of_case(case, 2, material, error)
       call success(error, "a material of a case is built")
       call check_close(material%glassy(), 15.0e6_wp, 0.0_wp, "its glassy modulus")
-      call build_impact(case, impact, error)
-      call success(error, "the impact of a case is built")
-      call build_solver(case, impact, solver, error)
-      call success(error, "the solver of a case is built")
-      call solve_impact(solver, impact, trajectory, outcome, error)
+      call problem_of_case(problem, case, error)
+      call success(error, "impact and solver of a case are built")
+      call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
       call success(error, "the impact of a case is solved")
       call check_close(outcome%cor, sls_cor, tolerance, "the paper's impact by its case")
-      call history_table(table, 'sls', case%to_text(complete=.true.), trajectory)
+      call history_table(table, 'sls', case_text(case, complete=.true.), trajectory)
       call check_contains(table%case_text, 'velocity', "a table has its case")
       call write_csv('no/such/folder/x.csv', table, error)
       call refused(error, error_file, "no folder for a text")
@@ -183,9 +181,9 @@ contains
       ! a plate of a tenth of a millimetre takes up the blow
       call override(case, 'plate.half_thickness=1e-4', error)
       call success(error, "a thin plate is no error")
-      call build_impact(case, impact, error)
+      call problem%update(case, error)
       call success(error, "its impact is built")
-      call solve_impact(impact, outcome, error)
+      call solve_impact(problem%impact, outcome, error)
       call check(allocated(error) .or. any(outcome%status == [contact_sticking, contact_lasting]), &
          "a ball on a foil does not come back")
    end subroutine test_case
@@ -235,9 +233,9 @@ contains
 
       call read_case(case, sls_file, error)
       call success(error, "the case is read")
-      call read_case_text(case, case%to_text(complete=.false.)//nl//'&sweep parameter = ' &
+      call read_case_text(case, case_text(case, complete=.false.)//nl//'&sweep parameter = ' &
          //"'impact.velocity', values = 2.5, 5, 10 /", 'sweep', error)
-      if (.not. allocated(error)) call case%validate(error)
+      if (.not. allocated(error)) call validate(case, error)
       if (.not. allocated(error)) call new_sweep(sweep, case, error)
       call success(error, "a sweep is built")
       call new_summary(summary, sweep%grid%count(), error)
@@ -247,7 +245,7 @@ contains
       call check(failures%count == 0, "all points have a result")
       call check(quantities(1)%name == 'cor', "the first quantity is the COR")
       call check_close(summary%values(1)%at(3), sls_cor, tolerance, "the last point")
-      call summary_table(table, 'sweep', case%to_text(complete=.true.), sweep%grid, summary)
+      call summary_table(table, 'sweep', case_text(case, complete=.true.), sweep%grid, summary)
       call check_close(table%columns(1)%reals(3), sls_cor, tolerance, "the same in the table")
    end subroutine test_sweep
 

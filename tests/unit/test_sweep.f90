@@ -9,12 +9,12 @@ program test_sweep
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
    use vcor_case_axes, only : new_grid
-   use vcor_case_blueprint, only : place_of, place_t
-   use vcor_case_build, only : build_impact, build_solver
-   use vcor_case_case, only : case_t
+   use vcor_case_address, only : swept_addresses
+   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_case_checks, only : validate
    use vcor_sweep_failures, only : failures_t
    use vcor_case_grid, only : axis_t, grid_t, spaced
-   use vcor_case_path, only : swept_handles
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities, &
       quantity_values, status_name
    use vcor_sweep_summary, only : new_summary, summary_t
@@ -110,13 +110,12 @@ contains
    subroutine test_grid_of_a_case()
       type(case_t) :: case
       type(grid_t) :: grid
-      type(place_t) :: place
       type(error_t), allocatable :: error
-      integer, allocatable :: handles(:)
+      type(address_t), allocatable :: addresses(:)
 
       call read_case_text(case, text//sweeps, "x.nml", error)
       call check(.not. allocated(error), "the case is read")
-      call case%validate(error)
+      call validate(case, error)
       call check(.not. allocated(error), "the case is sound")
       call new_grid(case, grid, error)
       call check(.not. allocated(error), "its grid is built")
@@ -125,14 +124,11 @@ contains
       call check_text(grid%axes(1)%unit, "1/s", "unit of an axis")
       call check_text(grid%axes(2)%name, "impact.velocity", "name of another")
       call check_close(grid%axes(2)%values, [-5.0_wp, 0.0_wp, 5.0_wp, 10.0_wp], exact, "values")
-      allocate (handles, source=swept_handles(case))
-      call check(all(handles == [case%handle("material", "beta", 2), &
-         case%handle("impact", "velocity")]), "handles")
-      place = place_of(case, handles(1))
-      call check(place%group == "material" .and. place%key == "beta" .and. place%item == 2, &
-         "place of a handle")
+      allocate (addresses, source=swept_addresses(case))
+      call check(all(addresses == [case%address("material", "beta", 2), &
+         case%address("impact", "velocity")]), "addresses")
       call override(case, "'sls rubber'.alpha=1500", error)
-      call case%validate(error)
+      call validate(case, error)
       call check(.not. allocated(error), "what is swept contradicts nothing")
       call override(case, "sls_rubber.poisson_ratio=-1.5", error)
       call check(allocated(error), "other values are checked")
@@ -144,9 +140,8 @@ contains
       type(sweep_t) :: sweep
       type(worker_t) :: worker
       type(outcome_t) :: outcome, expected
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
       type(error_t), allocatable :: error
       integer :: point, places(2)
 
@@ -174,10 +169,9 @@ contains
             call override(single, "sls_rubber.beta="//real_text(axes(1)%values(places(1))), error)
             call override(single, "impact.velocity="//real_text(axes(2)%values(places(2))), error)
          end associate
-         call build_impact(single, impact, error)
-         call build_solver(single, impact, solver, error)
-         call solver%solve(impact, trajectory, error)
-         expected = evaluate(impact, trajectory)
+         call problem_of_case(problem, single, error)
+         call problem%solver%solve(problem%impact, trajectory, error)
+         expected = evaluate(problem%impact, trajectory)
          call check_close(quantity_values(outcome), quantity_values(expected), exact, &
             "its outcome is that of the impact by itself")
       end do

@@ -9,8 +9,8 @@ program test_verification
    use vcor_io_case_reader, only : override, read_case
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_case_build, only : build_impact
    use vcor_case_case, only : case_t
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_verify_comparison, only : compare
    use vcor_verify_attempt, only : attempt_t
    use vcor_verify_judge, only : is_honest, judge_ends, judge_numbers
@@ -300,14 +300,14 @@ contains
       type(comparison_t), intent(out) :: comparison
 
       type(case_t) :: case
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(error_t), allocatable :: error
 
       call read_case(case, "examples/paper/sls.nml", error)
       call success(error, "a case is read")
-      call build_impact(case, impact, error)
+      call problem_of_case(problem, case, error)
       call success(error, "its impact is built")
-      call compare(case, impact, comparison, error)
+      call compare(case, problem%impact, comparison, error)
       call success(error, "it is compared")
    end subroutine compare_sls
 

@@ -3,11 +3,11 @@ module vcor_case_axes
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_numeric_sorting, only : sort
-   use vcor_case_entries, only : entries_t
+   use vcor_case_address, only : resolve
+   use vcor_case_case, only : case_t, operator(==)
    use vcor_case_grid, only : axis_t, grid_t, log_spacing, spaced
-   use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, list_key, real_key, &
+   use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
       & row_for_model
-   use vcor_case_path, only : resolve_path
    use vcor_text, only : integer_text, real_text, shortened
    use vcor_case_unread, only : why_unread
    use vcor_words, only : join_words
@@ -26,7 +26,7 @@ contains
    !> Build the grid of a case; the values are not held against the ranges of their keys
    subroutine new_grid(case, grid, error)
       !> A case, each entry of which is within its range
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> The grid; without axes where the case has no &sweep group
       type(grid_t), intent(out) :: grid
       !> Error of code `error_input`, unallocated on success
@@ -55,7 +55,7 @@ contains
    !> What a &sweep group varies
    subroutine find_parameter(case, item, before, axis, error)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Number of the group
       integer, intent(in) :: item
       !> Parameters of the groups before, shape (item - 1)
@@ -66,20 +66,19 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: path, message, model, reason
-      integer :: group, row, owner, i
+      integer :: group, row, i
 
       call case%get('sweep', 'parameter', path, item)
-      call resolve_path(case, path, axis%handle, message)
-      if (axis%handle == 0) then
-         if (is_element(case, path)) message = "found '"//shortened(path) &
-            //"', an element of a list; expected a single number"
+      call resolve(case, path, axis%address, message)
+      if (allocated(message)) then
          call refuse(case, 'parameter', item, message, error)
          return
       end if
 
-      call case%locate(axis%handle, group, row, owner)
-      axis%name = case%path(axis%handle)
-      model = case%model(group, owner)
+      axis%name = case%path(axis%address)
+      group = axis%address%group
+      row = axis%address%row
+      model = case%model(group, axis%address%item)
       if (groups(group)%name == 'sweep') then
          message = "found '"//shortened(path)//"', but a sweep cannot vary a sweep"
       else if (groups(group)%name == 'output') then
@@ -87,16 +86,16 @@ contains
       else if (row_for_model(row, model) == 0) then
          message = "key '"//trim(catalogue(row)%name)//"' does not belong to model '"//model &
             //"', its keys are: "//join_words(keys_of(group, model))
-      else if (catalogue(row)%value_kind /= real_key) then
+      else if (catalogue(row)%value_kind /= real_key .and. axis%address%element == 0) then
          message = "found '"//shortened(path)//"', which is "//kind_of(catalogue(row)) &
             //'; expected a single real number'
       else
-         reason = why_unread(case, axis%handle)
+         reason = why_unread(case, axis%address)
          if (reason /= '') message = "found '"//shortened(path) &
             //"', which the impact does not read: "//reason
       end if
       do i = 1, size(before)
-         if (before(i)%handle /= axis%handle) cycle
+         if (.not. before(i)%address == axis%address) cycle
          message = "'"//shortened(path)//"' is swept twice, the first at " &
             //case%location('sweep', 'parameter', i)
       end do
@@ -108,27 +107,6 @@ contains
       axis%unit = trim(catalogue(row)%unit)
       axis%meaning = trim(catalogue(row)%meaning)
    end subroutine find_parameter
-
-   !> Whether a path leads to an element of a list, `name.moduli(2)`
-   pure function is_element(case, path) result(yes)
-      !> The case
-      class(entries_t), intent(in) :: case
-      !> The path
-      character(len=*), intent(in) :: path
-      !> Whether it does
-      logical :: yes
-
-      character(len=:), allocatable :: message
-      integer :: handle, mark, group, row, item
-
-      yes = .false.
-      mark = index(path, '(', back=.true.)
-      if (mark == 0) return
-      call resolve_path(case, path(:mark - 1), handle, message)
-      if (handle == 0) return
-      call case%locate(handle, group, row, item)
-      yes = catalogue(row)%value_kind == list_key
-   end function is_element
 
    !> Kind of a key in words
    pure function kind_of(key) result(words)
@@ -146,7 +124,7 @@ contains
    !> Values of a &sweep group
    subroutine find_values(case, item, points, values, error)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Number of the group
       integer, intent(in) :: item
       !> Points of the groups before
@@ -222,7 +200,7 @@ contains
    !> them apart
    subroutine refuse_repeated(case, item, values, error)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Number of the &sweep group
       integer, intent(in) :: item
       !> Its values, shape (n)
@@ -251,7 +229,7 @@ contains
    !> Raise an error about a key of a &sweep group
    subroutine refuse(case, key, item, message, error)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Name of the key
       character(len=*), intent(in) :: key
       !> Number of the group

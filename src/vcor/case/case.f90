@@ -1,93 +1,714 @@
-!> A case: the description of an impact, of how it is solved and what is written, as a user gives it
+!> A case: the description of an impact, of how it is solved and of what is written, as a user
+!> gives it
 !>
-!> Filled by `vcor_io_case_reader`, or by `add`, `assign` and `put`; `validate` says whether it
-!> makes sense. After
-!> that every value is within its range, and whatever one value needs of another is there.
+!> A case has an entry for each key of the catalogue, given or by default: a group that may be there
+!> once has its entries from the start, a repeated group has them for each time it is there. An
+!> address is group, item, key and, in a list, element. A sweep sets the number at an address, and
+!> `vcor_case_problem` reads it there.
 module vcor_case_case
-   use vcor_error, only : error_t
-   use vcor_case_checks, only : check_case
-   use vcor_case_entries, only : entries_t
-   use vcor_case_path, only : resolve_path
-   use vcor_case_printed, only : printed_case
-   use vcor_case_store, only : entry_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
+      integer_key, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
+   use vcor_interval, only : contains_number
+   use vcor_error, only : error_input, error_internal, error_t, raise
+   use vcor_kinds, only : wp
+   use vcor_text, only : canonical_name, integer_text, lower, printable, real_text, same_name
    implicit none
    private
 
-   public :: case_t
+   public :: case_t, address_t, entry_t, operator(==)
+
+   !> Where a value stands in a case
+   type :: address_t
+      !> Index of the group in `groups`, 0: nowhere
+      integer :: group = 0
+      !> Number of the item, 1 for a group that is there once
+      integer :: item = 0
+      !> First row of the key in `catalogue`
+      integer :: row = 0
+      !> Which number of a list, 0: the value as a whole
+      integer :: element = 0
+   end type address_t
+
+   !> A value and what is known of it; only what the kind of its key asks for has a meaning
+   type :: entry_t
+      !> Whether it was given by the user
+      logical :: given = .false.
+      !> Whether there is a value at all, given or by default
+      logical :: present = .false.
+      !> Line of the case file, 0 where it does not stand there
+      integer :: line = 0
+      !> Where it comes from when that is not the case file
+      character(len=:), allocatable :: origin
+      !> A real number in the unit of the key, an integer, or 1 for true and 0 for false
+      real(wp) :: number = 0.0_wp
+      !> A text
+      character(len=:), allocatable :: text
+      !> A list of numbers in the unit of the key, shape (n)
+      real(wp), allocatable :: list(:)
+   end type entry_t
+
+   !> One item of a group
+   type :: item_t
+      !> Whether the group is in the case, and not only its defaults
+      logical :: present = .false.
+      !> Line of the case file it begins in, 0 where there is none
+      integer :: line = 0
+      !> Number of its changes
+      integer :: revision = 0
+      !> Entries, from the first row of the group to its last
+      type(entry_t), allocatable :: entry(:)
+   end type item_t
+
+   !> All items of a group
+   type :: items_t
+      !> Number of items
+      integer :: n = 0
+      !> The items, shape (>= n)
+      type(item_t), allocatable :: item(:)
+   end type items_t
 
    !> A case
-   type, extends(entries_t) :: case_t
+   type :: case_t
+      !> Name of the case file, for messages
+      character(len=:), allocatable :: source
+      !> Items by group
+      type(items_t), allocatable, private :: group(:)
    contains
       !> Begin anew, for a case file of this name
       procedure :: start
-      !> Check everything that can be told from the case alone
-      procedure :: validate
-      !> Handle of the entry a path leads to
-      procedure :: resolve
-      !> The case as namelists
-      procedure :: to_text
+      !> Add a group
+      procedure :: add
+      !> Number of times a group is in the case
+      procedure :: count => count_items
+      !> Line of the case file a group begins in
+      procedure :: line => line_of_item
+      !> Number of changes of an item
+      procedure :: revision
+      !> Value of the selector of an item, such as the model of a material
+      procedure :: model
+      !> Item of the material of a name
+      procedure :: find_material
+      !> Address of a key
+      procedure :: address
+      !> Path of an address
+      procedure :: path
+      !> Row of the catalogue for an address, which depends on the model
+      procedure :: row
+      !> Entry at an address
+      procedure :: entry => entry_at
+      !> Number at an address
+      procedure :: number
+      !> Value of a key
+      generic :: get => get_real, get_integer, get_logical, get_text, get_list
+      procedure, private :: get_real
+      procedure, private :: get_integer
+      procedure, private :: get_logical
+      procedure, private :: get_text
+      procedure, private :: get_list
+      !> Whether a key was given
+      procedure :: given
+      !> Set an entry, a number, a text or a list as it is
+      generic :: set => set_entry, set_number, set_text, set_list
+      procedure, private :: set_entry
+      procedure, private :: set_number
+      procedure, private :: set_text
+      procedure, private :: set_list
+      !> Set a number if it is within its range
+      procedure :: put
+      !> Take a value back: the key has its default
+      procedure :: unset
+      !> Where a key was given, for messages
+      generic :: location => location_of_key, location_of_address
+      procedure, private :: location_of_key
+      procedure, private :: location_of_address
    end type case_t
+
+   !> Whether two addresses are the same
+   interface operator(==)
+      module procedure same_address
+   end interface operator(==)
 
 contains
 
-   !> Begin anew, for a case file of this name: no group is there, every key has its default
+   !> Whether two addresses are the same
+   elemental function same_address(a, b) result(same)
+      !> One
+      type(address_t), intent(in) :: a
+      !> The other
+      type(address_t), intent(in) :: b
+      !> Whether they are
+      logical :: same
+
+      same = a%row == b%row .and. a%item == b%item .and. a%element == b%element
+   end function same_address
+
+   !> Begin anew: no group is there, every key has its default
    pure subroutine start(self, source)
       !> The case
       class(case_t), intent(inout) :: self
       !> Name of the case file; the default of `output.stem` is made from it
       character(len=*), intent(in) :: source
-      character(len=*), parameter :: extension = ".nml"
-      type(entry_t) :: stem
-      integer :: mark
 
-      call self%clear(source)
-      stem%text = trim(source(index(source, "/", back=.true.)+1:))
-      mark = index(stem%text, extension, back=.true.)
-      if (mark > 1 .and. mark == len(stem%text) - len(extension) + 1) stem%text = stem%text(:mark-1)
-      if (len(stem%text) == 0) stem%text = "case"
-      stem%present = .true.
-      call self%assign(self%handle("output", "stem"), stem)
+      character(len=*), parameter :: extension = '.nml'
+      character(len=:), allocatable :: stem
+      integer :: g, mark
+
+      self%source = source
+      if (allocated(self%group)) deallocate (self%group)
+      allocate (self%group(size(groups)))
+      do g = 1, size(groups)
+         allocate (self%group(g)%item(merge(4, 1, groups(g)%repeated)))
+         if (groups(g)%repeated) cycle
+         self%group(g)%n = 1
+         call default_item(self%group(g)%item(1), g)
+      end do
+      stem = trim(source(index(source, '/', back=.true.) + 1:))
+      mark = index(stem, extension, back=.true.)
+      if (mark > 1 .and. mark == len(stem) - len(extension) + 1) stem = stem(:mark - 1)
+      if (len(stem) == 0) stem = 'case'
+      call self%set(self%address('output', 'stem'), stem, given=.false.)
    end subroutine start
 
-   !> Check everything that can be told from the case alone: what must be there, ranges, and one
-   !> value against
-   !> another
-   subroutine validate(self, error)
+   !> An item with nothing but defaults
+   pure subroutine default_item(item, group)
+      !> The item
+      type(item_t), intent(out) :: item
+      !> Index of its group
+      integer, intent(in) :: group
+
+      integer :: row
+
+      allocate (item%entry(first_row(group):last_row(group)))
+      do row = first_row(group), last_row(group)
+         call set_default(item%entry(row), row)
+      end do
+   end subroutine default_item
+
+   !> Give a key its default
+   pure subroutine set_default(entry, row)
+      !> Its entry
+      type(entry_t), intent(out) :: entry
+      !> Row of the key
+      integer, intent(in) :: row
+
+      character(len=len(catalogue%default)) :: default
+
+      default = catalogue(row)%default
+      entry%present = default /= ''
+      select case (catalogue(row)%value_kind)
+      case (real_key, integer_key)
+         if (entry%present) read (default, *) entry%number
+      case (logical_key)
+         if (default == '.true.') entry%number = 1.0_wp
+      case (text_key)
+         entry%text = trim(default)
+         if (default == "''") entry%text = ''
+      case default
+         allocate (entry%list(0))
+      end select
+   end subroutine set_default
+
+   !> Add a group: a new item where it may be repeated, else the group is marked as being there
+   pure subroutine add(self, group, line, item)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Line of the case file it begins in, 0 where there is none
+      integer, intent(in) :: line
+      !> Number of the item
+      integer, intent(out) :: item
+
+      type(item_t), allocatable :: larger(:)
+
+      associate (items => self%group(group))
+         if (groups(group)%repeated) then
+            if (items%n == size(items%item)) then
+               allocate (larger(2*items%n))
+               larger(:items%n) = items%item
+               call move_alloc(larger, items%item)
+            end if
+            items%n = items%n + 1
+            call default_item(items%item(items%n), group)
+         end if
+         item = items%n
+         items%item(item)%present = .true.
+         items%item(item)%line = line
+      end associate
+   end subroutine add
+
+   !> Number of times a group is in the case
+   pure function count_items(self, group) result(n)
       !> The case
       class(case_t), intent(in) :: self
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> The number
+      integer :: n
 
-      call check_case(self, error)
-   end subroutine validate
+      integer :: g
 
-   !> Handle of the entry a path leads to: `group.key`, or `name.key` for the material of this name
-   pure subroutine resolve(self, path, handle, message)
+      n = 0
+      g = find_group(group)
+      if (g == 0 .or. .not. allocated(self%group)) return
+      n = count(self%group(g)%item(:self%group(g)%n)%present)
+   end function count_items
+
+   !> Line of the case file a group begins in
+   pure function line_of_item(self, group, item) result(line)
       !> The case
       class(case_t), intent(in) :: self
-      !> The path; the name of a material may be in quotes, its blanks may be underscores
-      character(len=*), intent(in) :: path
-      !> The handle, 0 where the path leads nowhere
-      integer, intent(out) :: handle
-      !> What is wrong with the path, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Number of the item
+      integer, intent(in) :: item
+      !> The line, 0 where there is none
+      integer :: line
 
-      call resolve_path(self, path, handle, message)
-   end subroutine resolve
+      line = self%group(group)%item(item)%line
+   end function line_of_item
 
-   !> The case as namelists, readable by vcor and by any other reader of namelists to the same
-   !> values
-   pure function to_text(self, complete, remarks) result(text)
+   !> Counter of the changes of an item: as long as it stays the same, so does the item
+   pure function revision(self, group, item)
       !> The case
       class(case_t), intent(in) :: self
-      !> Whether what was not given is printed with its default; absent: no
-      logical, intent(in), optional :: complete
-      !> Whether each key has a comment with unit and meaning; absent: no
-      logical, intent(in), optional :: remarks
-      !> Lines, each with a line feed at its end
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Number of the item
+      integer, intent(in) :: item
+      !> The counter
+      integer :: revision
+
+      revision = self%group(group)%item(item)%revision
+   end function revision
+
+   !> Value of the selector of an item, such as the model of a material
+   pure function model(self, group, item) result(word)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Index of the group
+      integer, intent(in) :: group
+      !> Number of the item
+      integer, intent(in) :: item
+      !> The value, lower case; blank where the group has no selector
+      character(len=:), allocatable :: word
+
+      word = ''
+      if (groups(group)%selector == '') return
+      word = lower(self%group(group)%item(item)%entry( &
+         find_key(groups(group)%name, groups(group)%selector))%text)
+   end function model
+
+   !> Item of the material of a name; case, and blanks against underscores, make no difference
+   pure function find_material(self, name) result(item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the material
+      character(len=*), intent(in) :: name
+      !> Number of the first item of this name, 0 when there is none
+      integer :: item
+
+      character(len=:), allocatable :: other
+
+      do item = 1, self%count('material')
+         call self%get('material', 'name', other, item)
+         if (same_name(name, other)) return
+      end do
+      item = 0
+   end function find_material
+
+   !> Address of a key
+   pure function address(self, group, key, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+      !> The address, nowhere if there is no such key or item
+      type(address_t) :: address
+
+      integer :: g, i
+
+      i = 1
+      if (present(item)) i = item
+      g = find_group(group)
+      if (g == 0 .or. .not. allocated(self%group)) return
+      if (i < 1 .or. i > self%group(g)%n) return
+      address%row = find_key(group, key)
+      if (address%row == 0) return
+      address%group = g
+      address%item = i
+   end function address
+
+   !> Path of an address, `group.key`, `material_name.key` or `material_name.key(2)`
+   pure function path(self, address) result(text)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The path, without blanks; empty for nowhere
       character(len=:), allocatable :: text
 
-      text = printed_case(self, complete, remarks)
-   end function to_text
+      character(len=:), allocatable :: label
+
+      text = ''
+      if (address%group == 0) return
+      associate (group => groups(address%group))
+         text = trim(group%name)
+         if (group%label /= '') then
+            call self%get(group%name, group%label, label, address%item)
+            if (label /= '') text = canonical_name(label)
+         end if
+      end associate
+      text = text//'.'//trim(catalogue(address%row)%name)
+      if (address%element > 0) text = text//'('//integer_text(address%element)//')'
+   end function path
+
+   !> Row of the catalogue for an address, which depends on the model
+   pure function row(self, address)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The row, 0 if the key does not belong to the model
+      integer :: row
+
+      row = row_for_model(address%row, self%model(address%group, address%item))
+   end function row
+
+   !> Entry at an address
+   pure function entry_at(self, address) result(entry)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The entry, with text and list, and without a value for nowhere
+      type(entry_t) :: entry
+
+      if (address%group > 0) &
+         entry = self%group(address%group)%item(address%item)%entry(address%row)
+      if (.not. allocated(entry%text)) entry%text = ''
+      if (.not. allocated(entry%list)) allocate (entry%list(0))
+      if (address%element > 0) entry%number = entry%list(address%element)
+   end function entry_at
+
+   !> Number at an address: of a real, integer or logical key, or in a list; a quiet NaN where there
+   !> is none
+   pure function number(self, address)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The number, in the unit of the key
+      real(wp) :: number
+
+      ! whoever calculates with what is not there shall notice
+      number = ieee_value(number, ieee_quiet_nan)
+      if (address%group == 0) return
+      associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
+         if (address%element > 0) then
+            number = entry%list(address%element)
+         else if (entry%present) then
+            number = entry%number
+         end if
+      end associate
+   end function number
+
+   !> Value of a real key; a quiet NaN where there is none
+   pure subroutine get_real(self, group, key, value, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The value, in the unit of the key
+      real(wp), intent(out) :: value
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+
+      value = self%number(self%address(group, key, item))
+   end subroutine get_real
+
+   !> Value of an integer key; `-huge(1)` where there is none
+   pure subroutine get_integer(self, group, key, value, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The value
+      integer, intent(out) :: value
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+
+      type(entry_t) :: entry
+
+      entry = self%entry(self%address(group, key, item))
+      value = -huge(value)
+      if (entry%present) value = nint(entry%number)
+   end subroutine get_integer
+
+   !> Value of a logical key; false where there is none
+   pure subroutine get_logical(self, group, key, value, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The value
+      logical, intent(out) :: value
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+
+      type(entry_t) :: entry
+
+      entry = self%entry(self%address(group, key, item))
+      value = entry%number > 0.5_wp
+   end subroutine get_logical
+
+   !> Value of a text key; empty where there is none
+   pure subroutine get_text(self, group, key, value, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The value; choices as the catalogue has them
+      character(len=:), allocatable, intent(out) :: value
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+
+      type(entry_t) :: entry
+
+      entry = self%entry(self%address(group, key, item))
+      call move_alloc(entry%text, value)
+   end subroutine get_text
+
+   !> Value of a list key; without elements where there is none
+   pure subroutine get_list(self, group, key, value, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> The values, in the unit of the key, shape (n)
+      real(wp), allocatable, intent(out) :: value(:)
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+
+      type(entry_t) :: entry
+
+      entry = self%entry(self%address(group, key, item))
+      call move_alloc(entry%list, value)
+   end subroutine get_list
+
+   !> Whether a key was given
+   pure function given(self, group, key, item)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+      !> True if it was
+      logical :: given
+
+      type(entry_t) :: entry
+
+      entry = self%entry(self%address(group, key, item))
+      given = entry%given
+   end function given
+
+   !> Set an entry as it is; of a number in a list only that number
+   pure subroutine set_entry(self, address, entry)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The entry
+      type(entry_t), intent(in) :: entry
+
+      real(wp), allocatable :: list(:)
+
+      associate (item => self%group(address%group)%item(address%item))
+         if (address%element > 0) list = item%entry(address%row)%list
+         item%entry(address%row) = entry
+         if (address%element > 0) then
+            list(address%element) = entry%number
+            call move_alloc(list, item%entry(address%row)%list)
+         end if
+         call note_change(item, address%row, entry%given)
+      end associate
+   end subroutine set_entry
+
+   !> Set a number as it is: cheap, for a sweep
+   pure subroutine set_number(self, address, number)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> Address of a real, integer or logical key, or of a number in a list
+      type(address_t), intent(in) :: address
+      !> The number, in the unit of the key
+      real(wp), intent(in) :: number
+
+      associate (item => self%group(address%group)%item(address%item))
+         if (address%element > 0) then
+            item%entry(address%row)%list(address%element) = number
+         else
+            item%entry(address%row)%number = number
+         end if
+         call note_change(item, address%row, .true.)
+      end associate
+   end subroutine set_number
+
+   !> Set a text as it is
+   pure subroutine set_text(self, address, text, given)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> Address of a text key
+      type(address_t), intent(in) :: address
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Whether it counts as given by the user
+      logical, intent(in) :: given
+
+      associate (item => self%group(address%group)%item(address%item))
+         item%entry(address%row)%text = text
+         call note_change(item, address%row, given)
+      end associate
+   end subroutine set_text
+
+   !> Set a list as it is
+   pure subroutine set_list(self, address, list, given)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> Address of a list key
+      type(address_t), intent(in) :: address
+      !> The list, in the unit of the key, shape (n)
+      real(wp), intent(in) :: list(:)
+      !> Whether it counts as given by the user
+      logical, intent(in) :: given
+
+      associate (item => self%group(address%group)%item(address%item))
+         item%entry(address%row)%list = list
+         call note_change(item, address%row, given)
+      end associate
+   end subroutine set_list
+
+   !> Note that an entry has a new value; if it is given, the group counts as being in the case
+   pure subroutine note_change(item, row, given)
+      !> The item
+      type(item_t), intent(inout) :: item
+      !> Row of the key
+      integer, intent(in) :: row
+      !> Whether the value was given by the user
+      logical, intent(in) :: given
+
+      item%revision = item%revision + 1
+      item%entry(row)%present = .true.
+      item%entry(row)%given = given
+      if (given) item%present = .true.
+   end subroutine note_change
+
+   !> Set a number if it is within its range
+   subroutine put(self, address, number, error)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> Address of a real or integer key, or of a number in a list
+      type(address_t), intent(in) :: address
+      !> The number, in the unit of the key; integral where the key is an integer
+      real(wp), intent(in) :: number
+      !> Error of code `error_input` if it is out of range, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: is_sound
+      integer :: row
+
+      if (address%group == 0) then
+         call raise(error, error_internal, 'there is no such address in the case')
+         return
+      end if
+      row = self%row(address)
+      if (row == 0) row = address%row
+      associate (key => catalogue(row))
+         if (all(key%value_kind /= [real_key, integer_key]) .and. address%element == 0) then
+            call raise(error, error_internal, self%path(address)//' is not a number')
+            return
+         end if
+         is_sound = contains_number(key%range, number)
+         if (is_sound .and. key%value_kind == integer_key) &
+            is_sound = .not. abs(number - anint(number)) > 0.0_wp
+         if (is_sound) then
+            call self%set(address, number)
+         else
+            call raise(error, error_input, self%path(address)//': found '//real_text(number) &
+               //', expected '//wanted(key))
+         end if
+      end associate
+   end subroutine put
+
+   !> Take a value back: the key has its default
+   pure subroutine unset(self, address)
+      !> The case
+      class(case_t), intent(inout) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+
+      associate (item => self%group(address%group)%item(address%item))
+         call set_default(item%entry(address%row), address%row)
+         item%revision = item%revision + 1
+      end associate
+   end subroutine unset
+
+   !> Where a key was given, for messages
+   pure function location_of_key(self, group, key, item) result(text)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> Name of the group
+      character(len=*), intent(in) :: group
+      !> Name of the key
+      character(len=*), intent(in) :: key
+      !> Number of the item; absent: 1
+      integer, intent(in), optional :: item
+      !> The place, for the beginning of a message
+      character(len=:), allocatable :: text
+
+      text = self%location(self%address(group, key, item))
+   end function location_of_key
+
+   !> Where the value at an address was given, `case.nml:12`; the line of its group where it was
+   !> not, or the file alone
+   pure function location_of_address(self, address) result(text)
+      !> The case
+      class(case_t), intent(in) :: self
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The place, for the beginning of a message
+      character(len=:), allocatable :: text
+
+      integer :: line
+
+      text = printable(self%source)
+      if (address%group == 0) return
+      associate (item => self%group(address%group)%item(address%item))
+         if (allocated(item%entry(address%row)%origin)) then
+            text = item%entry(address%row)%origin
+            return
+         end if
+         line = item%entry(address%row)%line
+         if (line == 0) line = item%line
+      end associate
+      if (line > 0) text = text//':'//integer_text(line)
+   end function location_of_address
 
 end module vcor_case_case

@@ -1,9 +1,10 @@
 !> The catalogue: every group and every key a case may hold, in one table
 !>
-!> Reading, checking, printing and help are all made from it, so a new key is a new row here and
-!> nothing else.
-!> The keys of `&material` come from the parameters of the models, a row for each key of each model;
-!> rows of one key share their kind and their default.
+!> Reading, checking, printing, sweeping and help are all made from it: a new key is a new row here,
+!> the place that uses its value, and a line in `vcor_case_unread` that says when it is read. The
+!> keys of `&material` come from the parameters of the models, a row for each key of each model;
+!> rows of one key share their kind and their default. Texts have a fixed length, as arrays of
+!> constants must: a unit test says when one is full.
 module vcor_case_catalogue
    use vcor_kinds, only : wp
    use vcor_interval, only : interval_t, interval_text
@@ -33,24 +34,24 @@ module vcor_case_catalogue
    !> One key
    type :: key_t
       !> Group it stands in, lower case
-      character(len=8) :: group = ""
+      character(len=16) :: group = ""
       !> Name, lower case
       character(len=26) :: name = ""
       !> One of the `*_key` constants; `kind` alone would be taken for the inquiry of this name
       integer :: value_kind = 0
       !> What it means, one line
-      character(len=72) :: meaning = ""
+      character(len=96) :: meaning = ""
       !> Unit, blank for none
-      character(len=8) :: unit = ""
+      character(len=16) :: unit = ""
       !> Range of a number, or of every number of a list
       type(interval_t) :: range = interval_t()
       !> Words a text may be, separated by blanks; blank: any text
-      character(len=64) :: choices = ""
+      character(len=128) :: choices = ""
       !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the
       !> empty text
-      character(len=12) :: default = ""
+      character(len=32) :: default = ""
       !> Models of the group's selector this row is for, separated by blanks; blank: all
-      character(len=56) :: models = ""
+      character(len=128) :: models = ""
       !> Whether the key must be given
       logical :: required = .false.
    end type key_t
@@ -58,17 +59,17 @@ module vcor_case_catalogue
    !> One group
    type :: group_t
       !> Name, lower case
-      character(len=8) :: name = ""
+      character(len=16) :: name = ""
       !> What it describes, one line
-      character(len=72) :: meaning = ""
+      character(len=96) :: meaning = ""
       !> Whether it must be there
       logical :: required = .false.
       !> Whether it may be there more than once
       logical :: repeated = .false.
       !> Key whose value names an item of a repeated group; blank: none
-      character(len=8) :: label = ""
+      character(len=32) :: label = ""
       !> Key whose value selects the rows of `models`; blank: none
-      character(len=8) :: selector = ""
+      character(len=32) :: selector = ""
    end type group_t
 
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)

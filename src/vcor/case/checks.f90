@@ -4,34 +4,35 @@ module vcor_case_checks
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_axes, only : new_grid
    use vcor_case_consistency, only : check_consistency
-   use vcor_case_entries, only : entries_t
    use vcor_case_grid, only : grid_t
-   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, keys_of, last_row, &
-      & row_for_model, wanted
-   use vcor_case_path, only : swept_handles
-   use vcor_case_store, only : entry_t, range_message
-   use vcor_text, only : printable, shortened
-   use vcor_words, only : join_words
+   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
+      & keys_of, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
+   use vcor_case_address, only : swept_addresses
+   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_interval, only : contains_number, is_computable
+   use vcor_kinds, only : wp
+   use vcor_text, only : integer_text, printable, real_text, shortened
+   use vcor_words, only : contains_word, join_words, nearest_name
    implicit none
    private
 
-   public :: check_case
+   public :: validate, range_message
 
 contains
 
    !> Check a case; the first thing that is wrong becomes the error. What a sweep varies need not be
    !> given, and its values are not checked here: a point that makes no sense is a point without
    !> result, not a case that is wrong
-   subroutine check_case(self, error)
+   subroutine validate(self, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(grid_t) :: grid
-      integer, allocatable :: swept(:)
+      type(address_t), allocatable :: swept(:)
       integer :: group, item
 
-      allocate(swept, source=swept_handles(self))
+      allocate(swept, source=swept_addresses(self))
       do group = 1, size(groups)
          if (groups(group)%required .and. self%count(groups(group)%name) == 0) then
             call raise(error, error_input, printable(self%source)//": there is no &" &
@@ -49,7 +50,7 @@ contains
       call check_consistency(self, swept, error)
       if (allocated(error)) return
       call new_grid(self, grid, error)
-   end subroutine check_case
+   end subroutine validate
 
    !> A group and the keys it needs, in words
    pure function described(group) result(text)
@@ -70,9 +71,9 @@ contains
    !> Check each entry of a group by itself
    subroutine check_item(self, swept, group, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Index of the group
       integer, intent(in) :: group
       !> Number of the item
@@ -97,9 +98,9 @@ contains
    !> Check one entry by itself: whether it belongs there, is there, and is within its range
    subroutine check_entry(self, swept, group, row, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Index of the group
       integer, intent(in) :: group
       !> First row of the key
@@ -110,12 +111,13 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(entry_t) :: entry
       character(len=:), allocatable :: key, model, message
-      integer :: applicable, handle
+      type(address_t) :: address
+      integer :: applicable
 
       key = trim(catalogue(row)%name)
       model = self%model(group, item)
-      handle = self%handle(groups(group)%name, key, item)
-      entry = self%entry(handle)
+      address = address_t(group, item, row)
+      entry = self%entry(address)
       applicable = row_for_model(row, model)
       if (applicable == 0) then
          if (entry%given) call fail(self, group, key, item, "key '"//key &
@@ -126,7 +128,7 @@ contains
       if (entry%present) then
          message = range_message(catalogue(applicable), entry)
          if (message /= "") call fail(self, group, key, item, key//": "//message, error)
-      else if (catalogue(applicable)%required .and. all(swept /= handle)) then
+      else if (catalogue(applicable)%required .and. .not. any(swept == address)) then
          message = "key '"//key//"' is missing in &"//trim(groups(group)%name)
          if (groups(group)%label /= "" .and. groups(group)%label /= key) &
             & message = message//" "//owner_name(self, group, item)
@@ -139,7 +141,7 @@ contains
    !> Name of an item, in quotes
    pure function owner_name(self, group, item) result(name)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Index of a group with a label
       integer, intent(in) :: group
       !> Number of the item
@@ -155,7 +157,7 @@ contains
    !> Raise an error about a key
    subroutine fail(self, group, key, item, message, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
       !> Name of the key
@@ -169,5 +171,49 @@ contains
 
       call raise(error, error_input, self%location(groups(group)%name, key, item)//": "//message)
    end subroutine fail
+
+   !> What is wrong with the value of an entry, as far as its range says
+   pure function range_message(key, entry) result(message)
+      !> The key, of the model of the entry's item
+      type(key_t), intent(in) :: key
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Found and expected; empty when nothing is wrong
+      character(len=:), allocatable :: message
+      character(len=:), allocatable :: near
+      integer :: i
+
+      message = ""
+      near = ""
+      select case (key%value_kind)
+      case (real_key)
+         if (.not. contains_number(key%range, entry%number)) message = real_text(entry%number)
+      case (integer_key)
+         if (.not. contains_number(key%range, entry%number)) &
+            & message = integer_text(nint(entry%number))
+      case (list_key)
+         do i = 1, size(entry%list)
+            if (contains_number(key%range, entry%list(i))) cycle
+            message = real_text(entry%list(i))//" in value "//integer_text(i)
+            exit
+         end do
+      case (text_key)
+         if (key%choices /= "" .and. .not. contains_word(key%choices, entry%text)) then
+            message = "'"//shortened(entry%text)//"'"
+            ! a single letter is near to every other
+            if (len_trim(entry%text) > 1) near = nearest_name(entry%text, trim(key%choices))
+         else if (entry%text == "" .and. key%default /= "''") then
+            message = "an empty text"
+         end if
+      case default
+         continue
+      end select
+      if (message /= "") message = "found "//message//", expected "//wanted(key)
+      if (message /= "" .and. key%value_kind == real_key) then
+         if (.not. is_computable(entry%number)) message = message//", between 1e-60 and 1e60 in " &
+            & //"magnitude: beyond that nothing can be computed"
+      end if
+      if (near /= "") message = message//"; did you mean '"//near//"'?"
+   end function range_message
 
 end module vcor_case_checks

@@ -5,10 +5,10 @@ module vcor_case_consistency
    use vcor_kinds, only : wp
    use vcor_solver, only : hereditary_without_papers_scheme, receding_without_ghost, &
       & receding_without_papers_scheme, receding_without_second_term
-   use vcor_case_entries, only : entries_t
+   use vcor_case_address, only : material_names
+   use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_key, key_t, wanted
-   use vcor_nearest, only : suggestion
-   use vcor_case_path, only : material_names
+   use vcor_words, only : suggestion
    use vcor_text, only : canonical_name, integer_text, real_text, same_name, &
       & shortened
    implicit none
@@ -22,9 +22,9 @@ contains
    !> Numbers that a sweep varies are there, and in contradiction to nothing
    subroutine check_consistency(self, swept, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       integer :: item
@@ -45,7 +45,7 @@ contains
    !> Check the scheme against the method, and the name of the files
    subroutine check_choices(self, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: method, scheme, stem
@@ -65,7 +65,7 @@ contains
    !> Check contact law and plate model against the solver
    subroutine check_mechanics(self, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: law, waves, scheme, message
@@ -97,9 +97,9 @@ contains
    !> Whether a sweep varies a key
    pure function is_swept(self, swept, group, key, item) result(yes)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Name of the group
       character(len=*), intent(in) :: group
       !> Name of the key
@@ -109,13 +109,13 @@ contains
       !> Whether it does
       logical :: yes
 
-      yes = any(swept == self%handle(group, key, item))
+      yes = any(swept == self%address(group, key, item))
    end function is_swept
 
    !> Raise an error about a key of a material
    subroutine fail(self, key, item, message, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Name of the key
       character(len=*), intent(in) :: key
       !> Number of the material
@@ -131,7 +131,7 @@ contains
    !> Name of a material, in quotes
    pure function material_name(self, item) result(name)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Number of the material
       integer, intent(in) :: item
       !> The name
@@ -145,9 +145,9 @@ contains
    !> Check the values of a material against each other
    subroutine check_material(self, swept, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -173,7 +173,7 @@ contains
    !> The band of the data that a model was fitted to begins before it ends
    subroutine check_band(self, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -192,9 +192,9 @@ contains
    !> A standard linear solid is softer after a long time than at first: alpha <= beta
    subroutine check_sls(self, swept, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -220,9 +220,9 @@ contains
    !> A Prony series has as many rates, or times, as moduli, and at least one term of any sort
    subroutine check_prony(self, swept, item, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Error, unallocated on success
@@ -268,9 +268,9 @@ contains
    !> Check sphere and plate against their materials and each other
    subroutine check_bodies(self, swept, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(key_t) :: thickness
@@ -322,7 +322,7 @@ contains
    !> The material of a body
    subroutine find_body_material(self, body, item, rigid, error)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Group of the body
       character(len=*), intent(in) :: body
       !> Number of its material
@@ -349,9 +349,9 @@ contains
    !> Check that a material has a density
    subroutine need_density(self, swept, item, body, expected, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
       !> Group of the body that needs it
@@ -370,9 +370,9 @@ contains
    !> Check the times of the solver against each other
    subroutine check_times(self, swept, error)
       !> The case
-      class(entries_t), intent(in) :: self
-      !> Handles of what a sweep varies
-      integer, intent(in) :: swept(:)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       real(wp) :: time_step, end_time

@@ -3,6 +3,7 @@
 !> Points are numbered from 1, in the order of nested loops with the first axis outside: row-major,
 !> as C and Python count. A grid without axes has one point.
 module vcor_case_grid
+   use vcor_case_case, only : address_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -20,8 +21,8 @@ module vcor_case_grid
       character(len=:), allocatable :: unit
       !> What it is
       character(len=:), allocatable :: meaning
-      !> Handle of its entry in the case
-      integer :: handle = 0
+      !> Its address in the case
+      type(address_t) :: address
       !> Values in their unit, shape (n), n >= 1
       real(wp), allocatable :: values(:)
    end type axis_t

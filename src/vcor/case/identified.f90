@@ -5,7 +5,7 @@ module vcor_case_identified
    use vcor_material_parameter, only : parameter_t
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : find_group
-   use vcor_case_store, only : entry_t
+   use vcor_case_printed, only : case_text
    implicit none
    private
 
@@ -60,18 +60,10 @@ contains
       !> Wanted error of the restitution [-]
       real(wp), intent(in) :: accuracy
 
-      type(entry_t) :: entry
-
-      entry = case%entry(case%handle('solver', 'method'))
-      entry%text = 'direct'
-      call case%assign(case%handle('solver', 'method'), entry)
-      entry%text = 'product'
-      call case%assign(case%handle('solver', 'scheme'), entry)
-      call case%assign_number(case%handle('solver', 'accuracy'), accuracy)
-      entry = case%entry(case%handle('solver', 'time_step'))
-      entry%given = .false.
-      entry%present = .false.
-      call case%assign(case%handle('solver', 'time_step'), entry)
+      call case%set(case%address('solver', 'method'), 'direct', given=.true.)
+      call case%set(case%address('solver', 'scheme'), 'product', given=.true.)
+      call case%set(case%address('solver', 'accuracy'), accuracy)
+      call case%unset(case%address('solver', 'time_step'))
    end subroutine put_solver
 
    !> A material as a &material group
@@ -100,7 +92,7 @@ contains
       call put_number(case, item, 'poisson_ratio', poisson_ratio)
       call put_number(case, item, 'valid_from', valid_from)
       call put_number(case, item, 'valid_to', valid_to)
-      text = case%to_text(complete=.false., remarks=.true.)
+      text = case_text(case, complete=.false., remarks=.true.)
    end function material_text
 
    !> Set a number
@@ -114,7 +106,7 @@ contains
       !> The number
       real(wp), intent(in) :: number
 
-      call case%assign_number(case%handle('material', key, item), number)
+      call case%set(case%address('material', key, item), number)
    end subroutine put_number
 
    !> Set a text or a list
@@ -130,16 +122,8 @@ contains
       !> The list, where the key takes one, shape (n)
       real(wp), intent(in), optional :: list(:)
 
-      type(entry_t) :: entry
-      integer :: handle
-
-      handle = case%handle('material', key, item)
-      entry = case%entry(handle)
-      if (present(word)) entry%text = word
-      if (present(list)) entry%list = list
-      entry%given = .true.
-      entry%present = .true.
-      call case%assign(handle, entry)
+      if (present(word)) call case%set(case%address('material', key, item), word, given=.true.)
+      if (present(list)) call case%set(case%address('material', key, item), list, given=.true.)
    end subroutine put
 
 end module vcor_case_identified

@@ -2,15 +2,14 @@
 module vcor_case_printed
    use vcor_kinds, only : wp
    use vcor_buffer, only : buffer_t
-   use vcor_case_entries, only : entries_t
    use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
       & last_row, list_key, logical_key, real_key, row_for_model
-   use vcor_case_store, only : entry_t
+   use vcor_case_case, only : address_t, case_t, entry_t
    use vcor_text, only : integer_text, logical_text, quoted, real_text
    implicit none
    private
 
-   public :: printed_case, value_text
+   public :: case_text, value_text
 
    !> Longest line of a list [bytes]
    integer, parameter :: line_width = 96
@@ -25,9 +24,9 @@ contains
 
    !> A case as namelists: groups in the order of the catalogue, of a material only the keys of its
    !> model
-   pure function printed_case(self, complete, remarks) result(text)
+   pure function case_text(self, complete, remarks) result(text)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Whether what was not given is printed with its default; absent: no
       logical, intent(in), optional :: complete
       !> Whether each key has a comment with unit and meaning; absent: no
@@ -48,12 +47,12 @@ contains
          end do
       end do
       text = buffer%text()
-   end function printed_case
+   end function case_text
 
    !> Number of items of a group that are printed
    pure function items_to_print(self, group, all) result(n)
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
       !> Whether groups that are not in the case are printed
@@ -70,7 +69,7 @@ contains
       !> Where the lines go
       type(buffer_t), intent(inout) :: buffer
       !> The case
-      class(entries_t), intent(in) :: self
+      type(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
       !> Number of the item
@@ -90,7 +89,7 @@ contains
          if (find_key(catalogue(row)%group, catalogue(row)%name) /= row) cycle
          applicable = row_for_model(row, self%model(group, item))
          if (applicable == 0) cycle
-         entry = self%entry(self%handle(groups(group)%name, catalogue(row)%name, item))
+         entry = self%entry(address_t(group, item, row))
          if (.not. (entry%given .or. all .and. entry%present)) cycle
          line = indent//trim(catalogue(row)%name)//" = "//value_text(catalogue(row), entry)
          if (remarks) call add_remark(line, catalogue(applicable), entry)
@@ -129,9 +128,9 @@ contains
       case (real_key)
          text = real_text(entry%number)
       case (integer_key)
-         text = integer_text(entry%whole)
+         text = integer_text(nint(entry%number))
       case (logical_key)
-         text = logical_text(entry%flag)
+         text = logical_text(entry%number > 0.5_wp)
       case (list_key)
          text = list_text(entry%list, len(indent) + len_trim(key%name) + len(" = "))
       case default

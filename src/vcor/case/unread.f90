@@ -5,10 +5,10 @@
 module vcor_case_unread
    use vcor_error, only : error_input, error_t, raise
    use vcor_solver, only : method_for
-   use vcor_case_entries, only : entries_t
-   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, last_row
-   use vcor_case_path, only : swept_handles
-   use vcor_case_store, only : entry_t
+   use vcor_text, only : integer_text
+   use vcor_case_address, only : swept_addresses
+   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
    implicit none
    private
 
@@ -16,11 +16,11 @@ module vcor_case_unread
 
 contains
 
-   !> Refuse what was set by --set, or what else an entry says it comes from, and is not read. What
-   !> stands in the case file without being read may stay there
+   !> Refuse what was set by --set, or what else an entry says it comes from, and has no effect: a
+   !> sweep varies it, or the impact does not read it. What stands in the case file may stay there
    subroutine refuse_unread(case, all_materials, error)
       !> A validated case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Whether materials are read that are in no body
       logical, intent(in) :: all_materials
       !> Error of code `error_input`, unallocated on success
@@ -28,109 +28,150 @@ contains
 
       type(entry_t) :: entry
       character(len=:), allocatable :: reason
-      integer :: group, item, row, handle
+      integer :: group, item, material, row
 
+      material = find_group('material')
       do group = 1, size(groups)
-         if (all_materials .and. groups(group)%name == 'material') cycle
          do item = 1, case%count(groups(group)%name)
             do row = first_row(group), last_row(group)
                if (find_key(groups(group)%name, catalogue(row)%name) /= row) cycle
-               handle = case%handle(groups(group)%name, catalogue(row)%name, item)
-               entry = case%entry(handle)
+               entry = case%entry(address_t(group, item, row))
                if (.not. allocated(entry%origin)) cycle
-               reason = why_unread(case, handle)
-               ! the band of the data has no part in the numbers, but brings a warning
-               if (group_and_key(group, row) == 'material.valid_from' .or. &
-                   group_and_key(group, row) == 'material.valid_to') &
-                  reason = why_material_is_unread(case, item)
+               reason = why_varied(case, address_t(group, item, row), entry%origin)
+               if (reason == '' .and. .not. (all_materials .and. group == material)) &
+                  reason = why_set_unread(case, address_t(group, item, row))
                if (reason == '') cycle
-               call raise(error, error_input, entry%origin//': the impact does not read it: ' &
-                  //reason)
+               call raise(error, error_input, entry%origin//': '//reason)
                return
             end do
          end do
       end do
    end subroutine refuse_unread
 
+   !> Why a value that was set has no effect: a sweep gives others
+   pure function why_varied(case, address, origin) result(reason)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Where it stands
+      type(address_t), intent(in) :: address
+      !> Where it comes from; the number of an element stands in it
+      character(len=*), intent(in) :: origin
+      !> The reason, empty where no sweep varies it
+      character(len=:), allocatable :: reason
+
+      type(address_t), allocatable :: swept(:)
+      integer :: found, i
+
+      found = 0
+      allocate (swept, source=swept_addresses(case))
+      do i = 1, size(swept)
+         if (swept(i)%row /= address%row .or. swept(i)%item /= address%item) cycle
+         if (swept(i)%element > 0 .and. &
+             index(origin, '('//integer_text(swept(i)%element)//')') == 0) cycle
+         found = i
+      end do
+      reason = ''
+      if (found > 0) reason = 'the &sweep group at '//case%location('sweep', 'parameter', found) &
+         //' varies it, expected a key that no sweep varies'
+   end function why_varied
+
+   !> Why a value that was set is not read
+   pure function why_set_unread(case, address) result(reason)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Where it stands
+      type(address_t), intent(in) :: address
+      !> The reason, empty where it is read
+      character(len=:), allocatable :: reason
+
+      select case (group_and_key(address))
+      case ('material.valid_from', 'material.valid_to')
+         ! the band of the data has no part in the numbers, but brings a warning
+         reason = why_material_is_unread(case, address%item)
+      case default
+         reason = why_unread(case, address)
+      end select
+      if (reason /= '') reason = 'the impact does not read it: '//reason
+   end function why_set_unread
+
    !> Why an impact does not read a key
-   pure function why_unread(case, handle) result(reason)
+   pure function why_unread(case, address) result(reason)
       !> A case, each entry of which is within its range, and whose bodies have materials
-      class(entries_t), intent(in) :: case
-      !> Handle of the entry
-      integer, intent(in) :: handle
+      type(case_t), intent(in) :: case
+      !> Where it stands
+      type(address_t), intent(in) :: address
       !> The reason, empty where the key is read
       character(len=:), allocatable :: reason
 
       character(len=:), allocatable :: method, scheme
-      integer :: group, row, item, order
+      integer :: order
 
-      call case%locate(handle, group, row, item)
-      reason = ''
-      select case (group_and_key(group, row))
-      case ('case.title', 'impact.velocity', 'sphere.radius', 'sphere.material', 'sphere.mass', &
-         'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
-         'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
-         'solver.continue_after_separation')
-         continue
-      case ('output.csv', 'output.hdf5', 'output.history', 'output.directory', 'output.stem')
-         continue
-      case ('sweep.parameter', 'sweep.values', 'sweep.start', 'sweep.stop', 'sweep.count')
-         continue
-      case ('sweep.spacing')
-         if (case%given('sweep', 'values', item)) reason = 'it is for start, stop and count'
-      case ('plate.half_thickness')
-         reason = why_plate_rests(case)
-      case ('plate.waves')
-         if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
-      case ('contact.pair')
-         reason = why_no_pair(case)
-      case ('solver.time_step')
-         call case%get('solver', 'method', method)
-         call case%get('solver', 'scheme', scheme)
-         if (method_for(method, scheme) == 'ive') &
-            reason = "method ive takes its own steps, solver.time_step is for method = 'direct'"
-      case ('solver.form', 'solver.quadrature')
-         call case%get('solver', 'scheme', scheme)
-         if (scheme /= 'adams_bashforth') reason = "it is for scheme = 'adams_bashforth'"
-      case ('solver.volterra_coefficient')
-         call case%get('solver', 'volterra_order', order)
-         if (order /= 2) reason = 'it is for solver.volterra_order = 2'
-      case ('material.valid_from', 'material.valid_to')
-         reason = 'it is for the warning about the band of the data, no number depends on it'
-      case ('material.density')
-         reason = why_material_is_unread(case, item)
-         if (reason == '') reason = why_weightless(case, item)
-      case ('material.poisson_ratio')
-         reason = why_material_is_unread(case, item)
-         if (reason == '' .and. case%model(group, item) == 'rigid') &
-            reason = 'a rigid body does not deform'
-      case ('material.name', 'material.model', 'material.modulus', 'material.glassy_modulus', &
-         'material.alpha', 'material.beta', 'material.equilibrium_modulus', 'material.moduli', &
-         'material.rates', 'material.times', 'material.viscosity', 'material.coefficient', &
-         'material.exponent', 'material.relaxing_modulus', 'material.time', 'material.file', &
-         'material.time_unit', 'material.modulus_unit')
-         reason = why_material_is_unread(case, item)
-      case default
-         reason = 'nothing depends on it'
-      end select
+      associate (group => address%group, item => address%item)
+         reason = ''
+         select case (group_and_key(address))
+         case ('case.title', 'impact.velocity', 'sphere.radius', 'sphere.material', 'sphere.mass', &
+            'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
+            'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
+            'solver.continue_after_separation')
+            continue
+         case ('output.csv', 'output.hdf5', 'output.history', 'output.directory', 'output.stem')
+            continue
+         case ('sweep.parameter', 'sweep.values', 'sweep.start', 'sweep.stop', 'sweep.count')
+            continue
+         case ('sweep.spacing')
+            if (case%given('sweep', 'values', item)) reason = 'it is for start, stop and count'
+         case ('plate.half_thickness')
+            reason = why_plate_rests(case)
+         case ('plate.waves')
+            if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
+         case ('contact.pair')
+            reason = why_no_pair(case)
+         case ('solver.time_step')
+            call case%get('solver', 'method', method)
+            call case%get('solver', 'scheme', scheme)
+            if (method_for(method, scheme) == 'ive') &
+               reason = "method ive takes its own steps, solver.time_step is for method = 'direct'"
+         case ('solver.form', 'solver.quadrature')
+            call case%get('solver', 'scheme', scheme)
+            if (scheme /= 'adams_bashforth') reason = "it is for scheme = 'adams_bashforth'"
+         case ('solver.volterra_coefficient')
+            call case%get('solver', 'volterra_order', order)
+            if (order /= 2) reason = 'it is for solver.volterra_order = 2'
+         case ('material.valid_from', 'material.valid_to')
+            reason = 'it is for the warning about the band of the data, no number depends on it'
+         case ('material.density')
+            reason = why_material_is_unread(case, item)
+            if (reason == '') reason = why_weightless(case, item)
+         case ('material.poisson_ratio')
+            reason = why_material_is_unread(case, item)
+            if (reason == '' .and. case%model(group, item) == 'rigid') &
+               reason = 'a rigid body does not deform'
+         case ('material.name', 'material.model', 'material.modulus', 'material.glassy_modulus', &
+            'material.alpha', 'material.beta', 'material.equilibrium_modulus', 'material.moduli', &
+            'material.rates', 'material.times', 'material.viscosity', 'material.coefficient', &
+            'material.exponent', 'material.relaxing_modulus', 'material.time', 'material.file', &
+            'material.time_unit', 'material.modulus_unit')
+            reason = why_material_is_unread(case, item)
+         case default
+            reason = 'nothing depends on it'
+         end select
+      end associate
    end function why_unread
 
    !> Group and key in one word
-   pure function group_and_key(group, row) result(word)
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Row of the key
-      integer, intent(in) :: row
+   pure function group_and_key(address) result(word)
+      !> The address
+      type(address_t), intent(in) :: address
       !> Such as `sphere.radius`
       character(len=len(groups%name) + 1 + len(catalogue%name)) :: word
 
-      word = trim(groups(group)%name)//'.'//catalogue(row)%name
+      word = trim(groups(address%group)%name)//'.'//catalogue(address%row)%name
    end function group_and_key
 
    !> Why the plate stays where it is
    pure function why_plate_rests(case) result(reason)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> The reason, empty where the plate moves
       character(len=:), allocatable :: reason
 
@@ -148,7 +189,7 @@ contains
    !> Why there are no two bodies that combine in one way or another
    pure function why_no_pair(case) result(reason)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> The reason, empty where there are
       character(len=:), allocatable :: reason
 
@@ -168,7 +209,7 @@ contains
    !> Why a material has no part in an impact
    pure function why_material_is_unread(case, item) result(reason)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
       !> The reason, empty where it has
@@ -182,7 +223,7 @@ contains
    !> Why the density of the material of a body has no part in an impact
    pure function why_weightless(case, item) result(reason)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
       !> The reason, empty where it has
@@ -192,7 +233,7 @@ contains
 
       reason = ''
       has_mass = case%given('sphere', 'mass') &
-         .or. any(swept_handles(case) == case%handle('sphere', 'mass'))
+         .or. any(swept_addresses(case) == case%address('sphere', 'mass'))
       if (item == body_item(case, 'sphere')) then
          if (.not. has_mass) return
          reason = 'sphere.mass gives the mass of the sphere'
@@ -207,7 +248,7 @@ contains
    !> Number of the material of a body
    pure function body_item(case, body) result(item)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: body
       !> Number, 0 where there is no such material
@@ -222,7 +263,7 @@ contains
    !> Model of the material of a body
    pure function body_model(case, body) result(model)
       !> The case
-      class(entries_t), intent(in) :: case
+      type(case_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: body
       !> Its model, empty where there is no such material

@@ -6,7 +6,7 @@ module vcor_case_values
    use vcor_kinds, only : wp
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, &
       & text_key, wanted
-   use vcor_case_store, only : entry_t
+   use vcor_case_case, only : entry_t
    use vcor_case_name, only : control_in
    use vcor_text, only : integer_text, is_utf8, lower, quoted, shortened
    use vcor_words, only : spelled
@@ -99,9 +99,9 @@ contains
          case (real_key)
             call read_real(word, wanted(key), entry%number, message)
          case (integer_key)
-            call convert_integer(key, word, entry%whole, message)
+            call convert_integer(key, word, entry%number, message)
          case (logical_key)
-            call convert_logical(word, entry%flag, message)
+            call convert_logical(word, entry%number, message)
          case default
             call convert_string(key, word, value%in_quotes, entry%text, message)
          end select
@@ -151,42 +151,46 @@ contains
    end subroutine convert_list
 
    !> Convert an integer
-   subroutine convert_integer(key, word, whole, message)
+   subroutine convert_integer(key, word, number, message)
       !> The key, for what is expected
       type(key_t), intent(in) :: key
       !> The integer as it is written
       character(len=*), intent(in) :: word
       !> The integer
-      integer, intent(out) :: whole
+      real(wp), intent(out) :: number
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
-      integer :: first, status
+      integer :: first, status, whole
 
-      whole = 0
+      number = 0.0_wp
       first = 1
       if (scan(word, "+-") == 1) first = 2
       status = 1
       if (len(word) >= first .and. verify(word(first:), digits) == 0) &
          & read(word, *, iostat=status) whole
-      if (status /= 0) message = "found '"//shortened(word)//"', expected "//wanted(key)
+      if (status == 0) then
+         number = real(whole, wp)
+      else
+         message = "found '"//shortened(word)//"', expected "//wanted(key)
+      end if
    end subroutine convert_integer
 
    !> Convert a logical
    subroutine convert_logical(word, flag, message)
       !> The logical as it is written
       character(len=*), intent(in) :: word
-      !> The logical
-      logical, intent(out) :: flag
+      !> 1 for true, 0 for false
+      real(wp), intent(out) :: flag
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
-      flag = .false.
+      flag = 0.0_wp
       ! Fortran takes anything that begins with t or f, `false_start` and `tru` too
       select case (lower(word))
       case ("t", "true", ".t.", ".true.", ".t", ".true")
-         flag = .true.
+         flag = 1.0_wp
       case ("f", "false", ".f.", ".false.", ".f", ".false")
-         flag = .false.
+         flag = 0.0_wp
       case default
          message = "found '"//shortened(word)//"', expected .true. or .false."
       end select

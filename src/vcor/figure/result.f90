@@ -7,7 +7,7 @@ module vcor_figure_result
    use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, &
       number_attribute, open_hdf5, read_dataset, reader_t, text_attribute
    use vcor_kinds, only : wp
-   use vcor_nearest, only : suggestion
+   use vcor_words, only : suggestion
    use vcor_text, only : printable, shortened
    implicit none
    private

@@ -27,7 +27,7 @@ module vcor_impact_problem
    !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
    real(wp), parameter :: hertz_contact_time = 3.2180654597190435_wp
 
-   !> An impact; immutable once built
+   !> An impact; solvers leave it as it is
    type :: impact_t
       !> Velocity of approach v0 [m/s], > 0
       real(wp) :: velocity = 0.0_wp
@@ -42,6 +42,8 @@ module vcor_impact_problem
       !> Contact law
       type(contact_law_t) :: law
    contains
+      !> Give the sphere another motion or size
+      procedure :: launch
       !> Kernel k(t)
       procedure :: kernel
       !> Integral of the kernel
@@ -107,6 +109,28 @@ contains
       !> Contact law; absent: Hertz's over all the past
       type(contact_law_t), intent(in), optional :: law
 
+      call self%launch(velocity, mass, radius, surface_radius, error)
+      if (allocated(error)) return
+      self%modulus = modulus
+      self%plate = plate
+      if (present(law)) self%law = law
+   end subroutine new_impact
+
+   !> Give the sphere another motion or size; modulus, plate and law stay
+   pure subroutine launch(self, velocity, mass, radius, surface_radius, error)
+      !> The impact
+      class(impact_t), intent(inout) :: self
+      !> Velocity of approach [m/s], > 0
+      real(wp), intent(in) :: velocity
+      !> Mass of the sphere [kg], > 0
+      real(wp), intent(in) :: mass
+      !> Radius of the sphere [m], > 0
+      real(wp), intent(in) :: radius
+      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
+      real(wp), intent(in) :: surface_radius
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
       real(wp) :: hertz_radius
@@ -130,10 +154,7 @@ contains
       self%velocity = velocity
       self%mass = mass
       self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
-      self%modulus = modulus
-      self%plate = plate
-      if (present(law)) self%law = law
-   end subroutine new_impact
+   end subroutine launch
 
    !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)

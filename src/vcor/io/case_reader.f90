@@ -4,14 +4,13 @@
 !> wrong.
 module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_case_list_filling, only : filling_t
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
    use vcor_io_text_file, only : read_text_file
    use vcor_case_values, only : convert, convert_text
-   use vcor_case_case, only : case_t
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, groups, list_key, row_for_model
-   use vcor_case_path, only : unknown_group, unknown_key
-   use vcor_case_store, only : entry_t, range_message
+   use vcor_case_address, only : resolve, unknown_group, unknown_key
+   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_checks, only : range_message
+   use vcor_case_catalogue, only : catalogue, find_group, groups, key_t, list_key, real_key
    use vcor_text, only : has_control, integer_text, printable, shortened
    implicit none
    private
@@ -83,7 +82,6 @@ contains
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(statement_t) :: statement
-      type(filling_t) :: filling
       character(len=:), allocatable :: message
       integer :: group, item
       logical :: found
@@ -104,22 +102,20 @@ contains
       end if
 
       call case%add(group, line, item)
-      call filling%clear()
       do
          call namelist%next_statement(name, statement, found, error)
          if (allocated(error)) return
          if (.not. found) exit
-         call read_statement(case, namelist, statement, group, item, filling, message)
+         call read_statement(case, namelist, statement, group, item, message)
          if (allocated(message)) then
             call raise(error, error_input, namelist%place(statement%line)//": "//message)
             return
          end if
       end do
-      call finish_lists(case, filling, error)
    end subroutine read_group
 
    !> Read one statement
-   subroutine read_statement(case, namelist, statement, group, item, filling, message)
+   subroutine read_statement(case, namelist, statement, group, item, message)
       !> The case
       type(case_t), intent(inout) :: case
       !> The namelists the statement is from
@@ -130,81 +126,49 @@ contains
       integer, intent(in) :: group
       !> Number of the item
       integer, intent(in) :: item
-      !> Lists that are given in parts
-      type(filling_t), intent(inout) :: filling
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
-      type(entry_t) :: entry
-      integer :: row, handle
+      type(entry_t) :: entry, before
+      type(address_t) :: address
 
-      row = find_key(groups(group)%name, statement%key)
-      if (row == 0) then
+      address = case%address(groups(group)%name, statement%key, item)
+      if (address%group == 0) then
          message = unknown_key(statement%key, group)
          return
       end if
-      handle = case%handle(groups(group)%name, statement%key, item)
-      associate (key => catalogue(row))
-         if (allocated(statement%section)) then
-            if (key%value_kind /= list_key) then
-               message = "found ("//shortened(statement%section) &
-                  & //"), but it is a single value, not a list"
-            else if (case%is_given(handle)) then
-               message = twice(case, handle)
-            else
-               call convert(key, namelist%text, statement%values, entry, message)
-               if (.not. allocated(message)) call filling%put(handle, statement%section, &
-                  & entry%list, statement%line, message)
-            end if
-         else if (case%is_given(handle) .or. filling%has(handle)) then
-            message = twice(case, handle)
+      associate (key => catalogue(address%row))
+         before = case%entry(address)
+         if (before%given) then
+            message = 'the key is given twice, first in line '//integer_text(before%line)
+         else if (allocated(statement%section) .and. key%value_kind /= list_key) then
+            message = 'found ('//shortened(statement%section) &
+               //'), but it is a single value, not a list'
          else
             call convert(key, namelist%text, statement%values, entry, message)
+            if (allocated(statement%section) .and. .not. allocated(message)) then
+               if (.not. is_whole(statement%section, size(entry%list))) message = 'found (' &
+                  //shortened(statement%section)//'), expected the whole list, such as ' &
+                  //trim(key%name)//' = 1.0, 2.0'
+            end if
             entry%line = statement%line
-            if (.not. allocated(message)) call case%assign(handle, entry)
+            if (.not. allocated(message)) call case%set(address, entry)
          end if
-         if (allocated(message)) message = trim(key%name)//": "//message
+         if (allocated(message)) message = trim(key%name)//': '//message
       end associate
    end subroutine read_statement
 
-   !> What to say about a key that is given twice
-   pure function twice(case, handle) result(message)
-      !> The case
-      type(case_t), intent(in) :: case
-      !> Handle of the key
-      integer, intent(in) :: handle
-      !> The message
-      character(len=:), allocatable :: message
-      type(entry_t) :: entry
+   !> Whether a section is the whole of a list; f90nml can be told to write such ones
+   pure function is_whole(section, n) result(yes)
+      !> What stands in parentheses
+      character(len=*), intent(in) :: section
+      !> Numbers of the list
+      integer, intent(in) :: n
+      !> Whether it is
+      logical :: yes
 
-      entry = case%entry(handle)
-      message = "the key is given twice"
-      if (entry%line > 0) message = message//", first in line "//integer_text(entry%line)
-   end function twice
-
-   !> Set the lists of a group that were given in parts
-   subroutine finish_lists(case, filling, error)
-      !> The case
-      type(case_t), intent(inout) :: case
-      !> The parts
-      type(filling_t), intent(in) :: filling
-      !> Error, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-      type(entry_t) :: entry
-      character(len=:), allocatable :: message
-      integer :: i, handle
-
-      do i = 1, filling%n
-         call filling%finish(i, handle, entry%list, entry%line, message)
-         if (allocated(message)) then
-            call raise(error, error_input, printable(case%source)//":"//integer_text(entry%line) &
-               & //": "//case%path(handle)//": "//message)
-            return
-         end if
-         entry%given = .true.
-         entry%present = .true.
-         call case%assign(handle, entry)
-      end do
-   end subroutine finish_lists
+      yes = any(section == [character(len=16) :: ':', '1:', ':'//integer_text(n), &
+         '1:'//integer_text(n)]) .or. (section == '1' .and. n == 1)
+   end function is_whole
 
    !> Set one value by `path=value`, as the option --set has it
    subroutine override(case, setting, error)
@@ -217,7 +181,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(entry_t) :: entry
       character(len=:), allocatable :: message, path
-      integer :: mark, handle, group, row, item, applicable
+      type(address_t) :: address
+      type(key_t) :: key
+      integer :: mark, row
 
       if (has_control(setting)) then
          call raise(error, error_usage, "--set "//shortened(setting)//": found a control character")
@@ -230,29 +196,30 @@ contains
       end if
       path = trim(adjustl(setting(:mark-1)))
       entry%origin = "--set "//shortened(path)
-      call case%resolve(path, handle, message)
+      call resolve(case, path, address, message)
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)
          return
       end if
-      call case%locate(handle, group, row, item)
-      applicable = row_for_model(row, case%model(group, item))
-      if (applicable == 0) applicable = row
+      row = case%row(address)
+      if (row == 0) row = address%row
+      key = catalogue(row)
+      if (address%element > 0) key%value_kind = real_key
       if (len_trim(setting(mark+1:)) == 0) then
          message = "there is no value after the equals sign"
       else
-         call convert_text(catalogue(applicable), trim(adjustl(setting(mark+1:))), entry, message)
+         call convert_text(key, trim(adjustl(setting(mark+1:))), entry, message)
       end if
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)
          return
       end if
-      message = range_message(catalogue(applicable), entry)
+      message = range_message(key, entry)
       if (message /= "") then
          call raise(error, error_input, entry%origin//": "//message)
          return
       end if
-      call case%assign(handle, entry)
+      call case%set(address, entry)
    end subroutine override
 
    !> Position of the equals sign between path and value; a name in quotes may have one, too

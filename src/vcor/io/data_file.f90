@@ -17,7 +17,6 @@ module vcor_io_data_file
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
    use vcor_case_case, only : case_t
-   use vcor_case_store, only : entry_t
    use vcor_text, only : has_control, integer_text, printable, real_text, shortened
    use vcor_io_units, only : unit_size
    implicit none
@@ -40,7 +39,7 @@ contains
       !> Error of code `error_file` when a file cannot be read, `error_input` when its contents are
       !> wrong; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      type(entry_t) :: times, moduli
+      real(wp), allocatable :: times(:), moduli(:)
       character(len=:), allocatable :: path, text, unit
       real(wp) :: scale(2)
       integer :: item
@@ -57,10 +56,10 @@ contains
          scale(1) = unit_size(unit)
          call case%get("material", "modulus_unit", unit, item)
          scale(2) = unit_size(unit)
-         call read_points(text, printable(path), scale, times%list, moduli%list, error)
+         call read_points(text, printable(path), scale, times, moduli, error)
          if (allocated(error)) return
-         call case%assign(case%handle("material", "times", item), times)
-         call case%assign(case%handle("material", "moduli", item), moduli)
+         call case%set(case%address("material", "times", item), times, given=.false.)
+         call case%set(case%address("material", "moduli", item), moduli, given=.false.)
       end do
    end subroutine read_data
 

@@ -6,7 +6,7 @@
 module vcor_io_header
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : split
-   use vcor_nearest, only : nearest_name
+   use vcor_words, only : nearest_name
    use vcor_text, only : lower, shortened
    use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_words, only : contains_word, join_words

@@ -10,6 +10,7 @@ module vcor_io_identity
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
+   use vcor_case_printed, only : case_text
    use vcor_sweep_part, only : new_part, part_t
    use vcor_version, only : version
    implicit none
@@ -45,7 +46,7 @@ contains
 
       identity%version = version
       call case%get('case', 'title', identity%title)
-      identity%case_text = case%to_text(complete=.true.)
+      identity%case_text = case_text(case, complete=.true.)
       identity%data = data_of(case)
       identity%part = part
    end function identity_of

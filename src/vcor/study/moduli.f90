@@ -6,8 +6,8 @@ module vcor_study_moduli
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_case_build, only : build_material
    use vcor_case_case, only : case_t
+   use vcor_case_problem, only : material_of_case
    use vcor_case_grid, only : log_spacing, spaced
    use vcor_text, only : real_text
    implicit none
@@ -116,7 +116,7 @@ contains
       allocate (holders(n), self%materials(n))
       all = time_range_t(huge(1.0_wp), 0.0_wp, range%points)
       do i = 1, n
-         call build_material(case, i, holders(i)%material, error)
+         call material_of_case(case, i, holders(i)%material, error)
          if (allocated(error)) return
          usual = usual_range(holders(i)%material, reference)
          if (holders(i)%material%rigid .and. n > 1) cycle

@@ -9,14 +9,13 @@ module vcor_study_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_solver, only : solve_impact, solver_t
-   use vcor_case_build, only : build_impact, build_material, build_solver
+   use vcor_solver, only : solve_impact
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_points, put_solver
+   use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
    use vcor_study_moduli, only : sampled_times, time_range_t
    implicit none
    private
@@ -73,7 +72,7 @@ contains
       reliance%ends = .not. ieee_is_nan(reliance%band)
       if (.not. any(reliance%ends)) return
 
-      call build_material(case, item, material, error)
+      call material_of_case(case, item, material, error)
       if (allocated(error)) return
       if (.not. reliance%ends(2)) last = ample*contact_time
       if (.not. reliance%ends(1)) first = min(1.0e-9_wp*contact_time, 0.1_wp*last)
@@ -107,13 +106,12 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
 
-      call build_impact(case, impact, error)
-      if (.not. allocated(error)) call build_solver(case, impact, solver, error)
-      if (.not. allocated(error)) call solve_impact(solver, impact, trajectory, outcome, error)
+      call problem_of_case(problem, case, error)
+      if (.not. allocated(error)) &
+         call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
    end subroutine solve_case
 
 end module vcor_study_reliance

@@ -1,48 +1,44 @@
 !> Sweeps, the impacts of a case, one for each point of a grid. An impact by itself is a sweep of
 !> one point
 !>
-!> A point is the blueprint of the case with some numbers set, so nothing is read, looked up or
-!> checked as a whole for it, and no rules of a solver are made. Outcomes are kept by the number of
-!> their point: they are the same bits for any number of threads. A point that makes no sense, or
-!> cannot be solved, has a status instead of numbers and stops no other.
+!> A point is the case with some numbers set, which the problem of the case follows, so nothing is
+!> read, looked up or checked as a whole for it, and no rules of a solver are made. Outcomes are
+!> kept by the number of their point: they are the same bits for any number of threads. A point that
+!> makes no sense, or cannot be solved, has a status instead of numbers and stops no other.
 !>
 !> What threads call has no static storage. That includes the functions that return a text of
 !> deferred length, whose length gfortran 12 keeps there: such a function is called before the
 !> threads begin, or by one at a time.
 module vcor_sweep_sweep
-   use vcor_error, only : error_input, error_internal, error_t, raise
+   use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
+   use vcor_solver, only : solve_impact
    use vcor_case_axes, only : new_grid
-   use vcor_case_blueprint, only : blueprint_t, new_blueprint, place_of, place_t, solver_place
-   use vcor_case_build, only : locate
-   use vcor_case_case, only : case_t
+   use vcor_case_case, only : address_t, case_t
    use vcor_case_grid, only : grid_t
    use vcor_interval, only : contains_number, interval_t
-   use vcor_case_catalogue, only : catalogue, row_for_model, wanted
+   use vcor_case_catalogue, only : catalogue, groups, wanted
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid
    implicit none
    private
 
-   public :: sweep_t, new_sweep, single_impact, worker_t, solve_point, lacking
+   public :: sweep_t, new_sweep, worker_t, solve_point, lacking
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t
       !> Its points
       type(grid_t) :: grid
-      !> What the impacts have in common
-      type(blueprint_t), private :: blueprint
-      !> Places of what varies, shape (axes)
-      type(place_t), allocatable, private :: places(:)
+      !> The case; what varies has its first values
+      type(case_t), private :: case
+      !> Its problem
+      type(problem_t) :: problem
       !> Ranges of what varies, shape (axes)
       type(interval_t), allocatable, private :: ranges(:)
       !> What to say about a value that is out of range, shape (axes)
       type(error_t), allocatable, private :: objections(:)
-      !> The solver; not allocated where a setting of it varies
-      class(solver_t), allocatable, private :: solver
    contains
       !> Whether the case has a &sweep group
       procedure :: is_grid
@@ -50,19 +46,15 @@ module vcor_sweep_sweep
 
    !> What one thread works with: the impact it is at
    type :: worker_t
-      !> The impact
-      type(impact_t) :: impact
+      !> The impact and its solver
+      type(problem_t) :: problem
       !> Its course
       type(trajectory_t) :: trajectory
-      !> What the impact is built from
-      type(blueprint_t), private :: blueprint
+      !> The case with the numbers of the impact
+      type(case_t), private :: case
       !> Which value of each parameter is set in it, 0: none; allocated once it is ready, shape
       !> (axes)
       integer, allocatable, private :: places(:)
-      !> The solver where it varies
-      class(solver_t), allocatable, private :: solver
-      !> Settings that this solver was made with
-      type(solver_settings_t), private :: settings
    end type worker_t
 
 contains
@@ -86,53 +78,49 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(place_t) :: cause
-      integer :: i, n, group, row, item
+      integer :: i, j, n, row
 
       call new_grid(case, self%grid, error)
       if (allocated(error)) return
+      self%case = case
       n = size(self%grid%axes)
-      allocate (self%places(n), self%ranges(n), self%objections(n))
-      do i = 1, size(self%places)
-         associate (handle => self%grid%axes(i)%handle)
-            self%places(i) = place_of(case, handle)
-            call case%locate(handle, group, row, item)
-            row = row_for_model(row, case%model(group, item))
-            self%ranges(i) = catalogue(row)%range
-            self%objections(i)%message = self%grid%axes(i)%name//' is out of range, expected ' &
-               //wanted(catalogue(row))
+      allocate (self%ranges(n), self%objections(n))
+      do i = 1, n
+         row = case%row(self%grid%axes(i)%address)
+         associate (axis => self%grid%axes(i), key => catalogue(row))
+            self%ranges(i) = key%range
+            self%objections(i)%message = axis%name//' is out of range, expected '//wanted(key)
+            do j = 1, size(axis%values)
+               if (.not. contains_number(key%range, axis%values(j))) cycle
+               call self%case%set(axis%address, axis%values(j))
+               exit
+            end do
          end associate
       end do
-      call new_blueprint(self%blueprint, case, self%places, error, cause)
-      if (.not. allocated(error) .and. .not. any(self%places%group == 'solver')) then
-         cause = solver_place(self%blueprint%settings)
-         call new_solver(self%solver, self%blueprint%settings, error)
-      end if
-      if (allocated(error)) call locate(case, cause, error)
+      call problem_of_case(self%problem, self%case, error)
+      if (.not. allocated(error)) return
+      ! what varies may be sound at other points
+      if (n > 0 .and. .not. stands(self%problem%cause)) deallocate (error)
+
+   contains
+
+      !> Whether an error is the same at all points
+      pure function stands(cause)
+         !> What it is about
+         type(address_t), intent(in) :: cause
+         !> Whether it is
+         logical :: stands
+
+         integer :: k
+
+         stands = groups(cause%group)%name == 'material'
+         do k = 1, n
+            associate (varied => self%grid%axes(k)%address)
+               if (varied%group == cause%group .and. varied%item == cause%item) stands = .false.
+            end associate
+         end do
+      end function stands
    end subroutine new_sweep
-
-   !> The impact of a case without a sweep, to see whether there is one
-   subroutine single_impact(self, case, impact, error)
-      !> Its sweep, of one point
-      type(sweep_t), intent(in) :: self
-      !> The case
-      type(case_t), intent(in) :: case
-      !> The impact
-      type(impact_t), intent(out) :: impact
-      !> Error of code `error_input` that says where in the case its cause stands, unallocated on
-      !> success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(worker_t) :: worker
-      type(place_t) :: cause
-
-      call build_point(self, 1, worker, error, cause)
-      if (.not. allocated(error)) then
-         impact = worker%impact
-      else
-         call locate(case, cause, error)
-      end if
-   end subroutine single_impact
 
    !> Solve one point
    subroutine solve_point(self, point, worker, outcome, error)
@@ -148,25 +136,16 @@ contains
       !> another if the solution fails; unallocated on success, with or without a separation
       type(error_t), allocatable, intent(out) :: error
 
-      type(place_t) :: cause
-
-      call build_point(self, point, worker, error, cause)
-      if (allocated(error)) then
-         continue
-      else if (allocated(self%solver)) then
-         call solve_impact(self%solver, worker%impact, worker%trajectory, outcome, error)
-      else
-         call prepare_solver(worker, error)
-         if (.not. allocated(error)) &
-            call solve_impact(worker%solver, worker%impact, worker%trajectory, outcome, error)
-      end if
+      call build_point(self, point, worker, error)
+      if (.not. allocated(error)) call solve_impact(worker%problem%solver, worker%problem%impact, &
+         worker%trajectory, outcome, error)
       if (.not. allocated(error)) return
       outcome%status = point_failed
       if (error%code == error_input) outcome%status = point_invalid
    end subroutine solve_point
 
    !> Build the impact of a point
-   subroutine build_point(self, point, worker, error, cause)
+   subroutine build_point(self, point, worker, error)
       !> The sweep
       type(sweep_t), intent(in) :: self
       !> Number of the point
@@ -175,15 +154,13 @@ contains
       type(worker_t), intent(inout) :: worker
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> What in the case the error is about
-      type(place_t), intent(out) :: cause
 
       real(wp) :: value
       integer :: i, place(size(self%grid%axes))
-      logical :: is_taken
 
       if (.not. allocated(worker%places)) then
-         worker%blueprint = self%blueprint
+         worker%case = self%case
+         worker%problem = self%problem
          allocate (worker%places(size(place)), source=0)
       end if
       place = self%grid%places(point)
@@ -191,40 +168,15 @@ contains
          if (worker%places(i) == place(i)) cycle
          value = self%grid%axes(i)%values(place(i))
          if (.not. contains_number(self%ranges(i), value)) then
-            cause = self%places(i)
             call raise(error, error_input, self%objections(i)%message)
             return
          end if
-         call worker%blueprint%set(self%places(i), value, is_taken)
-         if (.not. is_taken) then
-            call raise(error, error_internal, 'what is swept is not read')
-            return
-         end if
+         call worker%case%set(self%grid%axes(i)%address, value)
          worker%places(i) = place(i)
       end do
-      call worker%blueprint%build(worker%impact, error, cause)
-      if (allocated(error)) return
-      call check_settings(worker%blueprint%settings, worker%impact, error)
-      if (allocated(error)) cause = solver_place(worker%blueprint%settings)
+      call worker%problem%update(worker%case, error)
    end subroutine build_point
 
-   !> Build the solver anew if its settings have changed
-   subroutine prepare_solver(worker, error)
-      !> What one thread works with, its blueprint set
-      type(worker_t), intent(inout) :: worker
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      associate (old => worker%settings, new => worker%blueprint%settings)
-         if (allocated(worker%solver)) then
-            if (all(abs([old%time_step, old%end_time, old%accuracy, old%second_coefficient] &
-               - [new%time_step, new%end_time, new%accuracy, new%second_coefficient]) &
-               <= 0.0_wp)) return
-         end if
-         old = new
-         call new_solver(worker%solver, new, error)
-      end associate
-   end subroutine prepare_solver
 
    !> Why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)

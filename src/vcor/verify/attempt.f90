@@ -6,8 +6,8 @@ module vcor_verify_attempt
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_case_build, only : build_solver
    use vcor_case_case, only : case_t
+   use vcor_case_problem, only : problem_of_case, problem_t
    implicit none
    private
 
@@ -77,24 +77,22 @@ contains
    end subroutine try
 
    !> Solve as the case says
-   subroutine try_case(self, case, impact, error)
+   subroutine try_case(self, case, error)
       !> The attempt
       class(attempt_t), intent(inout) :: self
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Its impact
-      type(impact_t), intent(in) :: impact
       !> What is no numerical failure; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      class(solver_t), allocatable :: solver
+      type(problem_t) :: problem
       character(len=:), allocatable :: scheme
 
       call case%get('solver', 'scheme', scheme)
       self%label = 'case: '//scheme
       if (case%given('solver', 'time_step')) call case%get('solver', 'time_step', self%time_step)
-      call build_solver(case, impact, solver, error)
-      if (.not. allocated(error)) call solve(self, solver, impact, error)
+      call problem_of_case(problem, case, error)
+      if (.not. allocated(error)) call solve(self, problem%solver, problem%impact, error)
    end subroutine try_case
 
    !> Solve

@@ -59,7 +59,7 @@ contains
       call halve(comparison%attempts, settings, impact, error)
       if (allocated(error)) return
       if (is_another(case, comparison%two_methods)) then
-         call comparison%attempts(attempt_case)%try_case(case, impact, error)
+         call comparison%attempts(attempt_case)%try_case(case, error)
          if (allocated(error)) return
       end if
       call judge_ends(comparison)

@@ -2,13 +2,11 @@
 module vcor_verify_models
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : trajectory_t
-   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_case_build, only : build_impact
+   use vcor_solver, only : solve_impact
    use vcor_case_case, only : case_t
-   use vcor_case_describe, only : describe_solver
-   use vcor_case_store, only : entry_t
+   use vcor_case_checks, only : validate
+   use vcor_case_problem, only : problem_of_case, problem_t
    implicit none
    private
 
@@ -56,12 +54,12 @@ contains
       do i = 1, size(plates)
          do j = 1, size(laws)
             other = case
-            call set(other, 'plate', 'waves', trim(plates(i)))
-            call set(other, 'contact', 'law', trim(laws(j)))
-            call set(other, 'solver', 'method', 'auto')
-            call set(other, 'solver', 'scheme', 'product')
-            call set(other, 'solver', 'continue_after_separation')
-            call other%validate(error)
+            call other%set(other%address('plate', 'waves'), trim(plates(i)), given=.false.)
+            call other%set(other%address('contact', 'law'), trim(laws(j)), given=.false.)
+            call other%set(other%address('solver', 'method'), 'auto', given=.false.)
+            call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
+            call other%unset(other%address('solver', 'continue_after_separation'))
+            call validate(other, error)
             if (allocated(error) .and. plates(i) /= waves .and. j == 1 &
                 .and. .not. case%given('plate', 'half_thickness')) exit
             n = n + 1
@@ -78,25 +76,6 @@ contains
       allocate (models, source=all(:n))
    end subroutine solve_models
 
-   !> Give a key a text, or false to a switch
-   subroutine set(case, group, key, text)
-      !> The case
-      type(case_t), intent(inout) :: case
-      !> Group
-      character(len=*), intent(in) :: group
-      !> Key
-      character(len=*), intent(in) :: key
-      !> The text; absent: false
-      character(len=*), intent(in), optional :: text
-
-      type(entry_t) :: entry
-
-      if (present(text)) entry%text = text
-      entry%flag = .false.
-      entry%present = .true.
-      call case%assign(case%handle(group, key), entry)
-   end subroutine set
-
    !> Solve one case
    subroutine solve(case, model)
       !> The case
@@ -104,17 +83,13 @@ contains
       !> Its row, outcome or failure to be set
       type(model_t), intent(inout) :: model
 
-      type(solver_settings_t) :: settings
-      type(impact_t) :: impact
+      type(problem_t) :: problem
       type(trajectory_t) :: trajectory
-      class(solver_t), allocatable :: solver
       type(error_t), allocatable :: error
 
-      call describe_solver(case, settings)
-      call build_impact(case, impact, error)
-      if (.not. allocated(error)) call new_solver(solver, settings, impact, error)
-      if (.not. allocated(error)) &
-         call solve_impact(solver, impact, trajectory, model%outcome, error)
+      call problem_of_case(problem, case, error)
+      if (.not. allocated(error)) call solve_impact(problem%solver, problem%impact, trajectory, &
+         model%outcome, error)
       if (allocated(error)) model%failure = error%message
    end subroutine solve
 

@@ -1,21 +1,20 @@
 !> The impact of a case file, with another velocity
 program from_case
-   use vcor, only : build_impact, build_solver, case_t, error_t, impact_t, outcome_t, override, &
-      read_case, solve_impact, solver_t, trajectory_t
+   use vcor, only : case_t, error_t, outcome_t, override, problem_of_case, problem_t, read_case, &
+      solve_impact, trajectory_t, validate
    implicit none
    type(case_t) :: case
-   type(impact_t) :: impact
-   class(solver_t), allocatable :: solver
+   type(problem_t) :: problem
    type(trajectory_t) :: trajectory
    type(outcome_t) :: outcome
    type(error_t), allocatable :: error
 
    call read_case(case, 'sls.nml', error)
    if (.not. allocated(error)) call override(case, 'impact.velocity=2.5', error)
-   if (.not. allocated(error)) call case%validate(error)
-   if (.not. allocated(error)) call build_impact(case, impact, error)
-   if (.not. allocated(error)) call build_solver(case, impact, solver, error)
-   if (.not. allocated(error)) call solve_impact(solver, impact, trajectory, outcome, error)
+   if (.not. allocated(error)) call validate(case, error)
+   if (.not. allocated(error)) call problem_of_case(problem, case, error)
+   if (.not. allocated(error)) &
+      call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
    if (allocated(error)) then
       print '(a)', error%message
       stop 1
