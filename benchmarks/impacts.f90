@@ -5,7 +5,7 @@ program impacts
    use vcor, only : case_t, error_t, override, problem_of_case, problem_t, read_case, &
       trajectory_t, validate, wp
    use vcor_benchmark_stopwatch, only : measure, measurement_t, median, seconds, stop_on
-   use vcor_numeric_dot, only : dot
+   use vcor_solver_convolution, only : dot
    implicit none
 
    integer, parameter :: batches = 9

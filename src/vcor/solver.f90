@@ -6,11 +6,11 @@ module vcor_solver
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver_auto, only : auto_t
+   use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
-   use vcor_solver_marching, only : marching_t, new_marching
-   use vcor_solver_product, only : new_product, product_t
-   use vcor_solver_solution, only : solve_by => solve_impact
-   use vcor_solver_type, only : solver_t
+   use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
+   use vcor_solver_type, only : default_accuracy, solve_by => solve_impact, solver_settings_t, &
+      solver_t
    implicit none
    private
 
@@ -36,33 +36,6 @@ module vcor_solver
       "scheme = 'adams_bashforth' differentiates U = alpha(t) I, which waves = 'hereditary' has " &
       //"not: use method = 'ive', or 'direct' with scheme = 'product'"
 
-   !> Letters of the longest name of a method
-   integer, parameter :: longest_method = len('direct')
-   !> Letters of the longest name in the settings
-   integer, parameter :: longest_name = len('adams_bashforth')
-
-   !> How an impact is to be solved
-   type :: solver_settings_t
-      !> One of auto, ive, direct
-      character(len=longest_name) :: method = 'auto'
-      !> Scheme of the direct method: product or adams_bashforth
-      character(len=longest_name) :: scheme = 'product'
-      !> adams_bashforth: form of Eq. (8), a or b
-      character(len=longest_name) :: form = 'a'
-      !> adams_bashforth: sums, rectangle or trapezoid
-      character(len=longest_name) :: quadrature = 'trapezoid'
-      !> Time step of the direct method [s]; 0: follows from the accuracy
-      real(wp) :: time_step = 0.0_wp
-      !> End of the computation [s]; 0: follows from the contact's time scale
-      real(wp) :: end_time = 0.0_wp
-      !> Wanted accuracy of the coefficient of restitution [-]; 0: that of the method
-      real(wp) :: accuracy = 0.0_wp
-      !> Coefficient c2 of the second term of the Volterra series [m^-1.5]; 0: without it
-      real(wp) :: second_coefficient = 0.0_wp
-      !> Go on after the separation
-      logical :: ghost = .false.
-   end type solver_settings_t
-
    !> Solve an impact: by a solver, or by the one that a case without &solver has
    interface solve_impact
       procedure :: solve_by
@@ -87,38 +60,9 @@ contains
       !> ive or direct
       character(len=:), allocatable :: name
 
-      character(len=longest_method) :: found
-
-      call find_method(method, scheme, found)
-      name = trim(found)
-   end function method_for
-
-   !> The same without a text of deferred length: gfortran 12 keeps the length of one that a
-   !> function returns in static storage, where threads collide
-   pure subroutine find_method(method, scheme, name)
-      !> What the user asks for: auto, ive or direct
-      character(len=*), intent(in) :: method
-      !> Scheme of the direct method that the user asks for
-      character(len=*), intent(in) :: scheme
-      !> ive or direct
-      character(len=longest_method), intent(out) :: name
-
       name = method
-      if (method /= 'auto') return
-      name = 'direct'
-      if (scheme == 'product') name = 'ive'
-   end subroutine find_method
-
-   !> Accuracy of the coefficient of restitution where none is asked for
-   pure function default_accuracy(method) result(accuracy)
-      !> ive or direct
-      character(len=*), intent(in) :: method
-      !> Accuracy [-]
-      real(wp) :: accuracy
-
-      accuracy = 1.0e-6_wp
-      if (method == 'ive') accuracy = 1.0e-8_wp
-   end function default_accuracy
+      if (method == 'auto') name = trim(merge('ive   ', 'direct', scheme == 'product'))
+   end function method_for
 
    !> Check that an impact can be solved as it is to be; the solver itself is the same for all of
    !> them
@@ -130,45 +74,28 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      logical :: two_terms
+
+      two_terms = abs(settings%second_coefficient) > 0.0_wp
       if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
          .and. .not. settings%time_step < settings%end_time) then
          call raise(error, error_input, 'solver.time_step must be below solver.end_time')
-      else if (impact%kernel_viscosity() > 0.0_wp) then
-         if (abs(settings%second_coefficient) > 0.0_wp) then
-            call raise(error, error_input, 'the second term of the Volterra series has no ' &
-               //'meaning with a viscosity, whose kernel is a delta function')
-         else if (impact%plate%frozen()) then
-            call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
-               //"without a viscosity; use waves = 'relaxing'")
-         end if
-      end if
-      if (.not. allocated(error)) call check_mechanics(settings, impact, error)
-   end subroutine check_settings
-
-   !> Check that law and plate are those that the solver is made for
-   subroutine check_mechanics(settings, impact, error)
-      !> How the impact is to be solved
-      type(solver_settings_t), intent(in) :: settings
-      !> The impact
-      type(impact_t), intent(in) :: impact
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      logical :: papers_scheme
-
-      papers_scheme = settings%scheme /= 'product'
-      if (impact%law%receding) then
-         if (abs(settings%second_coefficient) > 0.0_wp) then
-            call raise(error, error_input, receding_without_second_term)
-         else if (papers_scheme) then
-            call raise(error, error_input, receding_without_papers_scheme)
-         else if (settings%ghost) then
-            call raise(error, error_input, receding_without_ghost)
-         end if
-      else if (impact%plate%hereditary() .and. papers_scheme) then
+      else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
+         call raise(error, error_input, 'the second term of the Volterra series has no ' &
+            //'meaning with a viscosity, whose kernel is a delta function')
+      else if (impact%kernel_viscosity() > 0.0_wp .and. impact%plate%frozen()) then
+         call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
+            //"without a viscosity; use waves = 'relaxing'")
+      else if (impact%law%receding .and. two_terms) then
+         call raise(error, error_input, receding_without_second_term)
+      else if (impact%law%receding .and. settings%scheme /= 'product') then
+         call raise(error, error_input, receding_without_papers_scheme)
+      else if (impact%law%receding .and. settings%ghost) then
+         call raise(error, error_input, receding_without_ghost)
+      else if (impact%plate%hereditary() .and. settings%scheme /= 'product') then
          call raise(error, error_input, hereditary_without_papers_scheme)
       end if
-   end subroutine check_mechanics
+   end subroutine check_settings
 
    !> Solve an impact by the method auto, or as it is to be solved
    subroutine solve_in_short(impact, outcome, error, settings)
@@ -217,63 +144,44 @@ contains
       type(auto_t), allocatable :: auto
       type(ive_t), allocatable :: ive
       type(product_t), allocatable :: product
-      type(marching_t), allocatable :: marching
-      character(len=longest_method) :: method
+      type(adams_bashforth_t), allocatable :: adams_bashforth
+      type(solver_settings_t) :: fallback
       real(wp) :: accuracy
 
-      call find_method(settings%method, settings%scheme, method)
-      select case (method)
-      case ('ive')
+      if (settings%method == 'ive' .or. &
+          (settings%method == 'auto' .and. settings%scheme == 'product')) then
+         accuracy = settings%accuracy
+         if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
          allocate (ive)
-         call new_ive(ive, accuracy_for('ive'), settings%end_time, error, &
-            settings%second_coefficient, settings%ghost)
+         call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &
+            settings%ghost)
          if (allocated(error)) return
-         if (settings%method == 'auto') then
+         if (settings%method == 'ive') then
+            call move_alloc(ive, solver)
+         else
             allocate (auto)
             auto%ive = ive
             ! the time step is that of a method which the user has not asked for
-            call new_product(auto%product, 0.0_wp, accuracy_for('direct'), settings%end_time, &
-               settings%second_coefficient, settings%ghost)
+            fallback = settings
+            fallback%time_step = 0.0_wp
+            call new_product(auto%product, fallback)
             call move_alloc(auto, solver)
-         else
-            call move_alloc(ive, solver)
          end if
-      case ('direct')
-         select case (settings%scheme)
-         case ('product')
-            allocate (product)
-            accuracy = accuracy_for('direct')
-            if (settings%time_step > 0.0_wp) accuracy = settings%accuracy
-            call new_product(product, settings%time_step, accuracy, settings%end_time, &
-               settings%second_coefficient, settings%ghost)
-            call move_alloc(product, solver)
-         case ('adams_bashforth')
-            allocate (marching)
-            call new_marching(marching, settings%time_step, settings%end_time, &
-               trim(settings%form), trim(settings%quadrature), error, settings%second_coefficient, &
-               settings%ghost, settings%accuracy)
-            if (.not. allocated(error)) call move_alloc(marching, solver)
-         case default
-            call raise(error, error_input, "unknown scheme '"//trim(settings%scheme) &
-               //"'; known: product, adams_bashforth")
-         end select
-      case default
+      else if (settings%method /= 'direct' .and. settings%method /= 'auto') then
          call raise(error, error_input, "unknown method '"//trim(settings%method) &
             //"'; known: auto, ive, direct")
-      end select
-
-   contains
-
-      !> The accuracy asked for, or that of a method
-      pure function accuracy_for(name)
-         !> ive or direct
-         character(len=*), intent(in) :: name
-         !> Accuracy [-]
-         real(wp) :: accuracy_for
-
-         accuracy_for = settings%accuracy
-         if (.not. accuracy_for > 0.0_wp) accuracy_for = default_accuracy(name)
-      end function accuracy_for
+      else if (settings%scheme == 'product') then
+         allocate (product)
+         call new_product(product, settings)
+         call move_alloc(product, solver)
+      else if (settings%scheme == 'adams_bashforth') then
+         allocate (adams_bashforth)
+         call new_adams_bashforth(adams_bashforth, settings, error)
+         if (.not. allocated(error)) call move_alloc(adams_bashforth, solver)
+      else
+         call raise(error, error_input, "unknown scheme '"//trim(settings%scheme) &
+            //"'; known: product, adams_bashforth")
+      end if
    end subroutine new_solver_for_all
 
 end module vcor_solver

@@ -13,8 +13,8 @@ module vcor_test_cases
    use vcor_material_prony, only : new_rigid, prony_t
    use vcor_material_type, only : material_t
    use vcor_solver_ive, only : ive_t, new_ive
-   use vcor_solver_product, only : new_product, product_t
-   use vcor_solver_type, only : solver_t
+   use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_type, only : solver_settings_t, solver_t
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
    use vcor_case_problem, only : problem_of_case, problem_t
@@ -183,7 +183,7 @@ contains
       !> The solver
       type(product_t), intent(out) :: solver
 
-      call new_product(solver, time_step, accuracy, unlimited)
+      call new_product(solver, solver_settings_t(time_step=time_step, accuracy=accuracy))
    end subroutine make_product
 
    !> A uniform random number

@@ -6,7 +6,7 @@ program test_columns
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : make_ive, make_product, read_impact, run
    implicit none

@@ -10,7 +10,8 @@ program test_exponential_sum
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive, only : ive_t, new_ive
-   use vcor_solver_product, only : new_product, product_t
+   use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    implicit none
 
@@ -201,8 +202,8 @@ contains
          call check(trajectory%kernel_terms > 20 .and. trajectory%kernel_error > 0.0_wp, &
             "it says what stood for the kernel")
          do j = 1, 3
-            call new_product(product, outcome%contact_time/(500.0_wp*2.0_wp**j), 1.0e-6_wp, &
-               0.0_wp, 0.0_wp, .false.)
+            call new_product(product, solver_settings_t(accuracy=1.0e-6_wp, &
+               time_step=outcome%contact_time/(500.0_wp*2.0_wp**j)))
             call product%solve(impact, trajectory, error)
             direct(j) = cor_of(impact, trajectory)
          end do

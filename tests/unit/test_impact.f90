@@ -19,7 +19,7 @@ program test_impact
    use vcor_material_type, only : material_t
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    use vcor_test_cases, only : make_ive, make_product, rigid_on_plate, success
    implicit none

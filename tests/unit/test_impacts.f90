@@ -9,7 +9,7 @@ program test_impacts
    use vcor_io_data_file, only : read_data
    use vcor_kinds, only : wp
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_solver_type, only : solver_t
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate

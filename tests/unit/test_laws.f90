@@ -10,7 +10,7 @@ program test_laws
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : body_on_body, make_ive, make_product, random_t, rigid_on_plate, &
       run, success

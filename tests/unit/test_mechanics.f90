@@ -14,7 +14,7 @@ program test_mechanics
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_type, only : material_t
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_solver_type, only : solver_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : make_ive, make_product, random_t, rigid_on_plate, run, success

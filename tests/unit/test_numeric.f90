@@ -5,7 +5,7 @@ program test_numeric
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
-   use vcor_numeric_dot, only : dot
+   use vcor_solver_convolution, only : dot
    use vcor_numeric_legendre, only : gauss_nodes, legendre, radau_nodes
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
    use vcor_numeric_radau_algebra, only : apply, invert, ratio, times, width

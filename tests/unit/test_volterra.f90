@@ -10,8 +10,9 @@ program test_volterra
    use vcor_kinds, only : wp
    use vcor_material_prony, only : new_prony, new_rigid, new_sls, prony_t
    use vcor_solver_ive, only : ive_t, new_ive
-   use vcor_solver_product, only : new_product, product_t
-   use vcor_solver_volterra, only : volterra_t
+   use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_second_term, only : second_term_t
+   use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, finish, suite
    implicit none
 
@@ -23,29 +24,36 @@ program test_volterra
 
 contains
 
-   !> The polynomial in the newest value against the double sum written out
+   !> The double sum by O(n) operations against the double sum written out, the newest value counted
+   !> whole or by half, in room that grows on the way
    subroutine test_sums()
       integer, parameter :: steps = 40
       ! a few hundred terms of order one, each rounded
       real(wp), parameter :: rounding = 1.0e-12_wp
-      type(volterra_t) :: sums
-      real(wp) :: kernel(0:2*steps - 1), w(steps), constant, linear, quadratic, total
+      type(second_term_t) :: term
+      real(wp) :: kernel(0:2*steps - 1), w(steps), counted(steps), single, total, share
       integer :: a, b, i, n
 
       kernel = [(exp(-0.1_wp*real(i, wp)), i = 0, 2*steps - 1)]
       w = [(sin(1.7_wp*real(i, wp)**2), i = 1, steps)]
-      call sums%prepare(kernel)
+      call term%prepare(kernel(0:steps))
       do n = 1, steps
-         call sums%polynomial(n, w, constant, linear, quadratic)
-         total = 0.0_wp
-         do a = 1, n
-            do b = 1, n
-               total = total + kernel(2*n - a - b)*w(a)*w(b)
+         if (n == steps/2) call term%prepare(kernel)
+         do i = 1, 2
+            share = 1.0_wp/real(i, wp)
+            counted = w
+            counted(n) = share*w(n)
+            total = 0.0_wp
+            do a = 1, n
+               do b = 1, n
+                  total = total + kernel(2*n - a - b)*counted(a)*counted(b)
+               end do
             end do
+            single = term%kernel%sum_over(n, 1, n - 1, w)
+            call check_close(term%past(n) + counted(n)*(2.0_wp*single &
+               + term%kernel%newest*counted(n)), total, rounding, "the sums are the double sum")
          end do
-         call check_close(constant + (linear + quadratic*w(n))*w(n), total, rounding, &
-            "the sums are the double sum")
-         call sums%accept(n, w)
+         call term%accept(n, w)
       end do
    end subroutine test_sums
 
@@ -112,7 +120,8 @@ contains
                call ive%solve(impact, trajectory, error)
                call check(.not. allocated(error), "ive comes to its end")
                one = evaluate(impact, trajectory)
-               call new_product(product, 1.0e-6_wp, 1.0e-6_wp, 0.0_wp, coefficient(j))
+               call new_product(product, solver_settings_t(time_step=1.0e-6_wp, &
+                  accuracy=1.0e-6_wp, second_coefficient=coefficient(j)))
                call product%solve(impact, trajectory, error)
                call check(.not. allocated(error), "product comes to its end")
                other = evaluate(impact, trajectory)
@@ -149,7 +158,8 @@ contains
       call paper_impact(material, waves_relaxing, impact)
       call new_ive(ive, 1.0e-9_wp, end_time, error, ghost=.true.)
       call ive%solve(impact, one, error)
-      call new_product(product, step, 1.0e-6_wp, end_time, ghost=.true.)
+      call new_product(product, solver_settings_t(time_step=step, accuracy=1.0e-6_wp, &
+         end_time=end_time, ghost=.true.))
       call product%solve(impact, other, error)
       call check(.not. allocated(error), "the runs come to their end")
       call check(one%final > one%last .and. other%final > other%last, "there is a ghost")

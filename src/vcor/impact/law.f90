@@ -35,15 +35,17 @@ module vcor_impact_law
       logical :: receding = .false.
    contains
       !> u(s)
-      procedure :: u
+      procedure, non_overridable :: u
       !> du/ds
-      procedure :: slope
+      procedure, non_overridable :: slope
       !> u/s
-      procedure :: secant
+      procedure, non_overridable :: secant
       !> u/s at many indentations
-      procedure :: secants
+      procedure, non_overridable :: secants
+      !> Indentation at which motion and force agree
+      procedure, non_overridable :: solve
       !> Time scale of an elastic impact
-      procedure :: time_scale
+      procedure, non_overridable :: time_scale
    end type contact_law_t
 
 contains
@@ -133,6 +135,45 @@ contains
          secant = sqrt(abs(s))
       end if
    end subroutine secants
+
+   !> Solve s + c u(s) + d u(s)^2 = r by Newton's method
+   pure subroutine solve(self, c, d, r, guess, s, secant)
+      !> Contact law
+      class(contact_law_t), intent(in) :: self
+      !> Coefficient [m^-0.5], >= 0
+      real(wp), intent(in) :: c
+      !> Coefficient [m^-2], small
+      real(wp), intent(in) :: d
+      !> Right-hand side [m]
+      real(wp), intent(in) :: r
+      !> Guess at s [m]
+      real(wp), intent(in) :: guess
+      !> Indentation [m]
+      real(wp), intent(out) :: s
+      !> u/s there [m^0.5]
+      real(wp), intent(out) :: secant
+
+      real(wp) :: e, correction
+      integer :: iteration
+
+      s = 0.0_wp
+      secant = self%secant(s)
+      if (.not. abs(r) > 0.0_wp) return
+      ! for |s|: with d = 0 the root lies below |r|, and from above Newton's method descends to it
+      e = sign(d, r)
+      s = abs(r)
+      if (abs(guess) > 0.0_wp) s = min(s, abs(guess))
+      do iteration = 1, 60
+         secant = self%secant(s)
+         correction = (s*(1.0_wp + secant*(c + e*s*secant)) - abs(r)) &
+            /(1.0_wp + self%exponent*secant*(c + 2.0_wp*e*s*secant))
+         s = s - correction
+         ! what is left is (n - 1)/2 of its square
+         if (abs(correction) <= 1.0e-8_wp*s) exit
+      end do
+      s = sign(s, r)
+      secant = self%secant(s)
+   end subroutine solve
 
    !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of the impact on an elastic contact, F = k u
    pure function time_scale(self, mass, firmness, velocity) result(time)

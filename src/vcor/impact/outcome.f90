@@ -1,6 +1,7 @@
 !> Outcome of an impact: the numbers that users ask for
 module vcor_impact_outcome
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_constants, only : pi
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
@@ -11,51 +12,54 @@ module vcor_impact_outcome
 
    public :: outcome_t, evaluate
 
+   !> A number that there is not: quiet NaN, which no function may make in a constant
+   real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
+
    !> Outcome; of an impact that did not end in separation only `status`, `steps` and
-   !> `initial_energy` mean anything
+   !> `initial_energy` are numbers, all else is NaN
    type :: outcome_t
       !> One of the `contact_*` constants of the trajectory
       integer :: status = contact_separated
       !> Number of time steps
       integer :: steps = 0
       !> Coefficient of restitution by the relative velocity, -s'(t0)/v0 [-]
-      real(wp) :: cor = 0.0_wp
+      real(wp) :: cor = none
       !> Coefficient of restitution by the sphere's own velocity, -z'(t0)/v0 [-]
-      real(wp) :: cor_sphere = 0.0_wp
+      real(wp) :: cor_sphere = none
       !> Contact time t0 [s]
-      real(wp) :: contact_time = 0.0_wp
+      real(wp) :: contact_time = none
       !> Largest indentation [m]
-      real(wp) :: max_indentation = 0.0_wp
+      real(wp) :: max_indentation = none
       !> Its time [s]
-      real(wp) :: time_of_max_indentation = 0.0_wp
+      real(wp) :: time_of_max_indentation = none
       !> Largest force [N]
-      real(wp) :: max_force = 0.0_wp
+      real(wp) :: max_force = none
       !> Its time [s]
-      real(wp) :: time_of_max_force = 0.0_wp
+      real(wp) :: time_of_max_force = none
       !> Indentation left at t0 [m]
-      real(wp) :: residual_indentation = 0.0_wp
+      real(wp) :: residual_indentation = none
       !> Residual over largest indentation [-]
-      real(wp) :: residual_ratio = 0.0_wp
+      real(wp) :: residual_ratio = none
       !> Hysteresis W_h = int F ds [J]
-      real(wp) :: hysteresis_energy = 0.0_wp
+      real(wp) :: hysteresis_energy = none
       !> Energy radiated into the plate W_wave = int F dU [J]
-      real(wp) :: wave_energy = 0.0_wp
+      real(wp) :: wave_energy = none
       !> Kinetic energy before the impact m v0^2/2 [J]
-      real(wp) :: initial_energy = 0.0_wp
+      real(wp) :: initial_energy = none
       !> Kinetic energy of the sphere after the impact m z'(t0)^2/2 [J]
-      real(wp) :: final_energy = 0.0_wp
+      real(wp) :: final_energy = none
       !> What the budget misses: initial - final - hysteresis - wave energy [J]
-      real(wp) :: energy_imbalance = 0.0_wp
+      real(wp) :: energy_imbalance = none
       !> Lowest frequency that matters, 2 pi/t0 [rad/s]
-      real(wp) :: min_frequency = 0.0_wp
+      real(wp) :: min_frequency = none
       !> Zener's inelasticity parameter lambda [-]
-      real(wp) :: inelasticity = 0.0_wp
+      real(wp) :: inelasticity = none
       !> Loss tangent of the contact modulus at `min_frequency` [-]
-      real(wp) :: loss_tangent = 0.0_wp
+      real(wp) :: loss_tangent = none
       !> Estimate of the error of `cor` [-]
-      real(wp) :: cor_error = 0.0_wp
+      real(wp) :: cor_error = none
       !> Estimate of the error of `cor_sphere` [-]
-      real(wp) :: cor_sphere_error = 0.0_wp
+      real(wp) :: cor_sphere_error = none
       !> Accuracy of both that was asked for [-]; 0: none was
       real(wp) :: accuracy = 0.0_wp
    contains
@@ -130,15 +134,16 @@ contains
          self%cor_error, self%cor_sphere_error]))
    end function is_finite
 
-   !> Whether the estimated error is above the accuracy that was asked for
+   !> Whether the estimated error is above the accuracy that was asked for; there is none where
+   !> nothing separated
    pure function misses(self)
-      !> The outcome, of a separation
+      !> The outcome
       class(outcome_t), intent(in) :: self
       !> Whether it is
       logical :: misses
 
-      misses = self%accuracy > 0.0_wp .and. &
-         max(self%cor_error, self%cor_sphere_error) > self%accuracy
+      misses = self%status == contact_separated .and. self%accuracy > 0.0_wp
+      if (misses) misses = max(self%cor_error, self%cor_sphere_error) > self%accuracy
    end function misses
 
 end module vcor_impact_outcome

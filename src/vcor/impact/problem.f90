@@ -21,11 +21,6 @@ module vcor_impact_problem
    private
 
    public :: impact_t, new_impact
-   public :: hertz, hertz_contact_time
-
-   !> Duration of Hertz's elastic impact in units of T = (m/(k sqrt(v0)))^(2/5):
-   !> (4/5) sqrt(pi) Gamma(2/5)/Gamma(9/10) (5/4)^(2/5) [-]
-   real(wp), parameter :: hertz_contact_time = 3.2180654597190435_wp
 
    !> An impact; solvers leave it as it is
    type :: impact_t
@@ -75,17 +70,6 @@ module vcor_impact_problem
    end type impact_t
 
 contains
-
-   !> Hertz's u = s^1.5, continued oddly: past the end of an elastic contact s is negative, and
-   !> the force with it
-   elemental function hertz(s) result(u)
-      !> Indentation [m]
-      real(wp), intent(in) :: s
-      !> u [m^1.5]
-      real(wp) :: u
-
-      u = s*sqrt(abs(s))
-   end function hertz
 
    !> Build an impact
    pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &

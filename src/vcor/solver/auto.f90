@@ -7,7 +7,7 @@ module vcor_solver_auto
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_solver_ive, only : ive_t
-   use vcor_solver_product, only : product_t
+   use vcor_solver_direct_product, only : product_t
    use vcor_solver_type, only : solver_t
    implicit none
    private

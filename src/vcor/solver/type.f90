@@ -1,12 +1,40 @@
-!> What all solvers have in common
+!> What all solvers have in common: their settings, the type, and the way from an impact to its
+!> outcome, or why there is none
 module vcor_solver_type
-   use vcor_error, only : error_t
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : trajectory_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: solver_t
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth
+
+   !> Letters of the longest name in the settings
+   integer, parameter :: longest_name = len('adams_bashforth')
+
+   !> How an impact is to be solved
+   type :: solver_settings_t
+      !> One of auto, ive, direct
+      character(len=longest_name) :: method = 'auto'
+      !> Scheme of the direct method: product or adams_bashforth
+      character(len=longest_name) :: scheme = 'product'
+      !> adams_bashforth: form of Eq. (8), a or b
+      character(len=longest_name) :: form = 'a'
+      !> adams_bashforth: sums, rectangle or trapezoid
+      character(len=longest_name) :: quadrature = 'trapezoid'
+      !> Time step of the direct method [s]; 0: follows from the accuracy
+      real(wp) :: time_step = 0.0_wp
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp) :: end_time = 0.0_wp
+      !> Wanted accuracy of the coefficient of restitution [-]; 0: that of the method
+      real(wp) :: accuracy = 0.0_wp
+      !> Coefficient c2 of the second term of the Volterra series, Eq. (10) [m^-1.5]; 0: without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> Go on after the separation, to `end_time` or to twice the contact time
+      logical :: ghost = .false.
+   end type solver_settings_t
 
    !> A method for impacts; immutable once built, so that threads can share it
    type, abstract :: solver_t
@@ -29,5 +57,79 @@ module vcor_solver_type
          type(error_t), allocatable, intent(out) :: error
       end subroutine solve_i
    end interface
+
+contains
+
+   !> Accuracy of the coefficient of restitution where none is asked for
+   pure function default_accuracy(method) result(accuracy)
+      !> ive or direct
+      character(len=*), intent(in) :: method
+      !> Accuracy [-]
+      real(wp) :: accuracy
+
+      accuracy = 1.0e-6_wp
+      if (method == 'ive') accuracy = 1.0e-8_wp
+   end function default_accuracy
+
+   !> Solve an impact: the one place where a result is held against the accuracy that was asked for
+   subroutine solve_impact(solver, impact, trajectory, outcome, error)
+      !> The solver
+      class(solver_t), intent(in) :: solver
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Its outcome; one that is no separation has a status and no numbers
+      type(outcome_t), intent(out) :: outcome
+      !> Error of code `error_numerical` if the solution fails, is far from the accuracy asked for
+      !> or leaves the range of the numbers; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=*), parameter :: advice(2) = [character(len=59) :: &
+         "use method = 'direct' or give a larger solver.accuracy", &
+         'give a larger solver.accuracy or a shorter solver.time_step']
+
+      call solver%solve(impact, trajectory, error)
+      if (allocated(error)) return
+      outcome = evaluate(impact, trajectory)
+      if (outcome%status /= contact_separated) return
+      if (.not. outcome%is_finite()) then
+         call raise(error, error_numerical, 'the numbers of this impact are beyond all that can ' &
+            //'be computed')
+      else if (trajectory%misses_by_far()) then
+         call raise(error, error_numerical, 'the estimated error of cor, ' &
+            //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
+            //', is more than a hundred times the accuracy asked for, '//as_text(outcome%accuracy) &
+            //': '//trim(advice(merge(1, 2, trajectory%stages > 0))))
+      end if
+   end subroutine solve_impact
+
+   !> Refuse a receding contact in which t1 grows. On a plate at rest s' only falls, and t1' has the
+   !> sign of s': there it is what rounding leaves of a sphere that has come to rest
+   subroutine refuse_growth(impact, error)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Error of code `error_numerical`
+      type(error_t), allocatable, intent(out) :: error
+
+      if (impact%plate%moves()) then
+         call raise(error, error_numerical, "the contact grows again before it has ended, which " &
+            //"law = 'receding' does not cover: use law = 'boltzmann'")
+      else
+         call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
+            //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")
+      end if
+   end subroutine refuse_growth
+
+   !> A number as text, of fixed length: gfortran 12 keeps the length of a text of deferred length
+   !> that a function returns in static storage, where threads collide
+   pure function as_text(number) result(text)
+      !> The number, > 0
+      real(wp), intent(in) :: number
+      !> Such as 1.0E-08
+      character(len=7) :: text
+
+      write (text, '(es7.1)') number
+   end function as_text
 
 end module vcor_solver_type

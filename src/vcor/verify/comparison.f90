@@ -6,7 +6,7 @@
 !> share the equation of motion and nothing else, so what they agree on is its solution.
 module vcor_verify_comparison
    use vcor_error, only : error_t
-   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver, only : default_accuracy, solver_settings_t
    use vcor_case_case, only : case_t
@@ -141,7 +141,7 @@ contains
       if (attempts(attempt_first)%separated()) then
          direct%time_step = attempts(attempt_first)%outcome%contact_time/per_contact
       else if (allocated(attempts(attempt_first)%failure)) then
-         direct%time_step = hertz_contact_time*impact%time_scale()/per_contact
+         direct%time_step = impact%law%contact_time*impact%time_scale()/per_contact
       else
          direct%accuracy = default_accuracy('direct')
          call attempts(attempt_halved(1))%try(direct, impact, error)

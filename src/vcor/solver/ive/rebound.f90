@@ -23,7 +23,7 @@ module vcor_solver_ive_rebound
       largest_share, margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, &
       rebound_growth, rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, &
       slowest_fall, smallest_share, tolerable, tolerable_end, unreliable_kernel, usual_accuracy
-   use vcor_solver_receding, only : refuse_growth
+   use vcor_solver_type, only : refuse_growth
    implicit none
    private
 

@@ -1,6 +1,7 @@
 !> Formulas of the paper's time marching: Adams and Bashforth's, backward differences, Runge and
 !> Kutta's start
-module vcor_solver_multistep
+module vcor_solver_paper_multistep
+   use vcor_impact_law, only : contact_law_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -46,8 +47,10 @@ module vcor_solver_multistep
 
 contains
 
-   !> A step of s'' = -a u - b u', u = s^1.5, by Runge and Kutta's classical formula of fourth order
-   pure subroutine runge_kutta(a, b, dt, s, velocity)
+   !> A step of s'' = -a u - b u' by Runge and Kutta's classical formula of fourth order
+   pure subroutine runge_kutta(law, a, b, dt, s, velocity)
+      !> Contact law
+      type(contact_law_t), intent(in) :: law
       !> Firmness over mass [m^-0.5 s^-2]
       real(wp), intent(in) :: a
       !> Plate parameter times firmness [m^-0.5 s^-1]
@@ -79,8 +82,8 @@ contains
          !> Their slopes
          real(wp) :: f(2)
 
-         f = [y(2), -sqrt(abs(y(1)))*(a*y(1) + 1.5_wp*b*y(2))]
+         f = [y(2), -law%secant(y(1))*(a*y(1) + law%exponent*b*y(2))]
       end function slope
    end subroutine runge_kutta
 
-end module vcor_solver_multistep
+end module vcor_solver_paper_multistep

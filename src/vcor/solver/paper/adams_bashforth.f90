@@ -1,27 +1,27 @@
-!> The paper's own scheme: explicit time marching, Section V of Green's paper
+!> The paper's own scheme: explicit time marching by Adams and Bashforth's formula, Section V of
+!> Green's paper
 !>
 !> The sums leave an error of order dt with rectangles. With trapezoids it is of order dt^2, but for
 !> a small term of order dt^1.5 from the start, u' ~ sqrt(t). The capped kernel t^-a leaves one of
-!> order dt^(1-a). The scheme is stable for small steps only,
-!> `vcor_solver_stability` says how small: a run in which the oscillation from step to step grows
-!> is refused.
-module vcor_solver_marching
+!> order dt^(1-a). The scheme is stable for small steps only, `vcor_solver_paper_stability` says how
+!> small: a run in which the oscillation from step to step grows is refused.
+module vcor_solver_paper_adams_bashforth
    use vcor_error, only : error_input, error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz_contact_time, impact_t
+   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_indentation, col_sphere_velocity, col_time, &
       col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_march, only : capped, march, scheme_t, stable_damping
-   use vcor_solver_product, only : new_product, product_t
-   use vcor_solver_type, only : solver_t
+   use vcor_solver_direct_product, only : new_product, product_t
+   use vcor_solver_paper_march, only : capped, march, scheme_t, stable_damping
+   use vcor_solver_type, only : solver_settings_t, solver_t
    implicit none
    private
 
-   public :: marching_t, new_marching
+   public :: adams_bashforth_t, new_adams_bashforth
 
    !> The paper's time marching
-   type, extends(solver_t) :: marching_t
+   type, extends(solver_t) :: adams_bashforth_t
       private
       !> Time step [s]; 0: a part of the expected contact time
       real(wp) :: time_step = 0.0_wp
@@ -33,54 +33,40 @@ module vcor_solver_marching
       logical :: ghost = .false.
    contains
       procedure :: solve
-   end type marching_t
+   end type adams_bashforth_t
 
 contains
 
    !> Build the solver
-   pure subroutine new_marching(self, time_step, end_time, form, quadrature, error, &
-                                second_coefficient, ghost, accuracy)
+   pure subroutine new_adams_bashforth(self, settings, error)
       !> The solver
-      type(marching_t), intent(out) :: self
-      !> Time step [s]; 0: a 3000th of the expected contact time
-      real(wp), intent(in) :: time_step
-      !> End of the computation [s]; 0: follows from the contact's time scale
-      real(wp), intent(in) :: end_time
-      !> Form of Eq. (8): a or b
-      character(len=*), intent(in) :: form
-      !> Sums: rectangle or trapezoid
-      character(len=*), intent(in) :: quadrature
+      type(adams_bashforth_t), intent(out) :: self
+      !> Form, quadrature, step, end and second term; a step of 0 is a 3000th of the expected
+      !> contact time, an accuracy is what the result is held against
+      type(solver_settings_t), intent(in) :: settings
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Coefficient of the second term of the Volterra series [m^-1.5]; absent: without it
-      real(wp), intent(in), optional :: second_coefficient
-      !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
-      logical, intent(in), optional :: ghost
-      !> Accuracy that the result is held against [-]; absent or 0: none
-      real(wp), intent(in), optional :: accuracy
 
-      if (form /= 'a' .and. form /= 'b') then
-         call raise(error, error_input, "unknown form '"//form//"'; known: a, b")
-      else if (quadrature /= 'rectangle' .and. quadrature /= 'trapezoid') then
-         call raise(error, error_input, "unknown quadrature '"//quadrature &
+      if (settings%form /= 'a' .and. settings%form /= 'b') then
+         call raise(error, error_input, "unknown form '"//trim(settings%form)//"'; known: a, b")
+      else if (settings%quadrature /= 'rectangle' .and. settings%quadrature /= 'trapezoid') then
+         call raise(error, error_input, "unknown quadrature '"//trim(settings%quadrature) &
             //"'; known: rectangle, trapezoid")
       end if
       if (allocated(error)) return
-
-      self%time_step = time_step
-      self%scheme%end_time = end_time
-      self%scheme%form = form
-      self%scheme%share = 1.0_wp
-      if (quadrature == 'trapezoid') self%scheme%share = 0.5_wp
-      if (present(second_coefficient)) self%scheme%second_coefficient = second_coefficient
-      if (present(ghost)) self%ghost = ghost
-      if (present(accuracy)) self%accuracy = accuracy
-   end subroutine new_marching
+      self%time_step = settings%time_step
+      self%accuracy = settings%accuracy
+      self%ghost = settings%ghost
+      self%scheme%form = settings%form(1:1)
+      self%scheme%share = merge(0.5_wp, 1.0_wp, settings%quadrature == 'trapezoid')
+      self%scheme%second_coefficient = settings%second_coefficient
+      self%scheme%end_time = settings%end_time
+   end subroutine new_adams_bashforth
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
       !> The solver
-      class(marching_t), intent(in) :: self
+      class(adams_bashforth_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Its course
@@ -93,7 +79,7 @@ contains
 
       call refuse(self, impact, error)
       if (allocated(error)) return
-      contact_time = hertz_contact_time*impact%time_scale()
+      contact_time = impact%law%contact_time*impact%time_scale()
       dt = self%time_step
       if (.not. dt > 0.0_wp) dt = contact_time/real(usual_steps, wp)
       ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
@@ -112,7 +98,7 @@ contains
    !> Say what the scheme cannot do
    subroutine refuse(self, impact, error)
       !> The solver
-      type(marching_t), intent(in) :: self
+      type(adams_bashforth_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Error of code `error_input`, unallocated if all is well
@@ -146,7 +132,7 @@ contains
    !> One run, its failures as errors
    subroutine run(self, impact, dt, ghost, trajectory, error)
       !> The solver
-      type(marching_t), intent(in) :: self
+      type(adams_bashforth_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
@@ -189,7 +175,7 @@ contains
    !> of rectangles or of the capped kernel
    subroutine estimate_errors(self, impact, dt, trajectory)
       !> The solver
-      type(marching_t), intent(in) :: self
+      type(adams_bashforth_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
@@ -256,7 +242,7 @@ contains
    !> stable with any step
    function stable_step(self, impact, dt) result(step)
       !> The solver
-      type(marching_t), intent(in) :: self
+      type(adams_bashforth_t), intent(in) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
       !> An unstable time step [s]
@@ -272,13 +258,13 @@ contains
       real(wp) :: damping, lower, upper
       integer :: i
 
-      call new_product(product, 0.0_wp, accuracy, self%scheme%end_time, &
-         self%scheme%second_coefficient)
+      call new_product(product, solver_settings_t(accuracy=accuracy, &
+         end_time=self%scheme%end_time, second_coefficient=self%scheme%second_coefficient))
       call product%solve(impact, trajectory, error)
       damping = 0.0_wp
       do i = 1, trajectory%last
-         damping = max(damping, 1.5_wp*impact%plate%alpha(trajectory%state(col_time, i)) &
-            *sqrt(abs(trajectory%state(col_indentation, i))))
+         damping = max(damping, impact%plate%alpha(trajectory%state(col_time, i)) &
+            *impact%law%slope(trajectory%state(col_indentation, i)))
       end do
 
       ! where the damper is not the reason, the steps are too coarse for what they follow
@@ -318,7 +304,7 @@ contains
          if (.not. holds .or. self%scheme%form == 'a') return
          left = impact%kernel(0.0_wp) &
             + self%scheme%share*trial*impact%hertz_factor*impact%modulus%rate(0.0_wp)
-         do j = 1, min(int(hertz_contact_time*impact%time_scale()/trial), most_terms)
+         do j = 1, min(int(impact%law%contact_time*impact%time_scale()/trial), most_terms)
             left = left + trial*impact%hertz_factor*impact%modulus%rate(trial*real(j, wp))
             holds = left > 0.5_wp*impact%kernel(trial*real(j, wp))
             if (.not. holds) return
@@ -340,4 +326,4 @@ contains
       text = trim(adjustl(buffer))//' s'
    end function in_seconds
 
-end module vcor_solver_marching
+end module vcor_solver_paper_adams_bashforth

@@ -7,15 +7,15 @@
 !> from the newest step backwards until it changes its sign, in the step that t1 lies in; there the
 !> kernel is integrated over a part of the step. The newest indentation and velocity depend on the
 !> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together.
-module vcor_solver_receding
-   use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_problem, only : hertz, impact_t
+module vcor_solver_direct_receding
+   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_dot, only : dot
+   use vcor_solver_convolution, only : lengthen
+   use vcor_solver_direct_weights, only : contact_kernel_t
    implicit none
    private
 
-   public :: receding_t, refuse_growth
+   public :: receding_t
 
    !> Receding contact under way
    type :: receding_t
@@ -30,15 +30,9 @@ module vcor_solver_receding
       real(wp) :: force = 0.0_wp
       !> Step in which t1 lies
       integer, private :: step = 0
-      !> Time step [s]
-      real(wp), private :: dt = 0.0_wp
-      !> weight(room - i) = W_i
-      real(wp), allocatable, private :: weight(:)
-      !> Moments v_i, shape (0:)
-      real(wp), allocatable, private :: moment(:)
       !> Indentation at the nodes [m], shape (0:)
       real(wp), allocatable, private :: s(:)
-      !> Its differences, that of the first step twice [m], shape (0:)
+      !> Its differences [m]; that of the first step stands for the one before
       real(wp), allocatable, private :: ds(:)
    contains
       !> Make room
@@ -47,59 +41,19 @@ module vcor_solver_receding
       procedure :: accept
       !> Find the force in a step
       procedure :: find_force
-      !> Mean of the kernel over a step
-      procedure, private :: mean
-      !> Integral of the kernel over the later part of a step
-      procedure, private :: integral_over_part
    end type receding_t
 
 contains
 
-   !> Refuse a contact in which t1 grows. On a plate at rest s' only falls, and t1' has the sign of
-   !> s': there it is what rounding leaves of a sphere that has come to rest
-   subroutine refuse_growth(impact, error)
-      !> The impact
-      type(impact_t), intent(in) :: impact
-      !> Error of code `error_numerical`
-      type(error_t), allocatable, intent(out) :: error
-
-      if (impact%plate%moves()) then
-         call raise(error, error_numerical, "the contact grows again before it has ended, which " &
-            //"law = 'receding' does not cover: use law = 'boltzmann'")
-      else
-         call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
-            //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")
-      end if
-   end subroutine refuse_growth
-
    !> Make room for `steps` steps, what is there stays
-   pure subroutine prepare(self, dt, weight, moment)
+   pure subroutine prepare(self, steps)
       !> The contact
       class(receding_t), intent(inout) :: self
-      !> Time step [s]
-      real(wp), intent(in) :: dt
-      !> W_i in reversed order, shape (steps)
-      real(wp), intent(in) :: weight(:)
-      !> v_i, shape (0:steps-1)
-      real(wp), intent(in) :: moment(0:)
+      !> Number of steps
+      integer, intent(in) :: steps
 
-      real(wp), allocatable :: longer(:)
-      integer :: steps
-
-      steps = size(weight)
-      allocate (longer(0:steps))
-      longer = 0.0_wp
-      if (allocated(self%s)) longer(0:ubound(self%s, 1)) = self%s
-      call move_alloc(longer, self%s)
-      allocate (longer(0:steps))
-      longer = 0.0_wp
-      if (allocated(self%ds)) longer(0:ubound(self%ds, 1)) = self%ds
-      call move_alloc(longer, self%ds)
-      if (allocated(self%weight)) deallocate (self%weight, self%moment)
-      allocate (self%weight(steps), self%moment(0:steps - 1))
-      self%weight = weight
-      self%moment = moment
-      self%dt = dt
+      call lengthen(self%s, 0, steps)
+      call lengthen(self%ds, 1, steps)
    end subroutine prepare
 
    !> Take the indentation at node n into the sums
@@ -114,7 +68,6 @@ contains
       if (.not. allocated(self%s)) return
       self%s(n) = s
       self%ds(n) = s - self%s(n - 1)
-      if (n == 1) self%ds(0) = self%ds(1)
       if (.not. self%shrinks) then
          self%step = n
          self%t1 = real(n, wp)
@@ -123,11 +76,13 @@ contains
 
    !> Force at node n, t1 with it. If t1 is found to lie in the newest step, nothing is: the contact
    !> still grows
-   subroutine find_force(self, impact, n, du, indentation, velocity, viscosity)
+   subroutine find_force(self, impact, kernel, n, du, indentation, velocity)
       !> The contact
       class(receding_t), intent(inout) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
       !> Differences of u, shape (>= n - 1)
@@ -136,22 +91,19 @@ contains
       real(wp), intent(in) :: indentation(2)
       !> v_0 [m/s] and b [m/(N s)]
       real(wp), intent(in) :: velocity(2)
-      !> Viscosity of the kernel's dashpot [N s/m^1.5]
-      real(wp), intent(in) :: viscosity
 
       ! growth that is more than rounding, over the time step
       real(wp), parameter :: noticeable = 1.0e-6_wp
-      real(wp) :: known, per_force, force, condition, earlier, earlier_force
-      integer :: m, room
+      real(wp) :: viscosity, known, per_force, force, condition, earlier, earlier_force
+      integer :: m
 
-      room = size(self%weight)
+      viscosity = impact%kernel_viscosity()
       m = self%step
       ! condition = known - per_force*F
-      per_force = self%weight(room)*indentation(2) + viscosity*velocity(2)
-      known = dot(self%weight(room - n + m + 1:room - 1), self%ds(m + 1:n - 1)) &
-         - self%moment(n - m - 1)*self%ds(m) &
-         + self%weight(room)*(indentation(1) - self%s(n - 1)) + viscosity*velocity(1)
-      force = dot(self%weight(room - n + 1:room - n + m), du(:m)) + self%moment(n - m - 1)*du(m)
+      per_force = kernel%newest*indentation(2) + viscosity*velocity(2)
+      known = kernel%sum_over(n, m + 1, n - 1, self%ds) - kernel%moment(n - m - 1)*self%ds(m) &
+         + kernel%newest*(indentation(1) - self%s(n - 1)) + viscosity*velocity(1)
+      force = kernel%sum_over(n, 1, m, du) + kernel%moment(n - m - 1)*du(m)
       condition = known - per_force*force
       if (condition > 0.0_wp) then
          self%regrows = self%shrinks
@@ -160,11 +112,11 @@ contains
       self%shrinks = .true.
 
       do
-         earlier = known + self%mean(n - m)*self%ds(m) &
-            + self%moment(n - m)*(self%ds(m) - self%ds(m - 1))
+         earlier = known + kernel%mean(n - m)*self%ds(m) &
+            + kernel%moment(n - m)*(self%ds(m) - self%ds(max(m - 1, 1)))
          earlier_force = 0.0_wp
-         if (m > 1) earlier_force = force - self%mean(n - m)*du(m) &
-            - self%moment(n - m)*(du(m) - du(m - 1))
+         if (m > 1) earlier_force = force - kernel%mean(n - m)*du(m) &
+            - kernel%moment(n - m)*(du(m) - du(m - 1))
          if (earlier - per_force*earlier_force > 0.0_wp) exit
          known = earlier
          force = earlier_force
@@ -176,20 +128,22 @@ contains
       if (m == 0) then
          ! t1 beyond zero by what the condition lacks, as k(t) v0 is its rate there
          self%force = 0.0_wp
-         self%t1(3) = min(0.0_wp, known/(impact%kernel(real(n, wp)*self%dt)*self%ds(1)))
+         self%t1(3) = min(0.0_wp, known/(impact%kernel(real(n, wp)*kernel%dt)*self%ds(1)))
       else
          self%force = force
-         call find_in_step(self, impact, n, m, du, known, per_force)
+         call find_in_step(self, impact, kernel, n, m, du, known, per_force)
       end if
       self%regrows = self%t1(3) > self%t1(2) + noticeable
    end subroutine find_force
 
    !> Find t1 in step m by the Illinois method, and the force with it
-   subroutine find_in_step(self, impact, n, m, du, known, per_force)
+   subroutine find_in_step(self, impact, kernel, n, m, du, known, per_force)
       !> The contact; on entry its force is that up to the end of the step
       class(receding_t), intent(inout) :: self
       !> The impact
       type(impact_t), intent(in) :: impact
+      !> Its kernel
+      type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
       !> Step that t1 lies in
@@ -202,9 +156,10 @@ contains
       real(wp), intent(in) :: per_force
 
       real(wp), parameter :: tolerance = 1.0e-13_wp
-      real(wp) :: lower, upper, f_lower, f_upper, f, x, force
+      real(wp) :: lower, upper, f_lower, f_upper, f, x, force, end_u
       integer :: iteration
 
+      end_u = impact%law%u(self%s(m))
       lower = 0.0_wp
       upper = 1.0_wp
       call evaluate(lower, f_lower, force)
@@ -240,58 +195,18 @@ contains
 
          real(wp) :: before, s1, part, moment
 
-         associate (ds => self%ds(m), bend => self%ds(m) - self%ds(m - 1))
+         associate (ds => self%ds(m), bend => self%ds(m) - self%ds(max(m - 1, 1)))
             s1 = self%s(m - 1) + position*(ds - 0.5_wp*bend*(1.0_wp - position))
-            if (m == 1) s1 = position*ds
             part = 0.0_wp
-            moment = self%moment(n - m)*(1.0_wp - position)
-            if (position < 1.0_wp) part = self%integral_over_part(impact, n - m, position) &
-               /(1.0_wp - position)
+            moment = kernel%moment(n - m)*(1.0_wp - position)
+            if (position < 1.0_wp) part = kernel%part(impact, n - m, position)/(1.0_wp - position)
             condition = known + part*(self%s(m) - s1) + moment*bend
          end associate
          before = 0.0_wp
          if (m > 1) before = du(m - 1)
-         up_to = self%force - part*(hertz(self%s(m)) - hertz(s1)) - moment*(du(m) - before)
+         up_to = self%force - part*(end_u - impact%law%u(s1)) - moment*(du(m) - before)
          condition = condition - per_force*up_to
       end subroutine evaluate
    end subroutine find_in_step
 
-   !> Mean w_i of the kernel over step i
-   pure function mean(self, i)
-      !> The contact
-      class(receding_t), intent(in) :: self
-      !> Step, counted from t = 0 of the kernel, >= 0
-      integer, intent(in) :: i
-      !> Mean [N/m^1.5]
-      real(wp) :: mean
-
-      mean = self%weight(size(self%weight) - i) - self%moment(i)
-      if (i > 0) mean = mean + self%moment(i - 1)
-   end function mean
-
-   !> Integral of the kernel over the later part of a step in t1, over dt: next to t = 0 exactly,
-   !> later by its mean and its slope
-   function integral_over_part(self, impact, i, position) result(integral)
-      !> The contact
-      class(receding_t), intent(in) :: self
-      !> The impact
-      type(impact_t), intent(in) :: impact
-      !> Step, counted from t = 0 of the kernel, > 0
-      integer, intent(in) :: i
-      !> Where the part begins, 0 .. 1
-      real(wp), intent(in) :: position
-      !> Integral [N/m^1.5]
-      real(wp) :: integral
-
-      integer, parameter :: near = 12
-
-      if (i < near) then
-         integral = (impact%kernel_integral((real(i + 1, wp) - position)*self%dt) &
-            - impact%kernel_integral(real(i, wp)*self%dt))/self%dt
-      else
-         integral = (1.0_wp - position)*(self%mean(i) &
-            + 0.25_wp*position*(self%mean(i - 1) - self%mean(i + 1)))
-      end if
-   end function integral_over_part
-
-end module vcor_solver_receding
+end module vcor_solver_direct_receding

@@ -1,11 +1,12 @@
-!> The paper's evaluation of a march in equal steps: root of the force by Lagrange interpolation,
-!> integrals by Simpson's rule
-module vcor_solver_separation
+!> Step (7) of the paper, the evaluation: root of the force by Lagrange interpolation, integrals by
+!> Simpson's rule
+module vcor_solver_paper_evaluation
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
       trajectory_t
    use vcor_kinds, only : wp
+   use vcor_solver_equal_steps, only : add_last_step
    implicit none
    private
 
@@ -119,10 +120,8 @@ contains
          end if
          if (even < n - 1) &
             w(even:n - 1) = w(even:n - 1) + dt*[3.0_wp, 9.0_wp, 9.0_wp, 3.0_wp]/8.0_wp
-         w(n - 2) = w(n - 2) - h**3/(6.0_wp*dt*(dt + h))
-         w(n - 1) = w(n - 1) + h*(h + 3.0_wp*dt)/(6.0_wp*dt)
-         w(n) = h*(2.0_wp*h + 3.0_wp*dt)/(6.0_wp*(dt + h))
+         call add_last_step(dt, h, w(n - 2:n))
       end associate
    end subroutine set_simpson_weights
 
-end module vcor_solver_separation
+end module vcor_solver_paper_evaluation

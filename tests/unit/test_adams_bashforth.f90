@@ -1,5 +1,5 @@
 !> The paper's own time marching: its digits, its order, its limits
-program test_marching
+program test_adams_bashforth
    use vcor_error, only : error_input, error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_frozen, waves_none, waves_relaxing
@@ -11,9 +11,9 @@ program test_marching
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_sls, prony_t
    use vcor_solver_ive, only : ive_t, new_ive
-   use vcor_solver_marching, only : marching_t, new_marching
-   use vcor_solver_stability, only : damping_limit, kernel_terms
-   use vcor_solver_volterra, only : volterra_t
+   use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
+   use vcor_solver_paper_stability, only : damping_limit, kernel_terms
+   use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    use vcor_test_cases, only : rigid_on_plate, run, success, unlimited
    implicit none
@@ -31,14 +31,13 @@ program test_marching
    type(power_law_t) :: power_law
    type(cerf_t) :: cerf
 
-   call suite("marching")
+   call suite("adams_bashforth")
    call make_materials()
    call test_sls()
    call test_butyl()
    call test_frozen()
    call test_elastic()
    call test_order()
-   call test_volterra_sums()
    call test_second_term()
    call test_ghost()
    call test_end()
@@ -78,10 +77,11 @@ contains
       !> Its outcome
       type(outcome_t), intent(out) :: outcome
 
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(error_t), allocatable :: error
 
-      call new_marching(solver, time_step, unlimited, form, quadrature, error)
+      call new_adams_bashforth(solver, solver_settings_t(time_step=time_step, form=form, &
+         quadrature=quadrature), error)
       if (allocated(error)) call success(error, "the marching scheme is built")
       call run(solver, impact, outcome)
    end subroutine march
@@ -214,37 +214,6 @@ contains
       call check_close(outcome%cor, prony_cor, 5.0e-6_wp, "prony: trapezoids converge")
    end subroutine test_order
 
-   !> The double sum by O(n) operations against the double sum
-   subroutine test_volterra_sums()
-      integer, parameter :: steps = 40
-      type(volterra_t) :: volterra
-      real(wp) :: kernel(0:2*steps), w(steps), counted(steps), expected, share
-      integer :: n, a, b, half
-
-      do half = 0, 1
-         share = 1.0_wp - 0.5_wp*real(half, wp)
-         kernel = [(1.0_wp/(1.0_wp + 0.1_wp*real(n, wp)), n = 0, 2*steps)]
-         w = [(sin(0.3_wp*real(n, wp)) + 0.2_wp, n = 1, steps)]
-         ! room that grows on the way
-         call volterra%prepare(kernel(0:steps))
-         do n = 1, steps
-            if (n == steps/2) call volterra%prepare(kernel)
-            counted = w
-            counted(n) = share*w(n)
-            expected = 0.0_wp
-            do a = 1, n
-               do b = 1, n
-                  expected = expected + kernel(2*n - a - b)*counted(a)*counted(b)
-               end do
-            end do
-            call check_close(volterra%double_sum(n, w, share), expected, &
-               rounding*sum(kernel)*sum(abs(w)), "the double sum is the double sum")
-            call volterra%accept(n, w)
-         end do
-         volterra = volterra_t()
-      end do
-   end subroutine test_volterra_sums
-
    !> The second term in the force, against the sums written out and against internal variables
    subroutine test_second_term()
       real(wp), parameter :: coefficient = 200.0_wp
@@ -253,7 +222,7 @@ contains
       ! form b is stable with shorter steps only
       real(wp), parameter :: step(2) = [8.0e-6_wp, 1.0e-6_wp]
       type(impact_t) :: impact
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(ive_t) :: ive
       type(outcome_t) :: outcome, reference, without
       type(trajectory_t) :: trajectory
@@ -268,8 +237,8 @@ contains
       call check(abs(without%cor - reference%cor) > 1.0e-3_wp, "the second term matters")
       do i = 1, 2
          do j = 1, 2
-            call new_marching(solver, step(i), unlimited, form(i), quadrature(j), error, &
-               coefficient)
+            call new_adams_bashforth(solver, solver_settings_t(time_step=step(i), form=form(i), &
+               quadrature=quadrature(j), second_coefficient=coefficient), error)
             call solver%solve(impact, trajectory, error)
             call success(error, "a run with the second term")
             largest = trajectory%max_force
@@ -278,8 +247,8 @@ contains
                   form(i), j == 2), trajectory%state(col_force, n), rounding*largest, &
                   "form "//form(i)//", "//quadrature(j)//": the force is the sums written out")
             end do
-            call new_marching(solver, 1.0e-6_wp, unlimited, form(i), quadrature(j), error, &
-               coefficient)
+            call new_adams_bashforth(solver, solver_settings_t(time_step=1.0e-6_wp, form=form(i), &
+               quadrature=quadrature(j), second_coefficient=coefficient), error)
             call run(solver, impact, outcome)
             call check_close(outcome%cor, reference%cor, merge(2.0e-3_wp, 1.0e-5_wp, j == 1), &
                "form "//form(i)//", "//quadrature(j)//": COR as by internal variables")
@@ -356,7 +325,7 @@ contains
    !> Beyond the separation
    subroutine test_ghost()
       type(impact_t) :: impact
-      type(marching_t) :: plain, solver
+      type(adams_bashforth_t) :: plain, solver
       type(trajectory_t) :: trajectory, short
       type(outcome_t) :: outcome, other
       type(error_t), allocatable :: error
@@ -364,10 +333,12 @@ contains
 
       do waves = waves_relaxing, waves_frozen
          call rigid_on_plate(sls, waves, 10.0_wp, impact)
-         call new_marching(plain, 1.0e-6_wp, unlimited, "a", "rectangle", error)
+         call new_adams_bashforth(plain, solver_settings_t(time_step=1.0e-6_wp, &
+            quadrature="rectangle"), error)
          call plain%solve(impact, short, error)
          call success(error, "a run without ghost")
-         call new_marching(solver, 1.0e-6_wp, unlimited, "a", "rectangle", error, ghost=.true.)
+         call new_adams_bashforth(solver, solver_settings_t(time_step=1.0e-6_wp, &
+            quadrature="rectangle", ghost=.true.), error)
          call solver%solve(impact, trajectory, error)
          call success(error, "a run with ghost")
          outcome = evaluate(impact, short)
@@ -390,7 +361,8 @@ contains
             - trajectory%state(col_plate, 1:n) - trajectory%state(col_indentation, 1:n))), &
             0.0_wp, 1.0e-16_wp, "s = z - U")
       end do
-      call new_marching(solver, 1.0e-6_wp, 4.0e-3_wp, "a", "rectangle", error, ghost=.true.)
+      call new_adams_bashforth(solver, solver_settings_t(time_step=1.0e-6_wp, end_time=4.0e-3_wp, &
+         quadrature="rectangle", ghost=.true.), error)
       call solver%solve(impact, trajectory, error)
       call check_close(trajectory%state(col_time, trajectory%final), 4.0e-3_wp, 2.0e-6_wp, &
          "or to the end that is asked for")
@@ -399,16 +371,17 @@ contains
    !> Ends other than a separation, and the step where none is given
    subroutine test_end()
       type(impact_t) :: impact
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
 
       call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
-      call new_marching(solver, 1.0e-6_wp, 1.0e-3_wp, "a", "rectangle", error)
+      call new_adams_bashforth(solver, solver_settings_t(time_step=1.0e-6_wp, end_time=1.0e-3_wp, &
+         quadrature="rectangle"), error)
       call run(solver, impact, outcome)
       call check(outcome%status == contact_lasting, "a short time ends in contact")
       call check(outcome%steps == 1000, "after the steps that fit in")
-      call new_marching(solver, 0.0_wp, unlimited, "a", "rectangle", error)
+      call new_adams_bashforth(solver, solver_settings_t(quadrature="rectangle"), error)
       call run(solver, impact, outcome)
       call check(outcome%status == contact_separated .and. abs(outcome%steps - 3000) < 600, &
          "without a step it takes about 3000")
@@ -468,14 +441,15 @@ contains
       character(len=*), intent(in) :: name
 
       character(len=*), parameter :: before = "largest stable one is about "
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(trajectory_t) :: trajectory
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
       real(wp) :: stable
       integer :: i
 
-      call new_marching(solver, time_step, unlimited, form, quadrature, error)
+      call new_adams_bashforth(solver, solver_settings_t(time_step=time_step, form=form, &
+         quadrature=quadrature), error)
       call solver%solve(impact, trajectory, error)
       call check(allocated(error), name//": unstable")
       if (.not. allocated(error)) return
@@ -494,16 +468,16 @@ contains
    subroutine test_refused()
       type(prony_t) :: dashpot
       type(impact_t) :: impact
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(trajectory_t) :: trajectory
       type(error_t), allocatable :: error
 
-      call new_marching(solver, 0.0_wp, unlimited, "c", "rectangle", error)
+      call new_adams_bashforth(solver, solver_settings_t(form="c", quadrature="rectangle"), error)
       call refused(error, "a, b")
-      call new_marching(solver, 0.0_wp, unlimited, "a", "simpson", error)
+      call new_adams_bashforth(solver, solver_settings_t(quadrature="simpson"), error)
       call refused(error, "rectangle, trapezoid")
 
-      call new_marching(solver, 0.0_wp, unlimited, "b", "rectangle", error)
+      call new_adams_bashforth(solver, solver_settings_t(form="b", quadrature="rectangle"), error)
       call rigid_on_plate(power_law, waves_relaxing, 10.0_wp, impact)
       call solver%solve(impact, trajectory, error)
       call refused(error, "finite modulus")
@@ -513,7 +487,7 @@ contains
 
       call new_prony(dashpot, 1.0e6_wp, [1.0e6_wp], [1000.0_wp], 10.0_wp, error)
       call rigid_on_plate(dashpot, waves_relaxing, 10.0_wp, impact)
-      call new_marching(solver, 0.0_wp, unlimited, "a", "rectangle", error)
+      call new_adams_bashforth(solver, solver_settings_t(quadrature="rectangle"), error)
       call solver%solve(impact, trajectory, error)
       call refused(error, "viscosity")
    end subroutine test_refused
@@ -522,14 +496,15 @@ contains
    subroutine test_long_steps()
       real(wp), parameter :: step(3) = [1.0e-4_wp, 1.0e-2_wp, 1.0e200_wp]
       type(impact_t) :: impact
-      type(marching_t) :: solver
+      type(adams_bashforth_t) :: solver
       type(trajectory_t) :: trajectory
       type(error_t), allocatable :: error
       integer :: i
 
       call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
       do i = 1, size(step)
-         call new_marching(solver, step(i), unlimited, "a", "rectangle", error)
+         call new_adams_bashforth(solver, solver_settings_t(time_step=step(i), &
+            quadrature="rectangle"), error)
          call solver%solve(impact, trajectory, error)
          call check(allocated(error), "a step like the contact is refused")
          if (.not. allocated(error)) cycle
@@ -551,4 +526,4 @@ contains
       call check_contains(error%message, reason, reason//": with the reason")
    end subroutine refused
 
-end program test_marching
+end program test_adams_bashforth

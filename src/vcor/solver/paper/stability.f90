@@ -1,8 +1,8 @@
 !> Stability of the paper's time marching
 !>
 !> What oscillates from step to step has no time to feel the inertia of the sphere or the change of
-!> s and alpha: the scheme sees s'' = -U'' = -d (k s')' with d = (3/2) alpha sqrt(s), a damper. On
-!> s' ~ z^n, with x = 1/z, each of its formulas is a factor:
+!> s and alpha: the scheme sees s'' = -U'' = -d (k s')' with d = alpha du/ds, (3/2) alpha sqrt(s)
+!> for a sphere, a damper. On s' ~ z^n, with x = 1/z, each of its formulas is a factor:
 !>
 !>     Adams-Bashforth  (1 - x)/x s' = dt sigma(x) s''
 !>     force, form a    F = (3/2) sqrt(s) dt (K(x) - (1 - g) k_0) s',  K(x) = sum_j k_j x^j
@@ -15,11 +15,11 @@
 !> rectangles it is z = -1 with sigma = 551/45, delta2 = 4592/45, and for a constant kernel
 !> K = k_0/2: dt (3/2) alpha k_0 sqrt(s) < 0.0064, where the formula of Adams and Bashforth alone
 !> would bear 0.163.
-module vcor_solver_stability
+module vcor_solver_paper_stability
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
-   use vcor_solver_multistep, only : ab_points, adams_bashforth, first_difference, first_points, &
-      second_difference, second_points
+   use vcor_solver_paper_multistep, only : ab_points, adams_bashforth, first_difference, &
+      first_points, second_difference, second_points
    implicit none
    private
 
@@ -129,4 +129,4 @@ contains
       end do
    end function polynomial
 
-end module vcor_solver_stability
+end module vcor_solver_paper_stability

@@ -1,0 +1,246 @@
+!> Evaluation of product integration: end of contact, weights of integrals over the contact
+module vcor_solver_direct_evaluation
+   use vcor_impact_law, only : contact_law_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
+      trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_solver_equal_steps, only : add_last_step, parabola
+   implicit none
+   private
+
+   public :: end_of_contact, end_of_receding_contact, set_weights, start_weights
+
+contains
+
+   !> State where F = 0 in the step before node n, the first one with F <= 0. The indentation (by
+   !> cubic Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth
+   !> there even where s goes to zero with F
+   pure function end_of_contact(impact, stiffness, trajectory, n) result(node)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> About dF/du [N/m^1.5]
+      real(wp), intent(in) :: stiffness
+      !> The trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Node
+      integer, intent(in) :: n
+      !> State
+      real(wp) :: node(columns)
+
+      real(wp) :: a(columns), b(columns), memory(-1:1), theta, lower, upper, f, f_lower, f_upper, dt
+      integer :: j, iteration
+
+      b = trajectory%state(:, n)
+      a = trajectory%state(:, n - 1)
+      dt = b(col_time) - a(col_time)
+      do j = -1, 1
+         associate (near => trajectory%state(:, max(n - 1 + j, 0)))
+            memory(j) = stiffness*impact%law%u(near(col_indentation)) - near(col_force)
+         end associate
+      end do
+
+      lower = 0.0_wp
+      upper = 1.0_wp
+      f_lower = a(col_force)
+      f_upper = b(col_force)
+      theta = 1.0_wp
+      do iteration = 1, 200
+         if (.not. f_upper < 0.0_wp .or. .not. f_lower > 0.0_wp) exit
+         theta = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)
+         if (mod(iteration, 3) == 0) theta = 0.5_wp*(lower + upper)
+         f = stiffness*impact%law%u(hermite(a, b, col_indentation, col_velocity, theta)) &
+            - parabola(memory, theta)
+         if (abs(upper - lower) <= 1.0e-13_wp) exit
+         if (f > 0.0_wp) then
+            lower = theta
+            f_lower = f
+         else
+            upper = theta
+            f_upper = f
+         end if
+      end do
+      if (.not. f_lower > 0.0_wp) theta = 0.0_wp
+
+      node(col_time) = a(col_time) + theta*dt
+      node(col_impulse) = hermite(a, b, col_impulse, col_force, theta)
+      node(col_sphere) = hermite(a, b, col_sphere, col_sphere_velocity, theta)
+      call complete(impact, trajectory, n, theta, node)
+   end function end_of_contact
+
+   !> State where a receding contact ends in the step before node n, as t1 gets to 0: it is a smooth
+   !> function of time, and the force, an integral of u' from 0 to t1, goes to zero as t1^n
+   pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> t1 at nodes n - 2, n - 1 and n in any unit, the last one negative
+      real(wp), intent(in) :: t1(-1:1)
+      !> The trajectory, node n without a force
+      type(trajectory_t), intent(in) :: trajectory
+      !> Node
+      integer, intent(in) :: n
+      !> State
+      real(wp) :: node(columns)
+
+      real(wp) :: a(columns), theta, lower, upper, tau, once, twice
+      integer :: iteration
+
+      a = trajectory%state(:, n - 1)
+      lower = 0.0_wp
+      upper = 1.0_wp
+      do iteration = 1, digits(1.0_wp)
+         theta = 0.5_wp*(lower + upper)
+         if (parabola(t1, theta) > 0.0_wp) then
+            lower = theta
+         else
+            upper = theta
+         end if
+      end do
+
+      ! integrals of (1 - x)^n from 0 to 1, once and twice
+      once = 1.0_wp/(impact%law%exponent + 1.0_wp)
+      twice = 1.0_wp/(impact%law%exponent + 2.0_wp)
+      tau = theta*(trajectory%state(col_time, n) - a(col_time))
+      node(col_time) = a(col_time) + tau
+      node(col_impulse) = a(col_impulse) + once*tau*a(col_force)
+      node(col_sphere) = a(col_sphere) + tau*(a(col_sphere_velocity) &
+         - twice*tau*a(col_force)/impact%mass)
+      call complete(impact, trajectory, n, theta, node)
+   end function end_of_receding_contact
+
+   !> Complete the state at the end of contact
+   pure subroutine complete(impact, trajectory, n, theta, node)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> The trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> Node behind the end
+      integer, intent(in) :: n
+      !> Position of the end in the step before, 0 .. 1
+      real(wp), intent(in) :: theta
+      !> State: time, impulse and displacement of the sphere are set
+      real(wp), intent(inout) :: node(columns)
+
+      real(wp) :: drift(-1:1)
+      integer :: j
+
+      node(col_force) = 0.0_wp
+      node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
+      if (impact%plate%drifts()) then
+         do j = -1, 1
+            associate (near => trajectory%state(:, max(n - 1 + j, 0)))
+               drift(j) = impact%plate%alpha(near(col_time))*near(col_force) &
+                  - near(col_plate_velocity)
+            end associate
+         end do
+         node(col_plate) = hermite(trajectory%state(:, n - 1), trajectory%state(:, n), col_plate, &
+            col_plate_velocity, theta)
+         node(col_plate_velocity) = -parabola(drift, theta)
+      else
+         node(col_plate) = impact%plate%alpha(node(col_time))*node(col_impulse)
+         node(col_plate_velocity) = impact%plate%alpha_rate(node(col_time))*node(col_impulse)
+      end if
+      node(col_indentation) = node(col_sphere) - node(col_plate)
+      node(col_velocity) = node(col_sphere_velocity) - node(col_plate_velocity)
+   end subroutine complete
+
+   !> Cubic through values and slopes at both ends of a step
+   pure function hermite(a, b, value, slope, x) result(y)
+      !> State at the start
+      real(wp), intent(in) :: a(columns)
+      !> State at the end
+      real(wp), intent(in) :: b(columns)
+      !> Column of the values
+      integer, intent(in) :: value
+      !> Column of the slopes
+      integer, intent(in) :: slope
+      !> Position in the step, 0 .. 1
+      real(wp), intent(in) :: x
+      !> Interpolated value
+      real(wp) :: y
+
+      y = a(value)*(1.0_wp + 2.0_wp*x)*(1.0_wp - x)**2 + b(value)*x**2*(3.0_wp - 2.0_wp*x) &
+         + (b(col_time) - a(col_time))*x*(1.0_wp - x)*(a(slope)*(1.0_wp - x) - b(slope)*x)
+   end function hermite
+
+   !> Weights for integrals over the contact: trapezoids on the equal steps with both ends corrected
+   !> by the first difference, with a dashpot the start for integrands in powers of t^(n-1); on the
+   !> last step, which is shorter, the parabola through the last three nodes
+   pure subroutine set_weights(impact, dt, trajectory)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp), parameter :: difference = 1.0_wp/12.0_wp
+      integer :: n
+
+      n = trajectory%last
+      associate (w => trajectory%weight)
+         w(0:n) = 0.5_wp*dt
+         if (n < 2) return
+         ! trapezoids up to node n - 1
+         w(1:n - 2) = dt
+         w(n) = 0.0_wp
+         if (n >= 6) then
+            if (impact%kernel_viscosity() > 0.0_wp) then
+               w(0:3) = w(0:3) + dt*start_weights(impact%law)
+            else
+               w(0:1) = w(0:1) + dt*difference*[-1.0_wp, 1.0_wp]
+            end if
+            w(n - 2:n - 1) = w(n - 2:n - 1) + dt*difference*[1.0_wp, -1.0_wp]
+         end if
+         call add_last_step(dt, trajectory%state(col_time, n) - trajectory%state(col_time, n - 1), &
+            w(n - 2:n))
+      end associate
+   end subroutine set_weights
+
+   !> What the first four nodes must add to trapezoids over unit steps for integrands 1, t^(n-1), t
+   !> and t^n, such as the force of a dashpot has at first: a sum over t^p misses zeta(-p). Where n
+   !> is next to an integer such integrands are smooth
+   pure function start_weights(law) result(weight)
+      !> Contact law
+      type(contact_law_t), intent(in) :: law
+      !> Weights of nodes 0 .. 3
+      real(wp) :: weight(4)
+
+      real(wp), parameter :: smooth = 1.0e-3_wp
+      real(wp) :: p, a, b, c, d(2)
+
+      p = law%exponent - 1.0_wp
+      weight = [-1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]/12.0_wp
+      if (abs(p - anint(p)) < smooth) return
+      ! with v_j = w_j j^p: sum v_j = a, sum v_j j^(1-p) = a + b, sum v_j j = a + c
+      a = -zeta(-p)
+      b = 1.0_wp/12.0_wp - a
+      c = -zeta(-law%exponent) - a
+      d = [2.0_wp, 3.0_wp]**(1.0_wp - p) - 1.0_wp
+      weight(4) = (b - d(1)*c)/(d(2) - 2.0_wp*d(1))
+      weight(3) = c - 2.0_wp*weight(4)
+      weight(2) = a - weight(3) - weight(4)
+      weight(3:4) = weight(3:4)/[2.0_wp, 3.0_wp]**p
+      weight(1) = -sum(weight(2:4))
+   end function start_weights
+
+   !> Riemann's zeta function at -2 < s < 0 by the sum formula of Euler and Maclaurin
+   pure function zeta(s)
+      !> Argument
+      real(wp), intent(in) :: s
+      !> Value
+      real(wp) :: zeta
+
+      integer, parameter :: terms = 20
+      integer :: k
+
+      associate (n => real(terms, wp))
+         zeta = sum([(real(k, wp)**(-s), k=1, terms - 1)]) + n**(-s)*(0.5_wp + n/(s - 1.0_wp) &
+            + s/(12.0_wp*n)*(1.0_wp - (s + 1.0_wp)*(s + 2.0_wp)/(60.0_wp*n**2) &
+            *(1.0_wp - (s + 3.0_wp)*(s + 4.0_wp)/(42.0_wp*n**2) &
+            *(1.0_wp - (s + 5.0_wp)*(s + 6.0_wp)/(40.0_wp*n**2)))))
+      end associate
+   end function zeta
+
+end module vcor_solver_direct_evaluation

@@ -1,0 +1,280 @@
+!> Equation of motion in product integration: how the motion at a node follows from the force there
+!>
+!> Eq. (2) integrated twice, s = v0 t - J/m - U with I' = F and J' = I, is linear in the force F at
+!> the newest node, whatever the plate. Its deflection and velocity are
+!>
+!>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
+!>     hereditary           U = alpha I + sum_j W_{n-j} dJ_j,   U' = alpha F + sum_j W_{n-j} dI_j
+!>     frozen               U' = int alpha F' dt = alpha F - D,   D = int alpha' F dt
+!>
+!> with I and J as parabolas over each step, and the memory psi of the hereditary plate integrated
+!> exactly, as the kernel of the contact is. The drift D begins with the power of time that kernel
+!> and plate give it: no parabola. A dashpot's impulse, viscosity*u, is known apart from the force
+!> that is integrated.
+module vcor_solver_direct_motion
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_solver_convolution, only : convolution_t, lengthen
+   use vcor_solver_direct_weights, only : memory_weights
+   implicit none
+   private
+
+   public :: motion_t
+
+   !> An integral over time: its value, and the integrand at the last node and the one before
+   type :: integral_t
+      !> Value
+      real(wp) :: value = 0.0_wp
+      !> Integrands
+      real(wp) :: last = 0.0_wp, before = 0.0_wp
+   end type integral_t
+
+   !> Motion of both bodies at the node that is being solved
+   type :: motion_t
+      !> Time [s]
+      real(wp) :: t = 0.0_wp
+      !> s = indentation(1) - indentation(2)*F [m], [m/N]
+      real(wp) :: indentation(2) = 0.0_wp
+      !> s' = velocity(1) - velocity(2)*F [m/s], [m/(N s)]
+      real(wp) :: velocity(2) = 0.0_wp
+      !> Plate parameter alpha [m/(N s)]
+      real(wp) :: alpha = 0.0_wp
+      !> Weight of the node in integrals over time [s]
+      real(wp) :: weight = 0.0_wp
+      !> Impulse [N s] and its integral [N s2], once the node is solved
+      real(wp) :: impulse = 0.0_wp, second_impulse = 0.0_wp
+      !> Time step [s]
+      real(wp), private :: dt = 0.0_wp
+      !> Rule for integrals over the step, from its end, its start and the node before [s]
+      real(wp), private :: rule(3) = 0.0_wp
+      !> The same for the drift
+      real(wp), private :: drift_rule(3) = 0.0_wp
+      !> Rate of alpha [m/(N s2)]
+      real(wp), private :: alpha_rate = 0.0_wp
+      !> Integral of the force without a dashpot's, and of the impulse
+      type(integral_t), private :: force, whole
+      !> Integrals of a frozen plate: of alpha F, of alpha' F, which is the drift, and of the drift
+      type(integral_t), private :: push, drift, lag
+      !> Whether the plate is the frozen one
+      logical, private :: frozen = .false.
+      !> Power of t with which the rate of the drift begins
+      real(wp), private :: power = 0.0_wp
+      !> What a hereditary plate remembers
+      type(convolution_t), private :: memory
+      !> Differences of I [N s] and J [N s2] from node to node, for the memory
+      real(wp), allocatable, private :: di(:), dj(:)
+   contains
+      !> Make room
+      procedure :: prepare
+      !> Go to the next node
+      procedure :: advance
+      !> Set the motion as a function of the force
+      procedure :: respond
+      !> Take the force in
+      procedure :: accept
+   end type motion_t
+
+contains
+
+   !> Make room for `steps` steps, what is there stays
+   subroutine prepare(self, impact, dt, steps)
+      !> The motion
+      class(motion_t), intent(inout) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Number of steps
+      integer, intent(in) :: steps
+
+      self%dt = dt
+      self%frozen = impact%plate%frozen()
+      if (self%frozen) self%power = power_of_drift(impact, dt)
+      if (.not. impact%plate%hereditary()) return
+      call self%memory%set(memory_weights(impact%plate, dt, steps))
+      call lengthen(self%di, 1, steps)
+      call lengthen(self%dj, 1, steps)
+   end subroutine prepare
+
+   !> Go to node n: its rule, and all integrals but for the share of this node
+   pure subroutine advance(self, impact, n, stiffness, viscosity)
+      !> The motion
+      class(motion_t), intent(inout) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+      !> dF/ds [N/m] and the dashpot's [N s/m] at the last node
+      real(wp), intent(in) :: stiffness, viscosity
+
+      ! rules for the integral over a step, from its end, its start and the node before
+      real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
+      real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
+      ! Adams and Moulton's rule is stable up to 6 for a decay rate times the step
+      real(wp), parameter :: stiff = 2.0_wp
+      ! steps next to t = 0 on which the rate of the drift is no parabola
+      integer, parameter :: near_start = 16
+
+      self%t = self%dt*real(n, wp)
+      call impact%plate%alpha_and_rate(self%t, self%alpha, self%alpha_rate)
+      self%rule = self%dt*adams_moulton
+      if (n == 1 .or. self%dt*((self%alpha + self%dt*self%memory%newest)*stiffness &
+          + viscosity/impact%mass) > stiff) self%rule = self%dt*trapezoid
+      self%weight = self%rule(1)
+      call go_on(self%force, self%rule)
+      call go_on(self%whole, self%rule)
+      if (.not. self%frozen) return
+      self%drift_rule = self%rule
+      if (n <= near_start) self%drift_rule = self%dt*power_rule(n, self%power)
+      call go_on(self%push, self%rule)
+      call go_on(self%drift, self%drift_rule)
+      call go_on(self%lag, self%rule)
+   end subroutine advance
+
+   !> Set the motion at node n as a function of the force there
+   pure subroutine respond(self, impact, n, dashpot)
+      !> The motion
+      class(motion_t), intent(inout) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+      !> Impulse of a dashpot, as far as it is known [N s]
+      real(wp), intent(in) :: dashpot
+
+      real(wp) :: i, j, weight, rate, plate, plate_velocity, per_force
+
+      ! I and J without this node's force
+      weight = self%weight
+      i = self%force%value + dashpot
+      j = self%whole%value + weight*i
+      if (self%frozen) then
+         plate = self%push%value - self%lag%value - weight*self%drift%value
+         plate_velocity = -self%drift%value
+         per_force = self%alpha - self%drift_rule(1)*self%alpha_rate
+         rate = 0.0_wp
+      else
+         plate = self%alpha*i
+         plate_velocity = self%alpha_rate*i
+         per_force = self%alpha
+         rate = self%alpha_rate
+      end if
+      self%indentation(1) = impact%velocity*self%t - j/impact%mass - plate
+      self%indentation(2) = weight*(weight/impact%mass + per_force)
+      self%velocity(1) = impact%velocity - i/impact%mass - plate_velocity
+      self%velocity(2) = weight/impact%mass + per_force + weight*rate
+      if (self%memory%room == 0) return
+      associate (newest => self%memory%newest)
+         self%indentation = self%indentation - [newest*(j - self%second_impulse) &
+            + self%memory%sum_over(n, 1, n - 1, self%dj), -weight*weight*newest]
+         self%velocity = self%velocity - [newest*(i - self%impulse) &
+            + self%memory%sum_over(n, 1, n - 1, self%di), -weight*newest]
+      end associate
+   end subroutine respond
+
+   !> Take the force at node n in
+   pure subroutine accept(self, n, force, dashpot)
+      !> The motion
+      class(motion_t), intent(inout) :: self
+      !> Node
+      integer, intent(in) :: n
+      !> Force without a dashpot's [N]
+      real(wp), intent(in) :: force
+      !> Impulse of the dashpot [N s]
+      real(wp), intent(in) :: dashpot
+
+      real(wp) :: impulse
+
+      call complete(self%force, self%rule, force)
+      impulse = self%force%value + dashpot
+      call complete(self%whole, self%rule, impulse)
+      if (self%memory%room > 0) then
+         self%di(n) = impulse - self%impulse
+         self%dj(n) = self%whole%value - self%second_impulse
+      end if
+      self%impulse = impulse
+      self%second_impulse = self%whole%value
+      if (.not. self%frozen) return
+      call complete(self%push, self%rule, self%alpha*force)
+      call complete(self%drift, self%drift_rule, self%alpha_rate*force)
+      call complete(self%lag, self%rule, self%drift%value)
+   end subroutine accept
+
+   !> Go on with an integral to the next node, but for the share of that node
+   pure subroutine go_on(integral, rule)
+      !> The integral
+      type(integral_t), intent(inout) :: integral
+      !> Rule for the step [s]
+      real(wp), intent(in) :: rule(3)
+
+      integral%value = integral%value + rule(2)*integral%last + rule(3)*integral%before
+   end subroutine go_on
+
+   !> Complete an integral by the share of the node
+   pure subroutine complete(integral, rule, integrand)
+      !> The integral
+      type(integral_t), intent(inout) :: integral
+      !> Rule for the step [s]
+      real(wp), intent(in) :: rule(3)
+      !> Integrand at the node
+      real(wp), intent(in) :: integrand
+
+      integral%value = integral%value + rule(1)*integrand
+      integral%before = integral%last
+      integral%last = integrand
+   end subroutine complete
+
+   !> Power of t with which the rate of a frozen plate's drift, alpha' F, begins: alpha' is infinite
+   !> at first contact for a continuous spectrum, and F = int k u' goes with t^(n-1) int k
+   pure function power_of_drift(impact, dt) result(power)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Power, of the first two steps
+      real(wp) :: power
+
+      real(wp) :: ratio
+
+      ratio = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt) &
+         *impact%plate%alpha_rate(2.0_wp*dt)/max(impact%plate%alpha_rate(dt), tiny(1.0_wp))
+      power = impact%law%exponent - 1.0_wp + log(max(ratio, 0.5_wp))/log(2.0_wp)
+   end function power_of_drift
+
+   !> Rule for the integral over step n, from its end, its start and the node before, that is exact
+   !> for t^power times a parabola, on the first two steps times what can be told from fewer nodes
+   pure function power_rule(n, power) result(rule)
+      !> Step
+      integer, intent(in) :: n
+      !> Power, > -1
+      real(wp), intent(in) :: power
+      !> The rule, over the step
+      real(wp) :: rule(3)
+
+      real(wp) :: moment(0:2), x
+      integer :: k
+
+      ! of (t - n)^k t^power
+      x = real(n, wp)
+      do k = 0, 2
+         moment(k) = (x**(power + real(k + 1, wp)) - (x - 1.0_wp)**(power + real(k + 1, wp))) &
+            /(power + real(k + 1, wp))
+      end do
+      moment(2) = moment(2) - 2.0_wp*x*moment(1) + x*x*moment(0)
+      moment(1) = moment(1) - x*moment(0)
+      rule = 0.0_wp
+      select case (n)
+      case (1)
+         rule(1) = moment(0)
+      case (2)
+         rule(1:2) = [moment(0) + moment(1), -moment(1)]
+      case default
+         rule = [moment(0) + 1.5_wp*moment(1) + 0.5_wp*moment(2), -2.0_wp*moment(1) - moment(2), &
+            0.5_wp*(moment(1) + moment(2))]
+         rule(3) = rule(3)/(x - 2.0_wp)**power
+      end select
+      rule(1) = rule(1)/x**power
+      if (n > 1) rule(2) = rule(2)/(x - 1.0_wp)**power
+   end function power_rule
+
+end module vcor_solver_direct_motion

@@ -1,0 +1,401 @@
+!> Product integration of the twice-integrated equation of motion, for every kernel
+!>
+!> On equal steps u is taken as a parabola through the ends of the step and the node before, and the
+!> kernel integrated exactly over each step. With u' dt = du_j + (theta - 1/2) (du_j - du_{j-1}) on
+!> step j, du_j = u_j - u_{j-1}, the force of Eqs. (5) and (8) is one sum over the past,
+!>
+!>     F_n = sum_{j=1..n} W_{n-j} du_j,   W_i = w_i + v_i - v_{i-1},
+!>     w_i = int_0^1 k((i + 1 - theta) dt) dtheta,
+!>     v_i = int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta
+!>
+!> so that a singular kernel needs no care. Impulse and second impulse follow by the Adams-Moulton
+!> rule of third order, or by the trapezoidal rule where the plate or a dashpot makes a step stiff,
+!> which keeps the method stable for any step; a dashpot's impulse is viscosity*u exactly. What is
+!> left per step is one equation s + c u + d u^2 = r, d = 0 without the second term of the Volterra
+!> series. The error falls with dt^(n+1), the start u ~ t^n being what limits it: dt^2.5 for a
+!> sphere. The sum over the past makes N^2/2 multiplications and additions in all, on contiguous
+!> arrays.
+module vcor_solver_direct_product
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
+      contact_separated, contact_sticking, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_richardson, only : richardson, richardson_t
+   use vcor_solver_convolution, only : lengthen
+   use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, set_weights
+   use vcor_solver_direct_motion, only : motion_t
+   use vcor_solver_direct_receding, only : receding_t
+   use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
+   use vcor_solver_equal_steps, only : find_peaks
+   use vcor_solver_second_term, only : second_term_t
+   use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
+   implicit none
+   private
+
+   public :: product_t, new_product
+
+   !> A run of more steps is given up: its sums take seconds
+   integer, parameter :: most_steps = 60000
+
+   !> Product integration
+   type, extends(solver_t) :: product_t
+      private
+      !> With a time step of 0 it is refined until the accuracy is reached
+      type(solver_settings_t) :: settings
+   contains
+      procedure :: solve
+   end type product_t
+
+   !> A run with a given step, at the node that is being solved
+   type :: run_t
+      !> Kernel of the contact
+      type(contact_kernel_t) :: kernel
+      !> Differences of u from node to node [m^1.5]
+      real(wp), allocatable :: du(:)
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> That term, c2 in its kernel
+      type(second_term_t) :: second
+      !> Contact that shrinks under the receding law
+      type(receding_t) :: receding
+      !> Viscosity of the kernel's dashpot [N s/m^1.5]
+      real(wp) :: viscosity = 0.0_wp
+      !> Impulse of the dashpot [N s]; once a receding contact shrinks it stays what it is
+      real(wp) :: dashpot = 0.0_wp
+      !> Motion as a function of the force
+      type(motion_t) :: motion
+      !> Indentation [m]
+      real(wp) :: s = 0.0_wp
+      !> u(s) [m^1.5]
+      real(wp) :: u = 0.0_wp
+      !> du/ds [m^0.5]
+      real(wp) :: slope = 0.0_wp
+      !> s' [m/s]
+      real(wp) :: speed = 0.0_wp
+      !> Force without the dashpot's [N]
+      real(wp) :: force = 0.0_wp
+   end type run_t
+
+contains
+
+   !> Build the solver
+   pure subroutine new_product(self, settings)
+      !> The solver
+      type(product_t), intent(out) :: self
+      !> Step, end and second term; an accuracy is what the step is refined to, or what the result
+      !> with a given step is held against
+      type(solver_settings_t), intent(in) :: settings
+
+      self%settings = settings
+      if (.not. max(settings%accuracy, settings%time_step) > 0.0_wp) &
+         self%settings%accuracy = default_accuracy('direct')
+   end subroutine new_product
+
+   !> Compute the course of an impact, with the error estimated from runs with longer steps
+   subroutine solve(self, impact, trajectory, error)
+      !> The solver
+      class(product_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: first_steps = 64
+      real(wp), parameter :: least_part = 32.0_wp
+      real(wp) :: dt, cor(3), cor_sphere(3), depth(3), force(3)
+      type(richardson_t) :: found
+      integer :: level
+
+      associate (time_step => self%settings%time_step, end_time => self%settings%end_time, &
+                 accuracy => self%settings%accuracy)
+         if (time_step > 0.0_wp) then
+            dt = 4.0_wp*time_step
+         else
+            ! a glassy modulus that lasts for no time at all is no reason for tiny steps
+            dt = impact%law%contact_time/real(first_steps, wp)*max(impact%fast_time_scale(), &
+               impact%time_scale()/least_part)
+            ! the last step ends where the computation is to end
+            if (end_time > 0.0_wp) &
+               dt = end_time/real(ceiling(min(end_time/dt, real(most_steps, wp))), wp)
+         end if
+
+         level = 0
+         do
+            level = level + 1
+            call march(self%settings, impact, dt, trajectory, error)
+            if (allocated(error)) return
+            ! coarse steps can miss the end, so only the given step decides that there is none
+            if (trajectory%status /= contact_separated .and. &
+                (.not. time_step > 0.0_wp .or. level == 3)) return
+            associate (final => trajectory%state(:, trajectory%last))
+               cor = [cor(2:3), -final(col_velocity)/impact%velocity]
+               cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
+            end associate
+            depth = [depth(2:3), trajectory%max_indentation]
+            force = [force(2:3), trajectory%max_force]
+            if (level >= 3) then
+               trajectory%accuracy = accuracy
+               found = richardson(cor)
+               trajectory%cor_error = found%error
+               found = richardson(cor_sphere)
+               trajectory%cor_sphere_error = found%error
+               if (time_step > 0.0_wp) return
+               if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= accuracy) then
+                  ! the steps were not chosen for the maxima
+                  trajectory%max_indentation = extrapolated(depth)
+                  trajectory%max_force = extrapolated(force)
+                  return
+               end if
+               if (2*trajectory%steps > most_steps) then
+                  if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
+                     //'accuracy asked for is out of reach of product integration: give a ' &
+                     //'larger solver.accuracy')
+                  return
+               end if
+            end if
+            dt = 0.5_wp*dt
+         end do
+      end associate
+   end subroutine solve
+
+   !> Limit of three values with steps 4 dt, 2 dt and dt, the last one where they show no order that
+   !> the method has
+   pure function extrapolated(value)
+      !> Values
+      real(wp), intent(in) :: value(3)
+      !> Their limit
+      real(wp) :: extrapolated
+
+      real(wp), parameter :: least_order = 1.5_wp
+      type(richardson_t) :: found
+
+      extrapolated = value(3)
+      found = richardson(value)
+      if (.not. ieee_is_finite(found%order)) return
+      if (found%order >= least_order) extrapolated = found%limit
+   end function extrapolated
+
+   !> One run with a given step
+   subroutine march(settings, impact, dt, trajectory, error)
+      !> End, second term, and whether to go on after the separation
+      type(solver_settings_t), intent(in) :: settings
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(run_t) :: run
+      real(wp) :: end_time, node(columns)
+      integer :: n, room
+      logical :: ends
+
+      end_time = settings%end_time
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1
+      run%second_coefficient = settings%second_coefficient
+      run%viscosity = impact%kernel_viscosity()
+      run%speed = impact%velocity
+      call make_room(run, impact, dt, room, trajectory)
+      trajectory%state(:, 0) = 0.0_wp
+      trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
+      n = 0
+      do
+         n = n + 1
+         if (n > most_steps) exit
+         if (n >= room) then
+            room = 2*room
+            call make_room(run, impact, dt, room, trajectory)
+         end if
+         call take_step(run, impact, n)
+         if (run%receding%regrows) then
+            call refuse_growth(impact, error)
+            return
+         end if
+         node = state_of(run, impact)
+         trajectory%final = trajectory%final + 1
+         trajectory%state(:, trajectory%final) = node
+         if (trajectory%status == contact_separated) then
+            if (node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp)) exit
+            cycle
+         end if
+
+         trajectory%last = n
+         trajectory%steps = n
+         ! while the indentation grows the force is positive: what is not is rounding
+         ends = node(col_force) <= 0.0_wp .and. run%speed < 0.0_wp
+         if (run%receding%shrinks) then
+            ends = run%receding%t1(3) <= 0.0_wp
+            if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
+               trajectory, n)
+         else if (ends) then
+            trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, trajectory, n)
+         end if
+         if (trajectory%is_stuck(impact)) then
+            trajectory%status = contact_sticking
+            exit
+         else if (ends) then
+            trajectory%status = contact_separated
+            if (.not. settings%ghost) exit
+            trajectory%final = n + 1
+            trajectory%state(:, n + 1) = node
+            if (.not. settings%end_time > 0.0_wp) end_time = 2.0_wp*node(col_time)
+         else if (node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp)) then
+            exit
+         end if
+      end do
+      call set_weights(impact, dt, trajectory)
+      call find_peaks(trajectory)
+   end subroutine march
+
+   !> Make room for `room` steps, what is there stays
+   subroutine make_room(run, impact, dt, room, trajectory)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Number of steps
+      integer, intent(in) :: room
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      ! one node more for the end of contact before ghost lines
+      call trajectory%reserve(room + 1)
+      call run%kernel%prepare(impact, dt, room)
+      call lengthen(run%du, 1, room)
+      call run%motion%prepare(impact, dt, room)
+      if (impact%law%receding) call run%receding%prepare(room)
+      if (abs(run%second_coefficient) > 0.0_wp) call run%second%prepare(run%second_coefficient &
+         *square_weights(impact, dt, 2*room))
+   end subroutine make_room
+
+   !> Go to node n: motion and force there
+   subroutine take_step(run, impact, n)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+
+      real(wp) :: last_s, last_speed
+
+      call run%motion%advance(impact, n, run%slope*run%kernel%newest, run%slope*run%viscosity)
+      last_s = run%s
+      last_speed = max(0.0_wp, run%speed)
+      if (run%receding%shrinks) then
+         call step_with_a_part(run, impact, n, run%dashpot)
+      else
+         call step_with_all_the_past(run, impact, n)
+         ! a first step in which the motion turns is too long, and will be halved. A dashpot's
+         ! impulse stays what it is at the largest indentation; at rest that may have been some
+         ! steps ago
+         if (impact%law%receding .and. run%speed < 0.0_wp .and. n > 1) &
+            call step_with_a_part(run, impact, n, run%viscosity*impact%law%u(last_s &
+            + 0.5_wp*run%kernel%dt*last_speed**2/(last_speed - run%speed)))
+      end if
+      call run%motion%accept(n, run%force, run%dashpot)
+      if (impact%law%receding) call run%receding%accept(n, run%s)
+   end subroutine take_step
+
+   !> Solve node n with a force that is the sum over all the past: F = known + linear*u +
+   !> quadratic*u^2, and the dashpot's viscosity*u', make s + c u + d u^2 = right
+   subroutine step_with_all_the_past(run, impact, n)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+
+      real(wp) :: known, linear, quadratic, single, own, last_u, secant
+      logical :: two_terms
+
+      call run%motion%respond(impact, n, 0.0_wp)
+      last_u = run%u
+      linear = run%kernel%newest
+      known = run%kernel%sum_over(n, 1, n - 1, run%du) - linear*last_u
+      quadratic = 0.0_wp
+      two_terms = abs(run%second_coefficient) > 0.0_wp
+      if (two_terms) then
+         ! with du_n = u_n - u_{n-1}
+         single = run%second%kernel%sum_over(n, 1, n - 1, run%du)
+         own = run%second%kernel%newest
+         known = known + run%second%past(n) - 2.0_wp*single*last_u + own*last_u**2
+         linear = linear + 2.0_wp*(single - own*last_u)
+         quadratic = own
+      end if
+      associate (s_0 => run%motion%indentation(1), per_force => run%motion%indentation(2), &
+                 v_0 => run%motion%velocity(1), slowing => run%motion%velocity(2), &
+                 weight => run%motion%weight, alpha => run%motion%alpha)
+         call impact%law%solve(per_force*(linear + run%viscosity/weight), per_force*quadratic, &
+            s_0 - per_force*known, run%s + run%kernel%dt*run%speed, run%s, secant)
+         run%u = run%s*secant
+         run%slope = impact%law%exponent*secant
+         run%du(n) = run%u - last_u
+         if (two_terms) call run%second%accept(n, run%du)
+         run%force = known + (linear + quadratic*run%u)*run%u
+         run%dashpot = run%viscosity*run%u
+         ! with alpha F in U' and the dashpot's force in F
+         run%speed = (v_0 - slowing*run%force - (slowing - alpha)/weight*run%dashpot) &
+            /(1.0_wp + alpha*run%viscosity*run%slope)
+      end associate
+   end subroutine step_with_all_the_past
+
+   !> Solve node n with the force of a contact that shrinks, a sum over a part of the past. If it
+   !> still grows, nothing is changed
+   subroutine step_with_a_part(run, impact, n, dashpot)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+      !> Impulse of the dashpot [N s]
+      real(wp), intent(in) :: dashpot
+
+      call run%motion%respond(impact, n, dashpot)
+      associate (indentation => run%motion%indentation, velocity => run%motion%velocity)
+         call run%receding%find_force(impact, run%kernel, n, run%du, indentation, velocity)
+         if (.not. run%receding%shrinks) return
+         run%dashpot = dashpot
+         run%force = run%receding%force
+         run%s = indentation(1) - indentation(2)*run%force
+         run%slope = impact%law%slope(run%s)
+         run%speed = velocity(1) - velocity(2)*run%force
+      end associate
+   end subroutine step_with_a_part
+
+   !> State at the node
+   pure function state_of(run, impact) result(node)
+      !> The run
+      type(run_t), intent(in) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> State
+      real(wp) :: node(columns)
+
+      node(col_time) = run%motion%t
+      node(col_indentation) = run%s
+      node(col_velocity) = run%speed
+      node(col_force) = run%force
+      if (.not. run%receding%shrinks) &
+         node(col_force) = run%force + run%viscosity*run%slope*run%speed
+      node(col_impulse) = run%motion%impulse
+      node(col_sphere) = impact%velocity*run%motion%t - run%motion%second_impulse/impact%mass
+      node(col_sphere_velocity) = impact%velocity - run%motion%impulse/impact%mass
+      node(col_plate) = node(col_sphere) - run%s
+      node(col_plate_velocity) = node(col_sphere_velocity) - run%speed
+   end function state_of
+
+end module vcor_solver_direct_product

@@ -1,0 +1,182 @@
+!> Weights of the sums over the past in product integration: the kernel integrated exactly over each
+!> step, times u' that changes linearly there
+module vcor_solver_direct_weights
+   use vcor_impact_plate, only : plate_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_kinds, only : wp
+   use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
+   use vcor_solver_convolution, only : convolution_t
+   implicit none
+   private
+
+   public :: contact_kernel_t, memory_weights, square_weights
+
+   !> Steps next to t = 0 that are integrated in parts, and the parts of each
+   integer, parameter :: near = 16, parts = ubound(newton_cotes, 1)
+
+   !> Kernel of the contact: weights W_i = w_i + v_i - v_{i-1} with w_i the mean of the kernel over
+   !> step i and v_i = int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta
+   type, extends(convolution_t) :: contact_kernel_t
+      !> Time step [s]
+      real(wp) :: dt = 0.0_wp
+      !> Means w_i [N/m^1.5], shape (0:room)
+      real(wp), allocatable :: mean(:)
+      !> Moments v_i [N/m^1.5], shape (0:room-1)
+      real(wp), allocatable :: moment(:)
+   contains
+      !> Compute the weights
+      procedure :: prepare
+      !> Integral of the kernel over the later part of a step
+      procedure :: part
+   end type contact_kernel_t
+
+contains
+
+   !> Compute the weights
+   pure subroutine prepare(self, impact, dt, n)
+      !> Kernel
+      class(contact_kernel_t), intent(inout) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s], > 0
+      real(wp), intent(in) :: dt
+      !> Number of weights
+      integer, intent(in) :: n
+
+      real(wp) :: weights(0:n - 1)
+
+      self%dt = dt
+      if (allocated(self%mean)) deallocate (self%mean, self%moment)
+      allocate (self%mean(0:n), self%moment(0:n - 1))
+      self%mean = impact%kernel_step_integrals(dt, n + 1)/dt
+      call rule_of_means(self%mean, &
+         impact%kernel_step_integrals(dt/real(parts, wp), near*parts)/dt, &
+         impact%kernel_mean_integral(dt)/dt, n, weights, self%moment)
+      call self%set(weights)
+   end subroutine prepare
+
+   !> Integral of the kernel over the later part of a step in t1, over dt: next to t = 0 exactly,
+   !> later by its mean and its slope
+   pure function part(self, impact, i, position) result(integral)
+      !> Kernel
+      class(contact_kernel_t), intent(in) :: self
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Step, counted from t = 0 of the kernel, > 0
+      integer, intent(in) :: i
+      !> Where the part begins, 0 .. 1
+      real(wp), intent(in) :: position
+      !> Integral [N/m^1.5]
+      real(wp) :: integral
+
+      integer, parameter :: exact = 12
+
+      if (i < exact) then
+         integral = (impact%kernel_integral((real(i + 1, wp) - position)*self%dt) &
+            - impact%kernel_integral(real(i, wp)*self%dt))/self%dt
+      else
+         integral = (1.0_wp - position)*(self%mean(i) &
+            + 0.25_wp*position*(self%mean(i - 1) - self%mean(i + 1)))
+      end if
+   end function part
+
+   !> Weights W_i of the memory of a hereditary plate
+   pure function memory_weights(plate, dt, n) result(weight)
+      !> The plate
+      type(plate_t), intent(in) :: plate
+      !> Time step [s], > 0
+      real(wp), intent(in) :: dt
+      !> Number of weights
+      integer, intent(in) :: n
+      !> Weights [m/(N s2)], shape (0:n-1)
+      real(wp) :: weight(0:n - 1)
+
+      real(wp), allocatable :: node(:), share(:)
+      real(wp) :: moment(0:n - 1), integral(0:n + 1), fine(0:near*parts)
+      integer :: i
+
+      do i = 0, n + 1
+         integral(i) = plate%memory_integral(dt*real(i, wp))
+      end do
+      do i = 0, near*parts
+         fine(i) = plate%memory_integral(dt*(real(i, wp)/real(parts, wp)))
+      end do
+      call endpoint_rule(node, share)
+      call rule_of_means((integral(1:) - integral(:n))/dt, &
+         (fine(1:) - fine(:near*parts - 1))/dt, sum(share*plate%memory_integral(dt*node))/dt, n, &
+         weight, moment)
+   end function memory_weights
+
+   !> Weights and moments from means. By parts the moment is, with K the integral of k,
+   !> (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it is
+   !> (w_{i-1} - w_{i+1})/24 but for terms of order dt^3 times the third derivative of k
+   pure subroutine rule_of_means(mean, part, first, n, weight, moment)
+      !> Mean of the kernel over each step, shape (0:n)
+      real(wp), intent(in) :: mean(0:)
+      !> Integral over each part of the first steps, over dt, shape (0:near*parts-1)
+      real(wp), intent(in) :: part(0:)
+      !> Mean of K over the first step, over dt
+      real(wp), intent(in) :: first
+      !> Number of weights
+      integer, intent(in) :: n
+      !> Weights, shape (0:n-1)
+      real(wp), intent(out) :: weight(0:)
+      !> Moments, shape (0:n-1)
+      real(wp), intent(out) :: moment(0:)
+
+      real(wp) :: integral(0:parts)
+      integer :: i, j
+
+      moment(0) = first - 0.5_wp*mean(0)
+      do i = 1, min(near, n) - 1
+         integral(0) = 0.0_wp
+         do j = 1, parts
+            integral(j) = integral(j - 1) + part(i*parts + j - 1)
+         end do
+         moment(i) = sum(newton_cotes*integral) - 0.5_wp*integral(parts)
+      end do
+      do i = near, n - 1
+         moment(i) = (mean(i - 1) - mean(i + 1))/24.0_wp
+      end do
+
+      weight(0) = mean(0) + moment(0)
+      do i = 1, n - 1
+         weight(i) = mean(i) + moment(i) - moment(i - 1)
+      end do
+   end subroutine rule_of_means
+
+   !> Kernel of the second term of the Volterra series, k(x + y) integrated over squares of steps:
+   !> q_i = (1/dt^2) int_0^dt int_0^dt k(i dt + x + y) dx dy is the mean over x of w(i + x/dt), w(i)
+   !> the mean of the kernel over step i. Near t = 0 by quadrature, farther off from the w at whole
+   !> steps, up to their fourth difference
+   function square_weights(impact, dt, n) result(mean)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Number of weights
+      integer, intent(in) :: n
+      !> Weights q_i [N/m^1.5], shape (0:n-1)
+      real(wp) :: mean(0:n - 1)
+
+      real(wp) :: w(0:n + 1), part(0:(near + 2)*parts - 1), step(0:parts)
+      real(wp), allocatable :: node(:), share(:)
+      integer :: i, j
+
+      w = impact%kernel_step_integrals(dt, n + 2)/dt
+      call endpoint_rule(node, share)
+      mean(0) = sum(share*(impact%kernel_integral(dt*(1.0_wp + node)) &
+         - impact%kernel_integral(dt*node)))/dt
+      part = impact%kernel_step_integrals(dt/real(parts, wp), (near + 2)*parts)/dt
+      do i = 1, min(near, n) - 1
+         do j = 0, parts
+            step(j) = sum(part(i*parts + j:(i + 1)*parts + j - 1))
+         end do
+         mean(i) = sum(newton_cotes*step)
+      end do
+      do i = near, n - 1
+         mean(i) = (13.0_wp*(w(i) + w(i + 1)) - w(i - 1) - w(i + 2))/24.0_wp
+      end do
+   end function square_weights
+
+end module vcor_solver_direct_weights

@@ -1,0 +1,395 @@
+!> One run of the paper's time marching, the seven steps of Section V of Green's paper
+!>
+!> On equal steps, with w the rate u' = n s^(n-1) s' and h the kernel k in form a of Eq. (8), or
+!> w = u and h = k' in form b,
+!>
+!>     H_n = dt sum_{j=1..n} w_j h_{n-j},   F_n = H_n  or  F_n = k(0) u_n + H_n
+!>     I_n = I_{n-1} + dt F_n,   U_n = alpha_n I_n,   s''_n = -F_n/m - U''_n
+!>
+!> or, for a frozen plate, U''_n = alpha_n F'_n. The last term of the sums is halved by the
+!> trapezoidal rule, and I_n follows it too; the first one is zero. U'' is the backward difference
+!> of fifth order, of lower order while fewer points exist, the plate being at rest before contact.
+!> s and s' go forward by Adams and Bashforth's formula of fifth order, of fourth order once, after
+!> three steps by Runge and Kutta with the kernel and alpha held at their first values. An infinite
+!> k(0) is replaced by k(dt); a finite one, however steep the kernel, is taken as it is.
+module vcor_solver_paper_march
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
+      col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
+      contact_separated, contact_sticking, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_solver_convolution, only : convolution_t, lengthen
+   use vcor_solver_equal_steps, only : find_peaks
+   use vcor_solver_paper_evaluation, only : insert_separation, set_simpson_weights, steps_beyond
+   use vcor_solver_paper_multistep, only : ab_points, adams_bashforth, first_difference, &
+      first_points, runge_kutta, second_difference, second_points, start_steps
+   use vcor_solver_paper_stability, only : damping_limit, kernel_terms
+   use vcor_solver_second_term, only : second_term_t
+   implicit none
+   private
+
+   public :: scheme_t, march, capped, stable_damping
+
+   !> A run of more steps is given up: its sums take seconds
+   integer, parameter :: most_steps = 60000
+   !> Velocities that are kept, enough for a sixth difference
+   integer, parameter :: kept = 7
+
+   !> Scheme but for its step
+   type :: scheme_t
+      !> Form of Eq. (8): a or b
+      character(len=1) :: form = 'a'
+      !> Share of the newest value in the sums: 1 in rectangles, 1/2 in trapezoids
+      real(wp) :: share = 1.0_wp
+      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp) :: second_coefficient = 0.0_wp
+      !> End of the computation [s]; 0: follows from the contact's time scale
+      real(wp) :: end_time = 0.0_wp
+   end type scheme_t
+
+   !> A run with a given step, at its last node
+   type :: run_t
+      !> Time step [s]
+      real(wp) :: dt = 0.0_wp
+      !> Kernel h_j
+      type(convolution_t) :: kernel
+      !> What it acts on, w_j
+      real(wp), allocatable :: w(:)
+      !> Second term of the Volterra series
+      type(second_term_t) :: second
+      !> First values of the kernel k [N/m^1.5] and of alpha [m/(N s)], as the scheme takes them
+      real(wp) :: first_kernel = 0.0_wp, first_alpha = 0.0_wp
+      !> Indentation [m]
+      real(wp) :: s = 0.0_wp
+      !> s' [m/s] and s'' [m/s2], newest first
+      real(wp) :: velocity(kept) = 0.0_wp, acceleration(ab_points) = 0.0_wp
+      !> Force [N] and, where the plate is not frozen, deflection [m], newest first
+      real(wp) :: force(first_points) = 0.0_wp, deflection(second_points) = 0.0_wp
+      !> Impulse [N s]
+      real(wp) :: impulse = 0.0_wp
+      !> Integral of alpha' F of a frozen plate [m/s], and its rate [m/s2]
+      real(wp) :: drift = 0.0_wp, drift_rate = 0.0_wp
+      !> Deflection of the plate [m] and its rate [m/s]
+      real(wp) :: plate = 0.0_wp, plate_velocity = 0.0_wp
+      !> The damper (3/2) alpha sqrt(s) that the plate is for oscillations from step to step
+      real(wp) :: damping = 0.0_wp
+   end type run_t
+
+contains
+
+   !> Whether k(0) is infinite and replaced
+   pure function capped(impact)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Whether it is
+      logical :: capped
+
+      capped = impact%modulus%glassy() > huge(1.0_wp)
+   end function capped
+
+   !> The kernel k_j at t = j dt, k(0) capped if it is infinite
+   pure function kernel_values(impact, dt, n) result(kernel)
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Number of values
+      integer, intent(in) :: n
+      !> Values [N/m^1.5], shape (0:n-1)
+      real(wp) :: kernel(0:n - 1)
+
+      integer :: j
+
+      kernel = impact%kernel([(dt*real(j, wp), j = 0, n - 1)])
+      if (capped(impact)) kernel(0) = impact%kernel(dt)
+   end function kernel_values
+
+   !> Largest d = (3/2) alpha sqrt(s) for which the scheme is stable
+   pure function stable_damping(scheme, impact, dt) result(limit)
+      !> Scheme
+      type(scheme_t), intent(in) :: scheme
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Limit [m^1.5/(N s)]
+      real(wp) :: limit
+
+      limit = damping_limit(dt, kernel_values(impact, dt, kernel_terms + 1), scheme%form, &
+         scheme%share, impact%plate%frozen())
+   end function stable_damping
+
+   !> One run with a given step
+   subroutine march(scheme, impact, dt, ghost, trajectory, stable, complete)
+      !> Scheme
+      type(scheme_t), intent(in) :: scheme
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      !> Go on after the separation
+      logical, intent(in) :: ghost
+      !> Its course
+      type(trajectory_t), intent(out) :: trajectory
+      !> Whether no oscillation from step to step grew
+      logical, intent(out) :: stable
+      !> Whether it did not run out of steps
+      logical, intent(out) :: complete
+
+      ! sixth difference of the velocity, 1 for what changes its sign from step to step
+      real(wp), parameter :: alternating(kept) = &
+         [1.0_wp, -6.0_wp, 15.0_wp, -20.0_wp, 15.0_wp, -6.0_wp, 1.0_wp]/64.0_wp
+      ! such oscillations are seen by then, when they are below most digits of the outcome
+      real(wp), parameter :: noticeable = 1.0e-5_wp
+      ! beyond these factors of the first velocity no solution goes
+      real(wp), parameter :: fastest = 1.2_wp, fastest_ghost = 20.0_wp
+      type(run_t) :: run
+      real(wp) :: end_time, limit, t
+      integer :: n, room, crossing
+      logical :: beyond_limit, ends
+
+      ! steps (1) and (2): the kernel, and the state at first contact
+      stable = .false.
+      complete = .true.
+      end_time = scheme%end_time
+      if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
+      room = max(kernel_terms, nint(min(min(end_time, 5.0_wp*impact%time_scale())/dt, &
+         real(most_steps, wp)))) + steps_beyond + 2
+      run%dt = dt
+      run%velocity(1) = impact%velocity
+      t = merge(dt, 0.0_wp, capped(impact))
+      run%first_kernel = impact%kernel(t)
+      run%first_alpha = impact%plate%alpha(t)
+      call make_room(run, scheme, impact, room, trajectory)
+      trajectory%state(:, 0) = 0.0_wp
+      trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
+      limit = stable_damping(scheme, impact, dt)
+      beyond_limit = .false.
+
+      ! step (3): the loop over time
+      crossing = 0
+      n = 0
+      do
+         n = n + 1
+         complete = n <= most_steps
+         if (.not. complete) exit
+         if (n >= room) then
+            room = 2*room
+            call make_room(run, scheme, impact, room, trajectory)
+         end if
+         t = dt*real(n, wp)
+         call advance(run, impact, n)
+         if (.not. abs(run%velocity(1)) <= merge(fastest, fastest_ghost, crossing == 0) &
+             *impact%velocity) return
+         call sum_force(run, scheme, impact, n)
+         call accelerate(run, scheme, impact, n)
+
+         ! an oscillation from step to step that the damper should have stopped
+         beyond_limit = beyond_limit .or. run%damping > limit
+         if (.not. ieee_is_finite(run%acceleration(1))) return
+         if (beyond_limit .and. n > second_points) then
+            if (abs(sum(alternating*run%velocity)) > noticeable*impact%velocity) return
+         end if
+
+         trajectory%final = n
+         trajectory%state(:, n) = state_of(run, impact, t)
+         ends = t + dt > end_time*(1.0_wp + 1.0e-9_wp)
+         if (crossing > 0) then
+            if (n >= crossing + steps_beyond .and. (ends .or. .not. ghost)) exit
+            cycle
+         end if
+
+         trajectory%last = n
+         trajectory%steps = n
+         if (run%force(1) <= 0.0_wp) then
+            ! while the indentation grows the force presses
+            if (run%force(1) < 0.0_wp .and. run%velocity(1) > 0.0_wp .and. n > second_points &
+                .and. .not. abs(scheme%second_coefficient) > 0.0_wp) return
+            if (run%velocity(1) <= 0.0_wp) then
+               crossing = n
+               trajectory%status = contact_separated
+               if (ghost .and. .not. scheme%end_time > 0.0_wp) end_time = 2.0_wp*t
+               cycle
+            end if
+         end if
+         if (ends) exit
+         if (trajectory%is_stuck(impact)) then
+            trajectory%status = contact_sticking
+            exit
+         end if
+      end do
+
+      stable = .true.
+      if (.not. complete) return
+      ! step (7): the outcome
+      if (crossing > 0) call insert_separation(impact, crossing, trajectory)
+      if (.not. ghost) trajectory%final = trajectory%last
+      call set_simpson_weights(dt, trajectory)
+      call find_peaks(trajectory)
+   end subroutine march
+
+   !> Make room for `room` steps, what is there stays
+   subroutine make_room(run, scheme, impact, room, trajectory)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> Scheme
+      type(scheme_t), intent(in) :: scheme
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Number of steps
+      integer, intent(in) :: room
+      !> The trajectory
+      type(trajectory_t), intent(inout) :: trajectory
+
+      type(exponential_sum_t) :: terms
+      real(wp) :: kernel(0:2*room - 1)
+      integer :: i, values
+      logical :: two_terms
+
+      ! one node more for the end of contact
+      call trajectory%reserve(room + 1)
+      call lengthen(run%w, 1, room)
+      two_terms = abs(scheme%second_coefficient) > 0.0_wp
+      values = room
+      if (scheme%form == 'a') then
+         if (two_terms) values = 2*room
+         kernel(:values - 1) = kernel_values(impact, run%dt, values)
+         if (two_terms) call run%second%prepare(kernel)
+      else
+         kernel(:room - 1) = impact%hertz_factor &
+            *impact%modulus%rate([(run%dt*real(i, wp), i = 0, room - 1)])
+      end if
+      call run%kernel%set(kernel(:room - 1))
+      if (two_terms .and. scheme%form == 'b') then
+         ! k'' of a finite sum, whatever the accuracy: others are refused
+         call impact%kernel_exponentials(run%dt*real(room, wp), 1.0_wp, terms)
+         do i = 0, 2*room - 1
+            kernel(i) = sum(terms%moduli*terms%rates**2*exp(-terms%rates*(run%dt*real(i, wp))))
+         end do
+         call run%second%prepare(kernel)
+      end if
+   end subroutine make_room
+
+   !> Step (6), its second half: s and s' at node n from s'' before it
+   pure subroutine advance(run, impact, n)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+
+      real(wp) :: velocity
+      integer :: p
+
+      velocity = run%velocity(1)
+      if (n <= start_steps) then
+         call runge_kutta(impact%law, run%first_kernel/impact%mass, &
+            run%first_alpha*run%first_kernel, run%dt, run%s, velocity)
+      else
+         p = min(n, ab_points)
+         run%s = run%s + run%dt*sum(adams_bashforth(:, p)*run%velocity(:ab_points))
+         velocity = velocity + run%dt*sum(adams_bashforth(:, p)*run%acceleration)
+      end if
+      run%velocity = [velocity, run%velocity(:kept - 1)]
+   end subroutine advance
+
+   !> Step (4): the force at node n, the sums of Eqs. (8) and (10)
+   pure subroutine sum_force(run, scheme, impact, n)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> Scheme
+      type(scheme_t), intent(in) :: scheme
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+
+      real(wp) :: secant, past, own, force, u
+      logical :: form_a
+
+      form_a = scheme%form == 'a'
+      secant = impact%law%secant(run%s)
+      u = run%s*secant
+      run%w(n) = u
+      if (form_a) run%w(n) = impact%law%exponent*run%velocity(1)*secant
+      own = scheme%share*run%w(n)
+      past = run%kernel%sum_over(n, 1, n - 1, run%w)
+      force = run%dt*(past + run%kernel%newest*own)
+      if (.not. form_a) force = run%first_kernel*u + force
+      if (abs(scheme%second_coefficient) > 0.0_wp) then
+         ! form b by parts: k(0) u^2 + 2 u int k'(x) u(t - x) dx + int int k''(x + y) u u
+         if (.not. form_a) then
+            past = run%second%kernel%sum_over(n, 1, n - 1, run%w)
+            force = force + scheme%second_coefficient*(2.0_wp*force - run%first_kernel*u)*u
+         end if
+         force = force + scheme%second_coefficient*run%dt**2*(run%second%past(n) &
+            + own*(2.0_wp*past + run%second%kernel%newest*own))
+         call run%second%accept(n, run%w)
+      end if
+      run%force = [force, run%force(:first_points - 1)]
+   end subroutine sum_force
+
+   !> Steps (5) and (6): U'' by backward differences, and s'' from Eq. (11)
+   pure subroutine accelerate(run, scheme, impact, n)
+      !> The run
+      type(run_t), intent(inout) :: run
+      !> Scheme
+      type(scheme_t), intent(in) :: scheme
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Node
+      integer, intent(in) :: n
+
+      real(wp) :: alpha, alpha_rate, acceleration
+      integer :: p
+
+      associate (dt => run%dt, share => scheme%share, force => run%force(1))
+         call impact%plate%alpha_and_rate(dt*real(n, wp), alpha, alpha_rate)
+         run%damping = alpha*impact%law%slope(run%s)
+         run%impulse = run%impulse + dt*(share*force + (1.0_wp - share)*run%force(2))
+         if (impact%plate%frozen()) then
+            p = min(n + 1, first_points)
+            acceleration = alpha*sum(first_difference(:, p)*run%force)/dt
+            ! U' = int alpha F' dt = alpha F - int alpha' F dt
+            run%drift = run%drift + dt*(share*alpha_rate*force + (1.0_wp - share)*run%drift_rate)
+            run%drift_rate = alpha_rate*force
+            run%plate = run%plate + dt*(1.0_wp - share)*run%plate_velocity
+            run%plate_velocity = alpha*force - run%drift
+            run%plate = run%plate + dt*share*run%plate_velocity
+         else
+            run%plate = alpha*run%impulse
+            run%plate_velocity = alpha*force + alpha_rate*run%impulse
+            run%deflection = [run%plate, run%deflection(:second_points - 1)]
+            p = min(max(n + 1, 3), second_points)
+            acceleration = sum(second_difference(:, p)*run%deflection)/dt**2
+         end if
+         run%acceleration = [-force/impact%mass - acceleration, run%acceleration(:ab_points - 1)]
+      end associate
+   end subroutine accelerate
+
+   !> State at the last node
+   pure function state_of(run, impact, t) result(node)
+      !> The run
+      type(run_t), intent(in) :: run
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its time [s]
+      real(wp), intent(in) :: t
+      !> State
+      real(wp) :: node(columns)
+
+      node(col_time) = t
+      node(col_indentation) = run%s
+      node(col_velocity) = run%velocity(1)
+      node(col_force) = run%force(1)
+      node(col_impulse) = run%impulse
+      node(col_sphere) = run%s + run%plate
+      node(col_sphere_velocity) = impact%velocity - run%impulse/impact%mass
+      node(col_plate) = run%plate
+      node(col_plate_velocity) = run%plate_velocity
+   end function state_of
+
+end module vcor_solver_paper_march
