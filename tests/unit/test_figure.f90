@@ -5,8 +5,8 @@ program test_figure
    use vcor_error, only : error_file, error_input, error_t
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
-   use vcor_io_table, only : add_column, add_dimension, add_fact, integer_column, new_table, &
-      real_column, table_t, text_column, text_value
+   use vcor_io_table, only : add_column, add_dimension, add_fact, column_t, integer_column, &
+      new_table, real_column, table_t, text_column, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, plain
    use vcor_io_file, only : write_file
@@ -14,7 +14,7 @@ program test_figure
    use vcor_io_gnuplot_axis, only : in_quotes, number
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, &
-      number_attribute, open_hdf5, read_dataset, read_numbers, reader_t, text_attribute
+      number_attribute, open_hdf5, read_column, read_dataset, reader_t, text_attribute
    use vcor_text, only : integer_text
    use vcor_io_path, only : join_path, quoted_path
    use vcor_io_posix, only : c_mkdtemp, c_text
@@ -324,7 +324,7 @@ contains
       type(dataset_t) :: set
       type(error_t), allocatable :: error
       character(len=:), allocatable :: path
-      real(wp), allocatable :: numbers(:)
+      type(column_t) :: column
       integer :: i
 
       call new_table(summary, 'summary', 'Stoß', '&case'//new_line('a')//'/')
@@ -389,13 +389,12 @@ contains
       call check(allocated(error), 'no such dataset')
       call check_contains(error%message, 'summary/none', 'which is named')
 
-      allocate (numbers(6))
-      call read_numbers(reader, 'summary/cor', numbers, error)
-      call check_relative(numbers, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'into an array')
-      call read_numbers(reader, 'summary/cor', numbers(:5), error)
-      call check(allocated(error), 'an array of another length')
-      call check_contains(error%message, "found 6 numbers in 'summary/cor', expected 5", 'lengths')
-      call read_numbers(reader, 'summary/status', numbers, error)
+      call read_column(reader, 'summary/cor', real_column, 6, column, error)
+      call check_relative(column%reals, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'a column')
+      call read_column(reader, 'summary/cor', real_column, 5, column, error)
+      call check(allocated(error), 'a column of another length')
+      call check_contains(error%message, "found 6 values in 'summary/cor', expected 5", 'lengths')
+      call read_column(reader, 'summary/status', integer_column, 6, column, error)
       call check(allocated(error), 'text is no numbers')
       call check_contains(error%message, "'summary/status' cannot be read as numbers", 'text')
       call close_hdf5(reader)

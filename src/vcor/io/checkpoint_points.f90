@@ -5,9 +5,8 @@
 module vcor_io_checkpoint_points
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_table, only : text_column, text_value
-   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, open_hdf5, read_dataset, read_numbers, &
-      reader_t
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column, text_value
+   use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, read_column, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
@@ -92,52 +91,34 @@ contains
       integer, intent(inout), optional :: checks(:)
 
       type(reader_t) :: reader
-      integer :: i
+      type(column_t) :: column
+      integer :: i, points
 
+      points = size(summary%status)
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, size(quantities)
-         call read_numbers(reader, dataset(i), summary%values(i)%at, error)
+         call read_column(reader, dataset(i), real_column, points, column, error)
          if (allocated(error)) exit
+         call move_alloc(column%reals, summary%values(i)%at)
       end do
       if (.not. allocated(error)) &
-         call read_numbers(reader, dataset(steps_column), summary%steps, error)
+         call read_column(reader, dataset(steps_column), integer_column, points, column, error)
+      if (.not. allocated(error)) call move_alloc(column%integers, summary%steps)
+      if (.not. allocated(error)) call read_column(reader, dataset(status_column), &
+         merge(integer_column, text_column, present(checks)), points, column, error)
       if (.not. allocated(error)) then
          if (present(checks)) then
-            call read_numbers(reader, dataset(status_column), summary%status, error)
-            if (.not. allocated(error)) &
-               call read_numbers(reader, dataset(check_column), checks, error)
+            summary%status = column%integers
+            call read_column(reader, dataset(check_column), integer_column, points, column, error)
+            if (.not. allocated(error)) checks = column%integers
          else
-            call read_status(reader, summary%status, error)
+            summary%status = [(status_code(text_value(column, i)), i=1, points)]
          end if
       end if
       call close_hdf5(reader)
       if (allocated(error)) error%code = error_file
    end subroutine read_columns
-
-   !> Read the status of all points from their texts
-   subroutine read_status(reader, status, error)
-      !> Open file
-      type(reader_t), intent(in) :: reader
-      !> Status, shape (points)
-      integer, intent(inout) :: status(:)
-      !> Set if it cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      type(dataset_t) :: found
-      integer :: i
-
-      call read_dataset(reader, dataset(status_column), found, error)
-      if (allocated(error)) return
-      if (found%column%kind /= text_column .or. found%column%length /= size(status)) then
-         call raise(error, error_file, reader%path//": '"//dataset(status_column)//"' is not the " &
-            //'status of the points of this sweep')
-         return
-      end if
-      do i = 1, size(status)
-         status(i) = status_code(text_value(found%column, i))
-      end do
-   end subroutine read_status
 
    !> Path of the dataset of a column
    pure function dataset(column) result(path)

@@ -34,8 +34,8 @@ module vcor_io_hdf5
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
    use vcor_io_seal, only : seal_of
-   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
-      text_column, text_value
+   use vcor_io_table, only : check_table, column_t, integer_column, real_column, row_count, &
+      table_t, text_column, text_value
    use vcor_kinds, only : wp
    implicit none
    private
@@ -112,7 +112,7 @@ contains
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         call begin_file(writer)
+         call begin_file(writer, size(table%columns)*row_count(table))
          call put_text(writer, writer%file, 'program', 'vcor')
          call put_text(writer, writer%file, 'version', table%version)
          call put_text(writer, writer%file, 'title', table%title)
@@ -141,17 +141,20 @@ contains
    end subroutine write_hdf5
 
    !> Begin a file in memory, with the property lists and the type that all its objects share
-   subroutine begin_file(writer)
+   subroutine begin_file(writer, numbers)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
+      !> About how many numbers the file will have
+      integer, intent(in) :: numbers
 
       ! HDF5 wants a name for a file in memory too and reads what has that name: nothing can
       character(len=*), parameter :: no_path = '/dev/null/vcor.h5'
-      ! Bytes by which the file grows in memory
-      integer(size_t), parameter :: growth = 65536_size_t
+      integer(size_t) :: growth
       integer(hid_t) :: access, creation
       integer :: ignored, order, status(15)
 
+      ! bytes by which the file grows in memory, where it moves: a thirtieth of its length
+      growth = 65536_size_t + int(numbers, size_t)/4_size_t
       order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
       allocate (writer%left_out(2, 0))
       call h5pcreate_f(h5p_file_create_f, creation, status(1))
@@ -328,18 +331,36 @@ contains
       !> Negative on failure
       integer, intent(out) :: status
 
-      character(len=column%width+1, kind=c_char), allocatable, target :: texts(:)
+      ! equal texts in a row share one copy
+      character(len=column%width+1, kind=c_char), allocatable, target :: copies(:)
       type(c_ptr), allocatable, target :: places(:)
-      integer :: i
+      integer :: i, last
 
-      allocate (texts(column%length), places(column%length))
+      last = count([(begins(i), i=1, column%length)])
+      allocate (copies(last), places(column%length))
+      last = 0
       do i = 1, column%length
-         associate (text => column%texts((i - 1)*column%width + 1:i*column%width))
-            texts(i) = text(:len_trim(text))//c_null_char
-         end associate
-         places(i) = c_loc(texts(i))
+         if (begins(i)) then
+            last = last + 1
+            copies(last) = text_value(column, i)//c_null_char
+         end if
+         places(i) = c_loc(copies(last))
       end do
       call h5dwrite_f(dataset, type_id, c_loc(places), status)
+
+   contains
+
+      !> Whether a text is another one than that before it
+      pure function begins(i)
+         !> Its number, from 1
+         integer, intent(in) :: i
+         !> Whether it is
+         logical :: begins
+
+         begins = i == 1
+         if (.not. begins) begins = column%texts((i - 1)*column%width + 1:i*column%width) &
+            /= column%texts((i - 2)*column%width + 1:(i - 1)*column%width)
+      end function begins
    end subroutine write_texts
 
    !> Keep where a dataset of numbers is, as no part of the seal

@@ -4,7 +4,7 @@
 !>     text = text_attribute(reader, '/', 'title')
 !>     call list_members(reader, 'summary', members, error)
 !>     call read_dataset(reader, 'summary/cor', dataset, error)
-!>     call read_numbers(reader, 'summary/cor', cor, error)
+!>     call read_column(reader, 'summary/cor', real_column, n, cor, error)
 !>     call close_hdf5(reader)
 !>
 !> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
@@ -27,7 +27,7 @@ module vcor_io_hdf5_reader
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
-   use vcor_io_table, only : column_t, integer_column, real_column, text_column
+   use vcor_io_table, only : column_t, integer_column, move_column, real_column, text_column
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable, shortened
    implicit none
@@ -35,7 +35,7 @@ module vcor_io_hdf5_reader
 
    public :: reader_t, open_hdf5, close_hdf5, text_attribute, number_attribute
    public :: member_t, list_members
-   public :: dataset_t, read_dataset, read_numbers, find_place
+   public :: dataset_t, read_dataset, read_column, find_place
 
    !> A file that is being read
    type :: reader_t
@@ -64,12 +64,6 @@ module vcor_io_hdf5_reader
       !> Whether it is the scale of a dimension, which has its name
       logical :: is_scale = .false.
    end type dataset_t
-
-   !> Read numbers into an array of their number
-   interface read_numbers
-      module procedure read_reals
-      module procedure read_integers
-   end interface read_numbers
 
 contains
 
@@ -317,69 +311,36 @@ contains
          shortened(path)//"' cannot be read as numbers or text")
    end subroutine read_dataset
 
-   !> Read real numbers
-   subroutine read_reals(reader, path, values, error)
+   !> Read a column of a table, of which it is known what it has
+   subroutine read_column(reader, path, kind, length, column, error)
       !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the dataset
       character(len=*), intent(in) :: path
-      !> Its numbers, shape (n)
-      real(wp), intent(inout), target :: values(:)
-      !> Set if there are none, or not as many, or they cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      call read_into(reader, path, h5t_native_double, size(values), c_loc(values), error)
-   end subroutine read_reals
-
-   !> Read whole numbers
-   subroutine read_integers(reader, path, values, error)
-      !> Open file
-      type(reader_t), intent(in) :: reader
-      !> Path of the dataset
-      character(len=*), intent(in) :: path
-      !> Its numbers, shape (n)
-      integer, intent(inout), target :: values(:)
-      !> Set if there are none, or not as many, or they cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      call read_into(reader, path, h5t_native_integer, size(values), c_loc(values), error)
-   end subroutine read_integers
-
-   !> Read numbers to a place
-   subroutine read_into(reader, path, memory_type, length, place, error)
-      !> Open file
-      type(reader_t), intent(in) :: reader
-      !> Path of the dataset
-      character(len=*), intent(in) :: path
-      !> Type of the numbers
-      integer(hid_t), intent(in) :: memory_type
-      !> Number of them
+      !> Kind of its values
+      integer, intent(in) :: kind
+      !> Number of its values
       integer, intent(in) :: length
-      !> Where they go
-      type(c_ptr), intent(in) :: place
-      !> Set if there are none, or not as many, or they cannot be read
+      !> The column
+      type(column_t), intent(out) :: column
+      !> Set if there is none, or it has other values, or it cannot be read
       type(error_t), allocatable, intent(out) :: error
 
-      type(c_ptr) :: values
-      integer(hid_t) :: set, space
-      integer, allocatable :: lengths(:)
-      integer :: ignored, status
+      type(dataset_t) :: dataset
 
-      call open_dataset(reader, path, set, space, lengths, error)
+      call read_dataset(reader, path, dataset, error)
       if (allocated(error)) return
-      values = place
-      status = 0
-      if (product(lengths) /= length) then
-         call raise(error, error_file, reader%path//': found '//integer_text(product(lengths)) &
-            //" numbers in '"//shortened(path)//"', expected "//integer_text(length))
-      else if (length > 0) then
-         call h5dread_f(set, memory_type, values, status)
+      if (dataset%column%length /= length) then
+         call raise(error, error_file, reader%path//': found ' &
+            //integer_text(dataset%column%length)//" values in '"//shortened(path) &
+            //"', expected "//integer_text(length))
+      else if (dataset%column%kind /= kind) then
+         call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
+            //"' cannot be read as "//trim(merge('text   ', 'numbers', kind == text_column)))
+      else
+         call move_column(dataset%column, column)
       end if
-      call h5sclose_f(space, ignored)
-      call h5dclose_f(set, ignored)
-      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"// &
-         shortened(path)//"' cannot be read as numbers")
-   end subroutine read_into
+   end subroutine read_column
 
    !> Find where in the file a dataset is that is stored in one piece
    subroutine find_place(reader, path, offset, error)

@@ -6,7 +6,7 @@ module vcor_io_path
    use, intrinsic :: iso_c_binding, only : c_int
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : all_permissions, c_mkdir, c_text, file_at, file_id_t, folder, &
-      last_errno, nothing_there, plain_file, resolved_path, system_reason
+      last_errno, nothing_there, plain_file, same_file_id, system_reason
    use vcor_case_name, only : name_flaw
    use vcor_text, only : is_control, printable
    implicit none
@@ -138,7 +138,7 @@ contains
       path = path//trim(name)
    end function join_path
 
-   !> Whether two paths lead to one file, by the folders they are in, links resolved, and the names
+   !> Whether two paths lead to one file, which need not be there: by its name and its folder
    function same_file(one, other) result(same)
       !> A path
       character(len=*), intent(in) :: one
@@ -146,30 +146,15 @@ contains
       character(len=*), intent(in) :: other
       !> Whether both are the same
       logical :: same
+
       integer :: a, b
 
       a = index(one, '/', back=.true.)
       b = index(other, '/', back=.true.)
       same = one(a+1:) == other(b+1:)
-      if (same) same = folder_of(one, a) == folder_of(other, b)
-
-   contains
-
-      !> Folder of a path, resolved
-      function folder_of(path, slash) result(folder)
-         !> The path
-         character(len=*), intent(in) :: path
-         !> Place of its last slash, 0 if it has none
-         integer, intent(in) :: slash
-         !> The folder
-         character(len=:), allocatable :: folder
-
-         if (slash == 0) then
-            folder = resolved_path('.')
-         else
-            folder = resolved_path(path(:slash))
-         end if
-      end function folder_of
+      if (.not. same .or. one == other) return
+      same = same_file_id(file_at(one(:a)//'.', follows=.true.), &
+         file_at(other(:b)//'.', follows=.true.))
    end function same_file
 
    !> A path as it stands in a message: between quotes, on one line

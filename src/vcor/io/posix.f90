@@ -6,7 +6,7 @@
 !> with NUL (`c_text`); a `status` is 0 on success. Two functions are Linux's own:
 !> `__errno_location` (its name is `__error` on macOS) and `statx`.
 module vcor_io_posix
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int16_t, &
+   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int16_t, &
       c_int64_t, c_null_char, c_ptr, c_size_t
    implicit none
    private
@@ -15,7 +15,7 @@ module vcor_io_posix
    public :: c_write, c_isatty, c_pwrite, c_fsync, c_lockf, c_link
    public :: standard_output, standard_error, all_permissions, lock_alone
    public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
-   public :: c_text, resolved_path
+   public :: c_text
    public :: file_id_t, file_at, open_file, same_file_id
    public :: nothing_there, plain_file, folder, something_else
 
@@ -172,15 +172,6 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_statx
 
-      !> A path without links, dots and double slashes, at most 4096 bytes with the NUL; null if it
-      !> leads nowhere
-      function c_realpath(path, resolved) result(place) bind(c, name='realpath')
-         import :: c_char, c_ptr
-         character(kind=c_char), intent(in) :: path(*)
-         character(kind=c_char), intent(out) :: resolved(*)
-         type(c_ptr) :: place
-      end function c_realpath
-
       !> Address of `errno` of this thread, a C int
       function c_errno_place() result(place) bind(c, name='__errno_location')
          import :: c_ptr
@@ -298,39 +289,14 @@ contains
 
       integer, parameter :: longest = 200
       character(kind=c_char), pointer :: letters(:)
-
-      call c_f_pointer(c_strerror(number), letters, [longest])
-      reason = fortran_text(letters)
-   end function system_reason
-
-   !> A path without links, dots and double slashes; as it is if there is nothing of that name
-   function resolved_path(path) result(resolved)
-      !> The path
-      character(len=*), intent(in) :: path
-      !> The resolved path
-      character(len=:), allocatable :: resolved
-
-      ! PATH_MAX of Linux
-      character(kind=c_char) :: buffer(4096)
-
-      resolved = path
-      if (c_associated(c_realpath(c_text(path), buffer))) resolved = fortran_text(buffer)
-   end function resolved_path
-
-   !> A text of C as one of Fortran
-   pure function fortran_text(letters) result(text)
-      !> Letters up to a NUL
-      character(kind=c_char), intent(in) :: letters(:)
-      !> The text before the NUL
-      character(len=:), allocatable :: text
-
       integer :: i
 
-      text = ''
-      do i = 1, size(letters)
+      call c_f_pointer(c_strerror(number), letters, [longest])
+      reason = ''
+      do i = 1, longest
          if (letters(i) == c_null_char) exit
-         text = text//letters(i)
+         reason = reason//letters(i)
       end do
-   end function fortran_text
+   end function system_reason
 
 end module vcor_io_posix

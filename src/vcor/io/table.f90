@@ -23,7 +23,7 @@ module vcor_io_table
 
    public :: table_t, column_t, fact_t, real_column, integer_column, text_column
    public :: new_table, add_fact, add_dimension, add_column, move_in_column
-   public :: check_table, row_count, coordinate_row, place_in_table, join_texts, text_value
+   public :: check_table, row_count, coordinate_row, place_in_table, text_value, move_column
 
    !> What the values of a column are
    integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
@@ -451,31 +451,29 @@ contains
 
       allocate (longer(size(list) + 1))
       do i = 1, size(list)
-         call move(list(i), longer(i))
+         call move_column(list(i), longer(i))
       end do
-      call move(column, longer(size(longer)))
+      call move_column(column, longer(size(longer)))
       call move_alloc(longer, list)
-
-   contains
-
-      !> Move one column
-      pure subroutine move(from, to)
-         !> Column without values afterwards
-         type(column_t), intent(inout) :: from
-         !> Where it goes
-         type(column_t), intent(inout) :: to
-
-         call move_alloc(from%name, to%name)
-         call move_alloc(from%unit, to%unit)
-         call move_alloc(from%long_name, to%long_name)
-         call move_alloc(from%reals, to%reals)
-         call move_alloc(from%integers, to%integers)
-         call move_alloc(from%texts, to%texts)
-         to%kind = from%kind
-         to%width = from%width
-         to%length = from%length
-         to%is_index = from%is_index
-      end subroutine move
    end subroutine append
+
+   !> Move a column without a copy of its values
+   pure subroutine move_column(from, to)
+      !> Column without values afterwards
+      type(column_t), intent(inout) :: from
+      !> Where it goes
+      type(column_t), intent(inout) :: to
+
+      call move_alloc(from%name, to%name)
+      call move_alloc(from%unit, to%unit)
+      call move_alloc(from%long_name, to%long_name)
+      call move_alloc(from%reals, to%reals)
+      call move_alloc(from%integers, to%integers)
+      call move_alloc(from%texts, to%texts)
+      to%kind = from%kind
+      to%width = from%width
+      to%length = from%length
+      to%is_index = from%is_index
+   end subroutine move_column
 
 end module vcor_io_table
