@@ -3,7 +3,7 @@ module vcor_app_material
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : directory_of, job_t
-   use vcor_app_screen, only : short, significant
+   use vcor_app_screen, only : heading, line, short, significant
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
@@ -17,7 +17,6 @@ module vcor_app_material
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t
-   use vcor_version, only : version
    implicit none
    private
 
@@ -103,11 +102,9 @@ contains
 
       integer :: i, n
 
-      text = 'vcor '//version//'  '//filename//nl
-      if (len_trim(title) > 0) text = text//trim(title)//nl
       n = size(moduli%times)
-      text = text//nl//'  '//integer_text(n)//' times from '//short(moduli%times(1))//' to ' &
-         //short(moduli%times(n))//' s'
+      text = heading(filename, title)//'  '//integer_text(n)//' times from ' &
+         //short(moduli%times(1))//' to '//short(moduli%times(n))//' s'
       if (moduli%contact_time > 0.0_wp) text = text//', the impact up to t0 = ' &
          //trim(adjustl(significant(moduli%contact_time)))//' s'
       text = text//nl//'  '//integer_text(n)//' frequencies from '//short(moduli%frequencies(1)) &
@@ -133,39 +130,17 @@ contains
       type(curves_t), intent(in) :: curves
       character(len=:), allocatable :: text
 
-      text = line('glassy modulus', 'E(0)', curves%glassy, 'Pa') &
-         //line('rubbery modulus', 'E(inf)', curves%rubbery, 'Pa')
+      text = line('    glassy modulus', 36, 'E(0)', curves%glassy, 'Pa', '') &
+         //line('    rubbery modulus', 36, 'E(inf)', curves%rubbery, 'Pa', '')
       if (curves%viscosity > 0.0_wp) &
-         text = text//line('dashpot in parallel', 'eta', curves%viscosity, 'Pa s')
+         text = text//line('    dashpot in parallel', 36, 'eta', curves%viscosity, 'Pa s', '')
       if (ieee_is_nan(curves%at_contact_time)) return
-      text = text//line('relaxation modulus at t0', 'E(t0)', curves%at_contact_time, 'Pa') &
-         //line('storage modulus at 2 pi/t0', "E'", curves%storage_at_min, 'Pa') &
-         //line('loss modulus at 2 pi/t0', "E''", curves%loss_at_min, 'Pa') &
-         //line('loss tangent at 2 pi/t0', 'tan(d)', &
-         loss_tangent(curves%storage_at_min, curves%loss_at_min), '')
+      text = text &
+         //line('    relaxation modulus at t0', 36, 'E(t0)', curves%at_contact_time, 'Pa', '') &
+         //line('    storage modulus at 2 pi/t0', 36, "E'", curves%storage_at_min, 'Pa', '') &
+         //line('    loss modulus at 2 pi/t0', 36, "E''", curves%loss_at_min, 'Pa', '') &
+         //line('    loss tangent at 2 pi/t0', 36, 'tan(d)', &
+         loss_tangent(curves%storage_at_min, curves%loss_at_min), '', '')
    end function values_of
-
-   !> One line of a table
-   function line(meaning, symbol, value, unit) result(text)
-      !> What it is
-      character(len=*), intent(in) :: meaning
-      character(len=*), intent(in) :: symbol
-      real(wp), intent(in) :: value
-      character(len=*), intent(in) :: unit
-      !> The line
-      character(len=:), allocatable :: text
-
-      character(len=32) :: wide
-      character(len=8) :: narrow
-
-      wide = meaning
-      narrow = symbol
-      if (value > huge(value)) then
-         text = '    '//wide//narrow//'        infinite'
-      else
-         text = trim('    '//wide//narrow//significant(value)//' '//unit)
-      end if
-      text = text//nl
-   end function line
 
 end module vcor_app_material

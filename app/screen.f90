@@ -1,4 +1,4 @@
-!> What the screen shows of an impact
+!> What the screen shows: headings, lines of a name, a number and a unit; an impact
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_impact_outcome, only : outcome_t
@@ -10,7 +10,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, short, shown, significant, visible
+   public :: report, shown, heading, line, padded, right, short, significant, visible
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -39,17 +39,16 @@ contains
 
       integer :: i, j
 
-      text = 'vcor '//version//'  '//filename//nl
-      if (len_trim(title) > 0) text = text//trim(title)//nl
-      text = text//nl
+      text = heading(filename, title)
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
             //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
       else
          do i = 1, size(shown)
             do j = 1, size(quantities)
-               if (quantities(j)%name == shown(i)) text = text//line(quantities(j)%meaning, &
-                  quantities(j)%symbol, shown_value(quantities(j)%name, j), &
+               if (quantities(j)%name == shown(i)) text = text//line( &
+                  '  '//quantities(j)%meaning, 50, quantities(j)%symbol, &
+                  shown_value(quantities(j)%name, j), &
                   merge('        ', quantities(j)%unit, quantities(j)%unit == '1'), &
                   remark(quantities(j)%name))
             end do
@@ -86,44 +85,78 @@ contains
       end function remark
    end function report
 
+   !> Program, case and title, and an empty line
+   pure function heading(filename, title) result(text)
+      !> Case file
+      character(len=*), intent(in) :: filename
+      !> Title of the case
+      character(len=*), intent(in) :: title
+      character(len=:), allocatable :: text
+
+      text = 'vcor '//version//'  '//filename//nl
+      if (len_trim(title) > 0) text = text//trim(title)//nl
+      text = text//nl
+   end function heading
+
    !> One line of a table
-   function line(meaning, symbol, value, unit, remark) result(text)
-      !> What it is
+   pure function line(meaning, width, symbol, value, unit, remark) result(text)
+      !> What it is, indented
       character(len=*), intent(in) :: meaning
+      !> Characters of its column
+      integer, intent(in) :: width
       character(len=*), intent(in) :: symbol
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: unit
       !> What stands behind it
       character(len=*), intent(in) :: remark
-      !> The line
       character(len=:), allocatable :: text
 
-      character(len=48) :: wide
-      character(len=8) :: narrow
-      character(len=7) :: short_unit
+      character(len=:), allocatable :: number
 
-      wide = meaning
-      narrow = symbol
-      short_unit = unit
-      text = '  '//wide//narrow//significant(value)//' '//short_unit//remark
-      text = text(:len_trim(text))//nl
+      number = significant(value)
+      if (value > huge(value)) number = right('infinite', 16)
+      text = padded(meaning, width)//padded(symbol, 8)//number
+      if (.not. value > huge(value)) text = text//' '//padded(unit, 7)//remark
+      text = trim(text)//nl
    end function line
+
+   !> A text with blanks at its end
+   pure function padded(text, width) result(wide)
+      character(len=*), intent(in) :: text
+      !> Least number of characters
+      integer, intent(in) :: width
+      !> The same, never shortened
+      character(len=:), allocatable :: wide
+
+      wide = trim(text)//repeat(' ', max(0, width - len_trim(text)))
+   end function padded
+
+   !> A text with blanks before it
+   pure function right(text, width) result(wide)
+      character(len=*), intent(in) :: text
+      !> Least number of characters
+      integer, intent(in) :: width
+      !> The same, never shortened
+      character(len=:), allocatable :: wide
+
+      wide = repeat(' ', max(0, width - len_trim(text)))//trim(text)
+   end function right
 
    !> Energy budget
    function budget(outcome) result(text)
       type(outcome_t), intent(in) :: outcome
       character(len=:), allocatable :: text
 
-      text = line('energy before the impact', 'KE_0', outcome%initial_energy, 'J', '') &
-         //line('  lost in the contact (hysteresis)', 'W_h', &
+      text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '') &
+         //line('    lost in the contact (hysteresis)', 50, 'W_h', &
          visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
          share(outcome%hysteresis_energy)) &
-         //line('  radiated into the plate', 'W_wave', &
+         //line('    radiated into the plate', 50, 'W_wave', &
          visible(outcome%wave_energy, outcome%initial_energy), 'J', &
          share(outcome%wave_energy)) &
-         //line('  left to the sphere', 'KE_1', outcome%final_energy, 'J', &
+         //line('    left to the sphere', 50, 'KE_1', outcome%final_energy, 'J', &
          share(outcome%final_energy)) &
-         //line('  missing from the budget', 'dW', outcome%energy_imbalance, 'J', '')
+         //line('    missing from the budget', 50, 'dW', outcome%energy_imbalance, 'J', '')
 
    contains
 

@@ -2,14 +2,13 @@
 module vcor_app_sweep_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_job, only : job_t, shard_text
-   use vcor_app_screen, only : shown, significant
+   use vcor_app_screen, only : heading, padded, right, shown, significant
    use vcor_case_grid, only : axis_t
    use vcor_text, only : integer_text
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_quantity, only : quantities
-   use vcor_version, only : version
    implicit none
    private
 
@@ -35,7 +34,7 @@ contains
 
       logical :: history
 
-      text = heading(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, ' &
+      text = swept(job, title)//'  '//integer_text(job%sweep%grid%count())//' impacts, ' &
          //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
@@ -58,7 +57,7 @@ contains
       !> Text of several lines
       character(len=:), allocatable :: text
 
-      text = heading(job, title)//'  '//integer_text(job%part%count())//' of ' &
+      text = swept(job, title)//'  '//integer_text(job%part%count())//' of ' &
          //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', ' &
          //method_shown(job)//nl
       if (failures%count > 0) text = text//nl//reasons(job, failures)
@@ -80,23 +79,21 @@ contains
    end function method_shown
 
    !> Program, case, title and what is swept
-   function heading(job, title) result(text)
+   function swept(job, title) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
       character(len=:), allocatable :: text
 
       integer :: i
 
-      text = 'vcor '//version//'  '//job%case%source//nl
-      if (len_trim(title) > 0) text = text//trim(title)//nl
-      text = text//nl
+      text = heading(job%case%source, title)
       associate (axes => job%sweep%grid%axes)
          do i = 1, size(axes)
             text = text//axis_line(axes(i))
          end do
       end associate
       text = text//nl
-   end function heading
+   end function swept
 
    !> What is swept
    function axis_line(axis) result(text)
@@ -204,27 +201,5 @@ contains
          end associate
       end do
    end function coordinates
-
-   !> A text with blanks at its end
-   pure function padded(text, width) result(wide)
-      character(len=*), intent(in) :: text
-      !> Least number of characters
-      integer, intent(in) :: width
-      !> The same, never shortened
-      character(len=:), allocatable :: wide
-
-      wide = trim(text)//repeat(' ', max(0, width - len_trim(text)))
-   end function padded
-
-   !> A text with blanks before it
-   pure function right(text, width) result(wide)
-      character(len=*), intent(in) :: text
-      !> Least number of characters
-      integer, intent(in) :: width
-      !> The same, never shortened
-      character(len=:), allocatable :: wide
-
-      wide = repeat(' ', max(0, width - len(text)))//text
-   end function right
 
 end module vcor_app_sweep_screen

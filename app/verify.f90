@@ -1,12 +1,18 @@
 !> The command verify: the program against laws and known numbers, or a case by several methods
 module vcor_app_verify
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_job, only : job_t
-   use vcor_app_verify_screen, only : comparison_text, law_text, models_text
+   use vcor_app_screen, only : heading, right, short, significant, visible
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_trajectory, only : contact_separated
    use vcor_io_file, only : write_stdout
+   use vcor_kinds, only : wp
+   use vcor_sweep_quantity, only : status_name
    use vcor_text, only : integer_text
    use vcor_verify_comparison, only : compare
-   use vcor_verify_comparison_type, only : comparison_t
+   use vcor_verify_comparison_type, only : attempt_case, attempt_count, attempt_first, &
+      attempt_halved, attempt_refined, comparison_t
+   use vcor_verify_judge, only : error_of_best, is_honest
    use vcor_verify_models, only : model_t, solve_models
    use vcor_verify_row, only : law_t, verdict_t
    use vcor_verify_table, only : build_law, law_count, verify_law
@@ -82,5 +88,231 @@ contains
       if (allocated(comparison%objection) .and. .not. allocated(error)) &
          call raise(error, error_numerical, job%case%source//': '//comparison%objection)
    end subroutine verify_case
+
+   !> A law as a table
+   function law_text(law, verdicts) result(text)
+      type(law_t), intent(in) :: law
+      !> Verdicts of its rows
+      type(verdict_t), intent(in) :: verdicts(:)
+      character(len=:), allocatable :: text
+
+      character(len=32) :: name
+      character(len=6) :: method
+      integer :: i
+
+      name = 'check'
+      method = 'method'
+      text = law%title//nl//'  source: '//law%source//nl//'  '//name//method &
+         //'         expected            found deviation tolerance'//nl
+      do i = 1, law%count
+         associate (row => law%rows(i), verdict => verdicts(i))
+            name = row%name
+            method = row%method
+            text = text//'  '//name//method//significant(verdict%expected, 10, 17) &
+               //significant(verdict%found, 10, 17)//column(verdict%deviation, 10) &
+               //column(row%tolerance, 10)//'  '//merge('pass', 'FAIL', verdict%passed)//nl
+            if (.not. verdict%passed) text = text//'    reason of the tolerance: '//row%reason//nl
+         end associate
+      end do
+   end function law_text
+
+   !> A comparison of methods
+   function comparison_text(filename, title, comparison) result(text)
+      !> Case file
+      character(len=*), intent(in) :: filename
+      !> Title of the case
+      character(len=*), intent(in) :: title
+      type(comparison_t), intent(in) :: comparison
+      character(len=:), allocatable :: text
+
+      text = heading(filename, title)//attempts_text(comparison)
+      if (.not. comparison%two_methods) text = text//'  note: method ive has no result that is ' &
+         //'accurate enough, so direct stands alone'//nl
+      if (comparison%separated) then
+         text = text//nl//values_text(comparison)//nl//differences_text(comparison)
+      else if (.not. allocated(comparison%objection)) then
+         text = text//'  all end in the same way, '//status_name( &
+            comparison%attempts(attempt_first)%outcome%status) &
+            //': there are no numbers to compare'//nl
+      end if
+      text = text//nl
+      if (allocated(comparison%objection)) then
+         text = text//'  not verified: '//comparison%objection//nl
+      else if (comparison%separated) then
+         text = text//'  verified: '//integer_text(comparison%compared(1)%digits) &
+            //' digits of cor = '//significant(comparison%compared(1)%value(attempt_first), 12, 0) &
+            //' can be trusted, the best value is ' &
+            //significant(comparison%compared(1)%best, 12, 0)//nl
+         if (comparison%attempts(attempt_case)%made) text = text//'  the cor of the scheme that ' &
+            //'the case asks for is off by '//short(comparison%attempts(attempt_case)%seen(1))//nl
+      else
+         text = text//'  verified'//nl
+      end if
+      text = text//nl
+   end function comparison_text
+
+   !> A case with every plate model and both contact laws
+   function models_text(models) result(text)
+      type(model_t), intent(in) :: models(:)
+      character(len=:), allocatable :: text
+
+      character(len=10) :: waves
+      character(len=9) :: law
+      integer :: i
+
+      waves = 'waves'
+      law = 'law'
+      text = '  effect of the choice of model; * marks that of the case'//nl &
+         //'  '//waves//'  '//law//right('cor', 16)//right('cor_sphere', 16) &
+         //right('contact_time [s]', 18)//right('residual_indentation [m]', 26)//nl
+      do i = 1, size(models)
+         associate (this => models(i))
+            text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
+            if (allocated(this%failure)) then
+               text = text//right('refused', 16)//nl
+            else if (this%outcome%status /= contact_separated) then
+               text = text//right(status_name(this%outcome%status), 16)//nl
+            else
+               text = text//significant(this%outcome%cor, 8, 16) &
+                  //significant(this%outcome%cor_sphere, 8, 16) &
+                  //significant(this%outcome%contact_time, 8, 18) &
+                  //significant(visible(this%outcome%residual_indentation, &
+                  this%outcome%max_indentation), 8, 26)//nl
+            end if
+         end associate
+      end do
+      text = text//nl
+   end function models_text
+
+   !> How each solution was made, and whether its error is what it says
+   function attempts_text(comparison) result(text)
+      type(comparison_t), intent(in) :: comparison
+      character(len=:), allocatable :: text
+
+      character(len=21) :: label
+      character(len=9) :: honest
+      integer :: i
+
+      label = 'solution'
+      text = '  '//label//' accuracy step [s]  steps              cor   states   off by' &
+         //'  dW/KE_0'//nl
+      do i = 1, attempt_count
+         associate (this => comparison%attempts(i))
+            if (.not. this%made) cycle
+            label = this%label
+            text = text//'  '//label//given(this%accuracy)//given(this%time_step)
+            if (allocated(this%failure)) then
+               text = text//'   failed'//nl
+               cycle
+            end if
+            text = text//right(integer_text(this%outcome%steps), 7)
+            if (.not. comparison%separated) then
+               text = text//'   '//status_name(this%outcome%status)//nl
+               cycle
+            end if
+            honest = ''
+            if (i /= attempt_case) honest = &
+               merge('  honest ', '  TOO LOW', all(is_honest(this, error_of_best(comparison))))
+            text = text//significant(this%outcome%cor, 11, 17)//column(this%outcome%cor_error, 9) &
+               //column(this%seen(1), 9)//column(this%imbalance(), 9)//trim(honest)//nl
+         end associate
+      end do
+   end function attempts_text
+
+   !> The quantities by both methods
+   function values_text(comparison) result(text)
+      !> The comparison, with numbers
+      type(comparison_t), intent(in) :: comparison
+      character(len=:), allocatable :: text
+
+      character(len=22) :: name
+      integer :: i
+
+      name = 'quantity'
+      text = '  '//name//right(trim(comparison%attempts(attempt_first)%label), 19)
+      if (comparison%two_methods) text = text//right('ive, refined', 19)
+      text = text//right('direct, dt -> 0', 19)//'   order  digits'//nl
+      do i = 1, size(comparison%compared)
+         associate (this => comparison%compared(i))
+            name = this%name
+            text = text//'  '//name//value_text(this%value(attempt_first))
+            if (comparison%two_methods) text = text//value_text(this%value(attempt_refined))
+            text = text//value_text(this%direct%limit)//order_text(this%direct%order) &
+               //right(integer_text(this%digits), 8)//nl
+         end associate
+      end do
+
+   contains
+
+      !> A value of the quantity, 0 where no digit of it can be trusted
+      function value_text(value)
+         real(wp), intent(in) :: value
+         character(len=:), allocatable :: value_text
+
+         associate (this => comparison%compared(i))
+            value_text = significant(visible(value, this%scale, this%digits), 12, 19)
+         end associate
+      end function value_text
+   end function values_text
+
+   !> Distances of all solutions from the best value
+   function differences_text(comparison) result(text)
+      !> The comparison, with numbers
+      type(comparison_t), intent(in) :: comparison
+      character(len=:), allocatable :: text
+
+      character(len=22) :: name
+      integer :: i, j
+
+      name = 'less '//trim(merge('ive, refined   ', 'direct, dt -> 0', comparison%two_methods))
+      text = '  '//name//right(trim(comparison%attempts(attempt_first)%label), 11) &
+         //'  direct dt       dt/2       dt/4'
+      if (comparison%two_methods) text = text//'    dt -> 0'
+      if (comparison%attempts(attempt_case)%made) text = text//'   as given'
+      text = text//nl
+      do i = 1, size(comparison%compared)
+         associate (this => comparison%compared(i))
+            name = this%name
+            text = text//'  '//name//column(this%value(attempt_first) - this%best, 11)
+            do j = 1, size(attempt_halved)
+               text = text//column(this%value(attempt_halved(j)) - this%best, 11)
+            end do
+            if (comparison%two_methods) text = text//column(this%direct%limit - this%best, 11)
+            if (comparison%attempts(attempt_case)%made) &
+               text = text//column(this%value(attempt_case) - this%best, 11)
+            text = text//nl
+         end associate
+      end do
+   end function differences_text
+
+   !> What was asked for, if anything
+   pure function given(value) result(text)
+      !> The number, 0 if nothing
+      real(wp), intent(in) :: value
+      character(len=9) :: text
+
+      text = ''
+      if (value > 0.0_wp) text = column(value, 9)
+   end function given
+
+   !> An order of convergence
+   pure function order_text(order) result(text)
+      real(wp), intent(in) :: order
+      character(len=8) :: text
+
+      text = right('-', 8)
+      if (ieee_is_finite(order)) write (text, '(f8.2)') max(-99.0_wp, min(999.0_wp, order))
+   end function order_text
+
+   !> A number with two digits in a column
+   pure function column(value, width) result(text)
+      real(wp), intent(in) :: value
+      !> Characters
+      integer, intent(in) :: width
+      character(len=width) :: text
+
+      text = right('nan', width)
+      if (ieee_is_finite(value)) text = right(short(value), width)
+   end function column
 
 end module vcor_app_verify
