@@ -3,7 +3,8 @@ module vcor_app_fit_options
    use vcor_app_argument, only : has_word
    use vcor_app_option_value, only : read_number, read_positive, read_whole
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_fit, only : fit_models, fixable_parameters, parameter_t
+   use vcor_fit, only : estimate_t, fixable_parameters
+   use vcor_material, only : identifiable_models
    use vcor_io_sample_file, only : reading_t
    use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_kinds, only : wp
@@ -25,7 +26,7 @@ module vcor_app_fit_options
       !> Terms of a Prony series; 0: as many as the data support
       integer :: terms = 0
       !> Parameters that are given, shape (n)
-      type(parameter_t), allocatable :: fixed(:)
+      type(estimate_t), allocatable :: fixed(:)
       !> Units of the columns, separated by commas; unallocated: the file tells
       character(len=:), allocatable :: units
       !> Whether the moduli are shear moduli
@@ -59,10 +60,10 @@ contains
       select case (option)
       case ('--model')
          request%model = trim(adjustl(value))
-         if (has_word(fit_models, request%model)) return
+         if (has_word(identifiable_models, request%model)) return
          call raise(error, error_usage, "--model: found '"//printable(request%model) &
-            //"', expected one of "//commas(fit_models)//'; ' &
-            //suggestion(request%model, fit_models))
+            //"', expected one of "//commas(identifiable_models)//'; ' &
+            //suggestion(request%model, identifiable_models))
       case ('--terms')
          call read_whole(option, value, 1, most_terms, request%terms, error)
       case ('--fix')
@@ -108,7 +109,7 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(parameter_t) :: parameter
+      type(estimate_t) :: parameter
       integer :: mark
 
       if (.not. allocated(request%fixed)) allocate (request%fixed(0))
@@ -204,7 +205,7 @@ contains
 
    !> Values that a parameter may have
    pure function range_of(parameter, model) result(text)
-      type(parameter_t), intent(in) :: parameter
+      type(estimate_t), intent(in) :: parameter
       !> Model that it belongs to
       character(len=*), intent(in) :: model
       !> In words
@@ -223,7 +224,7 @@ contains
 
    !> Whether a parameter has a value that it may have
    pure function in_range(parameter, model) result(yes)
-      type(parameter_t), intent(in) :: parameter
+      type(estimate_t), intent(in) :: parameter
       !> Model that it belongs to
       character(len=*), intent(in) :: model
       !> Whether it has

@@ -7,7 +7,7 @@ module vcor
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, error_usage
-   use vcor_fit, only : fit_material, fit_t, parameter_t, samples_t
+   use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
@@ -63,6 +63,6 @@ module vcor
    ! results
    public :: quantities, table_t, summary_table, history_table, write_csv, write_hdf5
    ! identification
-   public :: samples_t, fit_t, parameter_t, fit_material
+   public :: samples_t, fit_t, estimate_t, fit_material
 
 end module vcor

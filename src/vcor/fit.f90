@@ -2,20 +2,20 @@
 module vcor_fit
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_kinds, only : wp
-   use vcor_fit_problem, only : parameters_of
-   use vcor_fit_parametric, only : fit_parametric
-   use vcor_fit_result, only : fit_t, parameter_t, state_bound, state_fixed, state_free, &
+   use vcor_material_parameter, only : parameter_t
+   use vcor_text, only : integer_text
+   use vcor_fit_law_problem, only : stated_parameters
+   use vcor_fit_law, only : fit_law
+   use vcor_fit_result, only : estimate_t, fit_t, state_bound, state_fixed, state_free, &
       unseen_earlier, unseen_later
    use vcor_fit_samples, only : samples_t
-   use vcor_fit_series, only : fit_series
+   use vcor_fit_prony, only : fit_prony
    implicit none
    private
 
-   public :: fit_t, parameter_t, samples_t, fit_material, fit_models, fixable_parameters
+   public :: fit_t, estimate_t, samples_t, fit_material, fixable_parameters
    public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
 
-   !> Models that can be fitted
-   character(len=*), parameter :: fit_models = 'prony sls power_law cerf mittag_leffler'
    !> Relative change of the modulus below which nothing relaxes
    real(wp), parameter :: constant = 1.0e-6_wp
 
@@ -28,17 +28,13 @@ contains
       !> The names
       character(len=:), allocatable :: names
 
-      type(parameter_t), allocatable :: parameters(:)
+      type(parameter_t), allocatable :: stated(:)
       integer :: i
 
-      if (model == 'prony') then
-         names = 'equilibrium_modulus'
-         return
-      end if
-      parameters = parameters_of(model)
-      names = trim(parameters(1)%name)
-      do i = 2, size(parameters)
-         names = names//' '//trim(parameters(i)%name)
+      allocate (stated, source=stated_parameters(model))
+      names = trim(stated(1)%name)
+      do i = 2, size(stated)
+         names = names//' '//trim(stated(i)%name)
       end do
    end function fixable_parameters
 
@@ -46,12 +42,12 @@ contains
    subroutine fit_material(fit, model, terms, fixed, samples, error)
       !> The fit
       type(fit_t), intent(out) :: fit
-      !> One of `fit_models`
+      !> One of `identifiable_models`
       character(len=*), intent(in) :: model
       !> Terms of a Prony series; 0: as many as the data support
       integer, intent(in) :: terms
       !> Parameters that have a given value, each one of `fixable_parameters`, shape (n)
-      type(parameter_t), intent(in) :: fixed(:)
+      type(estimate_t), intent(in) :: fixed(:)
       !> The samples
       type(samples_t), intent(in) :: samples
       !> Error of code `error_input` if the data cannot be fitted, of code `error_numerical` if the
@@ -61,12 +57,12 @@ contains
       real(wp) :: equilibrium
       integer :: unknowns
 
-      unknowns = size(parameters_of(model)) - size(fixed)
-      if (model == 'prony') unknowns = 2*max(1, terms) + 1 - size(fixed)
+      unknowns = size(stated_parameters(model)) - size(fixed)
+      if (model == 'prony') unknowns = unknowns + 2*max(1, terms)
       if (samples%count() <= unknowns) then
-         call raise(error, error_input, 'found '//text_of(samples%count())//' moduli, expected ' &
-            //'at least '//text_of(unknowns + 1)//': the model has '//text_of(unknowns) &
-            //' parameters to be found')
+         call raise(error, error_input, 'found '//integer_text(samples%count())//' moduli, ' &
+            //'expected at least '//integer_text(unknowns + 1)//': the model has ' &
+            //integer_text(unknowns)//' parameters to be found')
       else if (.not. samples%dynamic .and. maxval(samples%modulus) &
          <= (1.0_wp + constant)*minval(samples%modulus)) then
          call raise(error, error_input, 'the modulus does not change: nothing is there to be ' &
@@ -82,9 +78,9 @@ contains
       if (model == 'prony') then
          equilibrium = -1.0_wp
          if (size(fixed) > 0) equilibrium = fixed(size(fixed))%value
-         call fit_series(fit, terms, equilibrium, samples, error)
+         call fit_prony(fit, terms, equilibrium, samples, error)
       else
-         call fit_parametric(fit, model, fixed, samples, error)
+         call fit_law(fit, model, fixed, samples, error)
       end if
    end subroutine fit_material
 
@@ -103,18 +99,5 @@ contains
       if (samples%dynamic) x = -x
       yes = dot_product(x, log(samples%modulus)) < 0.0_wp
    end function falls
-
-   !> A whole number as text
-   pure function text_of(number) result(text)
-      !> The number
-      integer, intent(in) :: number
-      !> Its digits
-      character(len=:), allocatable :: text
-
-      character(len=12) :: buffer
-
-      write (buffer, '(i0)') number
-      text = trim(buffer)
-   end function text_of
 
 end module vcor_fit

@@ -5,10 +5,11 @@
 !> it makes a bias of 5e-5, half of what relative misfits make.
 module vcor_fit_samples
    use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: samples_t
+   public :: samples_t, moduli_of
 
    !> Samples of E(t), or of E' and E'' over the angular frequency
    type :: samples_t
@@ -75,5 +76,25 @@ contains
       moduli(:size(self%modulus)) = self%modulus
       moduli(size(self%modulus) + 1:) = self%loss
    end function all_moduli
+
+   !> Moduli of a material where there are samples
+   pure function moduli_of(material, samples) result(moduli)
+      !> The material
+      class(material_t), intent(in) :: material
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Relaxation moduli, or storage and then loss moduli [Pa], shape (count)
+      real(wp) :: moduli(samples%count())
+
+      complex(wp) :: complex_moduli(size(samples%loss))
+
+      if (samples%dynamic) then
+         complex_moduli = material%complex_modulus(cmplx(0.0_wp, samples%at, wp))
+         moduli(:size(samples%at)) = real(complex_moduli, wp)
+         moduli(size(samples%at) + 1:) = aimag(complex_moduli)
+      else
+         moduli = material%relaxation(samples%at)
+      end if
+   end function moduli_of
 
 end module vcor_fit_samples

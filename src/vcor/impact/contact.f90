@@ -5,7 +5,7 @@ module vcor_impact_contact
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_prony, only : new_elastic, prony_t
-   use vcor_material_series, only : new_series
+   use vcor_material_in_series, only : new_in_series
    use vcor_material_signed_fit, only : new_signed_fit, signed_fit_t
    use vcor_material_type, only : material_t
    use vcor_numeric_legendre, only : gauss_nodes
@@ -118,7 +118,7 @@ contains
          allocate (self%first, source=elastic)
       else if (series) then
          self%series = .true.
-         call new_series(self%first, sphere, sphere%plane_strain_factor(), plate, &
+         call new_in_series(self%first, sphere, sphere%plane_strain_factor(), plate, &
             plate%plane_strain_factor(), error)
       else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
          call raise(error, error_input, 'a material with a viscosity has no meaning in Eq. (1) ' &

@@ -1,49 +1,156 @@
-!> Standard errors of parameters that the data determine poorly
+!> Fit of the models with a few parameters: sls, power_law, cerf, mittag_leffler
+!>
+!> Every minimum of a scan over the shapes of the model starts an iteration in the logarithms of the
+!> parameters: a local minimum wins only if it is the lowest.
 !>
 !> About a solution that the data determine well the sum of squares is a parabola, and derivatives
-!> say how wide. It is none where a parameter is known to a few ten percent only, or is at the end
-!> of its range. Then each parameter in turn is given other values and all others are fitted again:
-!> the interval of three standard errors ends where the sum of squares has risen by 3^2 variances
-!> (profile likelihood: D. M. Bates and D. G. Watts, Nonlinear Regression Analysis and Its
-!> Applications, Wiley 1988, chapter 6). A third of the way to the end that is further away is the
-!> standard error. Of a parabola that is the usual one.
-module vcor_fit_interval
+!> say how wide: that gives the standard errors. It is none where a parameter is known to a few ten
+!> percent only, or is at the end of its range. Then each parameter in turn is given other values
+!> and all others are fitted again: the interval of three standard errors ends where the sum of
+!> squares has risen by 3^2 variances (profile likelihood: D. M. Bates and D. G. Watts, Nonlinear
+!> Regression Analysis and Its Applications, Wiley 1988, chapter 6). A third of the way to the end
+!> that is further away is the standard error. Of a parabola that is the usual one.
+module vcor_fit_law
+   use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_fit_problem, only : problem_t, set_free, unit_of, unknowns_of
-   use vcor_fit_result, only : fit_t, state_fixed
-   use vcor_fit_scan, only : find_starts
+   use vcor_material, only : material_t, new_material
+   use vcor_fit_law_problem, only : described, find_starts, has_two_shapes, law_problem_t, &
+      new_law_problem, nothing, release, set_free, unknowns_of
+   use vcor_fit_result, only : estimate_t, fit_t, judge, mark_ends, set_errors, state_bound, &
+      state_fixed, state_free
+   use vcor_fit_samples, only : samples_t
    use vcor_numeric_least_squares, only : minimise
    implicit none
    private
 
-   public :: widen_errors
+   public :: fit_law
 
+   !> Most evaluations of an iteration, per unknown
+   integer, parameter :: patience = 400
    !> Standard errors to the ends of an interval
    real(wp), parameter :: reach = 3.0_wp
 
 contains
+
+   !> Fit a model to samples
+   subroutine fit_law(fit, model, fixed, samples, error)
+      !> The fit
+      type(fit_t), intent(out) :: fit
+      !> Name of the model, one of those with parameters
+      character(len=*), intent(in) :: model
+      !> Parameters that have a given value, shape (n)
+      type(estimate_t), intent(in) :: fixed(:)
+      !> The samples, more than there are parameters
+      type(samples_t), intent(in) :: samples
+      !> Error of code `error_numerical` if there is no solution, of code `error_input` if a given
+      !> value is out of range; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(law_problem_t) :: problem
+      class(material_t), allocatable :: material
+      real(wp), allocatable :: x(:), starts(:, :)
+      real(wp) :: r(samples%count()), best(samples%count())
+      real(wp), allocatable :: solution(:)
+      logical :: converged, good
+      integer :: i
+
+      call new_law_problem(problem, model, fixed, samples)
+      call find_starts(problem, starts)
+      good = .false.
+      do i = 1, size(starts, 2)
+         x = log(starts(problem%free, i))
+         call minimise(problem, x, r, converged, 0.0_wp, patience*(size(x) + 1))
+         if (i > 1) then
+            if (.not. norm2(r) < norm2(best)) cycle
+         end if
+         best = r
+         solution = x
+         good = converged
+      end do
+      if (size(starts, 2) == 0) then
+         call raise(error, error_numerical, 'model '//model//' has no likeness to the data')
+         return
+      end if
+      call follow_bounds(problem, solution, best, good)
+      if (.not. good) then
+         call raise(error, error_numerical, 'the fit of model '//model//' does not converge: ' &
+            //'give parameters with --fix, or another model')
+         return
+      end if
+
+      problem%parameters(problem%free)%value = exp(solution)
+      fit%data = described(model, problem%parameters)
+      fit%parameters = problem%parameters
+      call new_material(material, fit%data, error)
+      if (allocated(error)) return
+      call judge(fit, material, samples)
+      problem%parameters = fit%parameters
+      call release(problem)
+      call set_errors(fit, problem, unknowns_of(problem), best, problem%free, size(samples%at), &
+         error)
+      if (allocated(error)) return
+      call widen_errors(fit, problem, sum(best**2))
+      call mark_ends(fit, material, samples)
+   end subroutine fit_law
+
+   !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1,
+   !> and the others are fitted again; anything else keeps its value
+   subroutine follow_bounds(problem, x, r, converged)
+      !> The problem; what is at a bound is not free afterwards
+      type(law_problem_t), intent(inout) :: problem
+      !> Solution
+      real(wp), allocatable, intent(inout) :: x(:)
+      !> Residuals
+      real(wp), intent(inout) :: r(:)
+      !> Whether it is a solution
+      logical, intent(inout) :: converged
+
+      real(wp), parameter :: touch = 1.0e-5_wp
+      real(wp), allocatable :: kept(:)
+      integer :: i
+
+      do i = 1, size(x)
+         associate (parameter => problem%parameters(problem%free(i)))
+            if (exp(x(i)) < nothing*problem%unit(problem%free(i))) then
+               parameter%value = 0.0_wp
+            else if (parameter%unit == '1' .and. x(i) > problem%upper(i) - touch &
+               .and. .not. problem%stated(problem%free(i))%range%upper_open) then
+               parameter%value = problem%stated(problem%free(i))%range%upper
+            else if (x(i) < problem%lower(i) + touch .or. x(i) > problem%upper(i) - touch) then
+               parameter%value = exp(x(i))
+            else
+               cycle
+            end if
+            parameter%state = state_bound
+         end associate
+      end do
+      if (all(problem%parameters(problem%free)%state == state_free)) return
+      kept = pack(x, problem%parameters(problem%free)%state == state_free)
+      call move_alloc(kept, x)
+      call set_free(problem)
+      call minimise(problem, x, r, converged, 0.0_wp, patience*(size(x) + 1))
+   end subroutine follow_bounds
 
    !> Make the standard errors those of intervals, unless the derivatives are enough
    subroutine widen_errors(fit, problem, squares)
       !> The fit, with errors by the derivatives
       type(fit_t), intent(inout) :: fit
       !> Its problem, in which all is free but what is given
-      type(problem_t), intent(in) :: problem
+      type(law_problem_t), intent(in) :: problem
       !> Sum of the squares of the residuals
       real(wp), intent(in) :: squares
 
       !> Error, as a part of the parameter, up to which the derivatives are enough: they are wrong
       !> by about three times this part of themselves
       real(wp), parameter :: enough = 0.02_wp
-      type(problem_t) :: whole
+      type(law_problem_t) :: whole
       real(wp) :: ends(2)
       logical :: open(2)
       integer :: i, k
 
       whole = problem
       whole%parameters%error = fit%parameters%error
-      if (all(fit%parameters%error <= enough*max(fit%parameters%value, &
-         unit_of(fit%parameters%name, problem%samples)))) return
+      if (all(fit%parameters%error <= enough*max(fit%parameters%value, problem%unit))) return
       do i = 1, size(whole%free)
          k = whole%free(i)
          call find_end(whole, i, -1.0_wp, squares, fit%variance, ends(1), open(1))
@@ -59,7 +166,7 @@ contains
    !> Find an end of the interval of an unknown
    subroutine find_end(problem, i, side, squares, variance, end, open)
       !> The problem, values and errors by the derivatives set
-      type(problem_t), intent(in) :: problem
+      type(law_problem_t), intent(in) :: problem
       !> Number of the unknown
       integer, intent(in) :: i
       !> 1 for the upper end, -1 for the lower one
@@ -80,7 +187,7 @@ contains
       real(wp), parameter :: first_step = 0.7_wp
       !> Rise from which on it is no straight line from there to the solution, in reaches
       real(wp), parameter :: steep = 4.0_wp
-      type(problem_t) :: held
+      type(law_problem_t) :: held
       real(wp) :: unit, limit, step, rise, inside, inside_rise, outside, outside_rise
       real(wp) :: sum_of_squares
       logical :: bounded, linear
@@ -92,9 +199,9 @@ contains
       call set_free(held)
       associate (best => problem%parameters(k))
          ! what may be 0 is one of the terms of a sum, anything else is a factor
-         unit = unit_of(best%name, problem%samples)
+         unit = problem%unit(k)
          linear = unit > 0.0_wp
-         bounded = merge(linear, best%name == 'exponent', side < 0.0_wp)
+         bounded = merge(linear, best%unit == '1', side < 0.0_wp)
          if (linear) then
             limit = merge(best%value, exp(problem%upper(i)) - best%value, bounded)
             step = min(reach*best%error, max(best%value, unit))
@@ -143,7 +250,7 @@ contains
    !> Fit all parameters but those that are given
    subroutine fit_others(problem, squares, enough)
       !> The problem: where the iteration starts, and what it comes to if that is good enough
-      type(problem_t), intent(inout) :: problem
+      type(law_problem_t), intent(inout) :: problem
       !> Least sum of the squares of the residuals
       real(wp), intent(out) :: squares
       !> A sum that is good enough
@@ -155,7 +262,7 @@ contains
       squares = huge(squares)
       call descend(problem, unknowns_of(problem), squares, enough)
       ! a scan of time and exponent would take as long as the fit has taken
-      if (squares < enough .or. problem%model == 'mittag_leffler') return
+      if (squares < enough .or. has_two_shapes(problem)) return
       call find_starts(problem, starts)
       do i = 1, size(starts, 2)
          call descend(problem, log(starts(problem%free, i)), squares, enough)
@@ -166,7 +273,7 @@ contains
    !> Iterate from a start
    subroutine descend(problem, start, squares, enough)
       !> The problem, which gets the values of a fit that is good enough
-      type(problem_t), intent(inout) :: problem
+      type(law_problem_t), intent(inout) :: problem
       !> Unknowns
       real(wp), intent(in) :: start(:)
       !> Least sum of squares so far
@@ -186,4 +293,4 @@ contains
       if (squares < enough) problem%parameters(problem%free)%value = exp(x)
    end subroutine descend
 
-end module vcor_fit_interval
+end module vcor_fit_law

@@ -9,20 +9,19 @@
 !> good for, or as long as they pay by the Bayesian information criterion
 !> m ln(S/m) + p ln m of m moduli, p parameters and the sum of squares S (G. Schwarz, Ann. Stat. 6
 !> (1978) 461). In noise it ends where more terms would follow the noise.
-module vcor_fit_series
+module vcor_fit_prony
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
-   use vcor_fit_ends, only : mark_ends
-   use vcor_fit_exponentials, only : fastest_rate, new_series_problem, refine, series_t, &
+   use vcor_fit_prony_problem, only : fastest_rate, new_series_problem, refine, series_t, &
       series_problem_t, slowest_rate, solve_moduli
-   use vcor_fit_result, only : fit_t, judge, parameter_t, set_errors, state_bound, &
+   use vcor_fit_result, only : estimate_t, fit_t, judge, mark_ends, set_errors, state_bound, &
       state_fixed
    use vcor_fit_samples, only : samples_t
    implicit none
    private
 
-   public :: fit_series
+   public :: fit_prony
 
    !> Rates per decade of the grid of the spectrum
    real(wp), parameter :: per_decade = 8.0_wp
@@ -57,7 +56,7 @@ module vcor_fit_series
 contains
 
    !> Fit a Prony series
-   subroutine fit_series(fit, terms, fixed, samples, error)
+   subroutine fit_prony(fit, terms, fixed, samples, error)
       !> The fit
       type(fit_t), intent(out) :: fit
       !> Number of terms; 0: as many as the data support
@@ -95,7 +94,7 @@ contains
          spectrum = series
          call fit_terms(series, n, spectrum, samples, fixed, last_patience)
       end do
-   end subroutine fit_series
+   end subroutine fit_prony
 
    !> Take terms away as long as the series stays good enough: the search has looked at iterations
    !> that were cut short
@@ -404,7 +403,7 @@ contains
       call fit%data%set_list('moduli', series%moduli(n:1:-1))
       call fit%data%set_list('rates', exp(series%rates(n:1:-1)))
       allocate (fit%parameters(2*n + 1))
-      fit%parameters(1) = parameter_t('equilibrium_modulus', 'Pa', series%equilibrium)
+      fit%parameters(1) = estimate_t('equilibrium_modulus', 'Pa', series%equilibrium)
       if (fixed >= 0.0_wp) then
          fit%parameters(1)%state = state_fixed
       else if (.not. series%equilibrium > 0.0_wp) then
@@ -412,8 +411,8 @@ contains
       end if
       do i = 1, n
          k = n + 1 - i
-         fit%parameters(2*i) = parameter_t('moduli', 'Pa', series%moduli(k))
-         fit%parameters(2*i + 1) = parameter_t('times', 's', exp(-series%rates(k)))
+         fit%parameters(2*i) = estimate_t('moduli', 'Pa', series%moduli(k))
+         fit%parameters(2*i + 1) = estimate_t('times', 's', exp(-series%rates(k)))
       end do
 
       call new_material(material, fit%data, error)
@@ -437,4 +436,4 @@ contains
       if (.not. allocated(error)) call mark_ends(fit, material, samples)
    end subroutine conclude
 
-end module vcor_fit_series
+end module vcor_fit_prony

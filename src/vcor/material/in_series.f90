@@ -7,7 +7,7 @@
 !> rate of both and the next, with those that both have, and the modulus that belongs to the rate l
 !> is Q_a^2/(l P') at s = -l.
 !> All other moduli are known by their transform, and as exponentials through their spectrum.
-module vcor_material_series
+module vcor_material_in_series
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
@@ -20,10 +20,10 @@ module vcor_material_series
    implicit none
    private
 
-   public :: new_series
+   public :: new_in_series
 
    !> Two materials in series of which at least one is no Prony series
-   type, extends(transform_t) :: series_t
+   type, extends(transform_t) :: in_series_t
       private
       !> One of them
       class(material_t), allocatable :: first
@@ -40,12 +40,12 @@ module vcor_material_series
       procedure :: glassy
       procedure :: rubbery
       procedure :: exponentials
-   end type series_t
+   end type in_series_t
 
 contains
 
    !> Put two materials in series
-   pure subroutine new_series(self, first, first_factor, second, second_factor, error)
+   pure subroutine new_in_series(self, first, first_factor, second, second_factor, error)
       !> The two; not allocated on entry, nor on failure
       class(material_t), allocatable, intent(inout) :: self
       !> One material, not rigid
@@ -59,7 +59,7 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(series_t), allocatable :: series
+      type(in_series_t), allocatable :: series
       type(prony_t), allocatable :: prony
       type(exponential_sum_t) :: a, b
 
@@ -89,7 +89,7 @@ contains
       series%second_factor = second_factor
       series%viscosity = in_series(first_factor*first%viscosity, second_factor*second%viscosity)
       call move_alloc(series, self)
-   end subroutine new_series
+   end subroutine new_in_series
 
    !> a b/(a + b), also where one of them is infinite, or both are zero
    pure function in_series(a, b) result(value)
@@ -203,7 +203,7 @@ contains
    !> Complex modulus Q_a Q_b/(Q_a + Q_b)
    elemental function complex_modulus(self, s) result(modulus)
       !> The two
-      class(series_t), intent(in) :: self
+      class(in_series_t), intent(in) :: self
       !> Laplace variable [1/s]
       complex(wp), intent(in) :: s
       !> Complex modulus [Pa]
@@ -216,7 +216,7 @@ contains
    !> Glassy modulus; a dashpot beside one of the moduli makes it rigid at first
    pure function glassy(self) result(modulus)
       !> The two
-      class(series_t), intent(in) :: self
+      class(in_series_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
 
@@ -246,7 +246,7 @@ contains
    !> Rubbery modulus
    pure function rubbery(self) result(modulus)
       !> The two
-      class(series_t), intent(in) :: self
+      class(in_series_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
 
@@ -257,7 +257,7 @@ contains
    !> The modulus as a sum of exponentials, from its spectrum
    pure subroutine exponentials(self, window, accuracy, terms)
       !> The two
-      class(series_t), intent(in) :: self
+      class(in_series_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
@@ -273,4 +273,4 @@ contains
       terms%viscosity = terms%viscosity + self%viscosity
    end subroutine exponentials
 
-end module vcor_material_series
+end module vcor_material_in_series

@@ -1,6 +1,6 @@
 !> A Prony series as a problem of least squares in the logarithms of its moduli and rates, which
 !> keeps all of them positive
-module vcor_fit_exponentials
+module vcor_fit_prony_problem
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
    use vcor_numeric_least_squares, only : least_squares_t, minimise
@@ -286,4 +286,4 @@ contains
       end do
    end subroutine jacobian
 
-end module vcor_fit_exponentials
+end module vcor_fit_prony_problem

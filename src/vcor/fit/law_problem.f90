@@ -1,0 +1,462 @@
+!> A model with a few parameters as a problem of least squares in their logarithms, and where its
+!> iteration starts
+!>
+!> All of the models are E_0 + E_1 f(t; p), linear in two moduli for a given shape p, which is a
+!> time, an exponent or both. So the shapes are scanned over all that the data can tell apart, with
+!> the best two moduli for each by non-negative least squares. No start is guessed.
+!> What a parameter is, a modulus, a time, a rate or an exponent, its unit tells.
+module vcor_fit_law_problem
+   use vcor_error, only : error_t
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, material_t, new_material, parameters_of
+   use vcor_fit_result, only : estimate_t, state_bound, state_fixed, state_free
+   use vcor_fit_samples, only : moduli_of, samples_t
+   use vcor_material_parameter, only : linear, parameter_t
+   use vcor_numeric_least_squares, only : least_squares_t
+   use vcor_numeric_nnls, only : solve_nnls
+   implicit none
+   private
+
+   public :: law_problem_t, new_law_problem, stated_parameters, described, set_free, release
+   public :: unknowns_of, find_starts, has_two_shapes, nothing
+
+   !> Range of times beyond the data, as a factor, and of moduli
+   real(wp), parameter :: widest_time = 1.0e4_wp, widest_modulus = 1.0e6_wp
+   !> Range of times where it is asked what a parameter at its bound could be instead
+   real(wp), parameter :: widest_error = 1.0e8_wp
+   !> Range of an exponent
+   real(wp), parameter :: least_exponent = 1.0e-3_wp, most_exponent = 0.9999_wp
+   !> Part of its unit below which a modulus or rate counts as 0
+   real(wp), parameter :: nothing = 1.0e-7_wp
+   !> Part of its unit that stands for 0 where the misfit has to depend on the logarithm
+   real(wp), parameter :: little = 1.0e-3_wp
+   !> Step of the derivatives in the logarithm of a parameter: central differences are then good to
+   !> ten digits
+   real(wp), parameter :: step = 1.0e-5_wp
+
+   !> Times of the scan per decade, and how far they go beyond the data, as a factor
+   real(wp), parameter :: per_decade = 4.0_wp, beyond = 1.0e2_wp
+   !> Exponents of the scan
+   real(wp), parameter :: exponents(*) = [0.02_wp, 0.05_wp, 0.1_wp, 0.15_wp, 0.2_wp, 0.25_wp, &
+      0.3_wp, 0.35_wp, 0.4_wp, 0.45_wp, 0.5_wp, 0.55_wp, 0.6_wp, 0.65_wp, 0.7_wp, 0.75_wp, &
+      0.8_wp, 0.85_wp, 0.9_wp, 0.95_wp, 0.98_wp]
+   !> Most minima of the scan that are followed
+   integer, parameter :: most_starts = 6
+
+   !> The problem for MINPACK; its unknowns are the logarithms of the parameters that are free
+   type, extends(least_squares_t) :: law_problem_t
+      !> Name of the model
+      character(len=:), allocatable :: model
+      !> The samples
+      type(samples_t) :: samples
+      !> What the model states of its parameters, shape (parameters)
+      type(parameter_t), allocatable :: stated(:)
+      !> The parameters; those that are not free have their values, shape (parameters)
+      type(estimate_t), allocatable :: parameters(:)
+      !> What one that may be 0 is compared with: the least modulus, or the rate that is seen at the
+      !> last time; 0 where it may not be 0, shape (parameters)
+      real(wp), allocatable :: unit(:)
+      !> Numbers of those that are free, shape (n)
+      integer, allocatable :: free(:)
+      !> Range of times beyond the data, as a factor
+      real(wp) :: widest = widest_time
+   contains
+      procedure :: residuals
+      procedure :: jacobian
+   end type law_problem_t
+
+contains
+
+   !> What a model states of the numbers that a fit finds
+   pure function stated_parameters(model) result(stated)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Its parameters that are fitted, but for lists
+      type(parameter_t), allocatable :: stated(:)
+
+      type(parameter_t), allocatable :: all(:)
+
+      allocate (all, source=parameters_of(model))
+      allocate (stated, source=pack(all, all%fitted .and. .not. all%is_list))
+   end function stated_parameters
+
+   !> Make the problem of a model
+   subroutine new_law_problem(self, model, fixed, samples)
+      !> The problem
+      type(law_problem_t), intent(out) :: self
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Parameters that have a given value, shape (n)
+      type(estimate_t), intent(in) :: fixed(:)
+      !> The samples
+      type(samples_t), intent(in) :: samples
+
+      integer :: i
+
+      self%model = model
+      self%samples = samples
+      allocate (self%stated, source=stated_parameters(model))
+      allocate (self%parameters(size(self%stated)), self%unit(size(self%stated)))
+      self%parameters%name = self%stated%name
+      self%parameters%unit = self%stated%unit
+      where (self%stated%unit == '') self%parameters%unit = '1'
+      self%unit = 0.0_wp
+      where (self%stated%scale == linear) self%unit = 1.0_wp/samples%last_time()
+      where (self%stated%scale == linear .and. self%stated%unit == 'Pa') &
+         self%unit = minval(samples%modulus)
+      do i = 1, size(fixed)
+         where (self%parameters%name == fixed(i)%name)
+            self%parameters%value = fixed(i)%value
+            self%parameters%state = state_fixed
+         end where
+      end do
+      call set_free(self)
+   end subroutine new_law_problem
+
+   !> Note which parameters are free, and set their bounds
+   subroutine set_free(problem)
+      !> The problem
+      type(law_problem_t), intent(inout) :: problem
+
+      real(wp) :: shortest, longest, softest, hardest
+      integer :: i, k
+
+      problem%free = pack([(i, i=1, size(problem%parameters))], &
+         problem%parameters%state == state_free)
+      if (allocated(problem%lower)) deallocate (problem%lower, problem%upper)
+      allocate (problem%lower(size(problem%free)), problem%upper(size(problem%free)))
+      shortest = problem%samples%first_time()/problem%widest
+      longest = problem%samples%last_time()*problem%widest
+      softest = minval(problem%samples%modulus)/widest_modulus
+      hardest = maxval(problem%samples%modulus)*widest_modulus
+      do i = 1, size(problem%free)
+         k = problem%free(i)
+         associate (lower => problem%lower(i), upper => problem%upper(i))
+            select case (problem%stated(k)%unit)
+            case ('Pa')
+               lower = log(softest)
+               upper = log(hardest)
+            case ('Pa s^a')
+               ! C t^-a may have any C where a is any
+               lower = log(softest) + min(0.0_wp, log(shortest))
+               upper = log(hardest) + max(0.0_wp, log(longest))
+            case ('s', '1/s', 's^-1/2')
+               lower = log(min(value_of_time(problem%stated(k)%unit, shortest), &
+                  value_of_time(problem%stated(k)%unit, longest)))
+               upper = log(max(value_of_time(problem%stated(k)%unit, shortest), &
+                  value_of_time(problem%stated(k)%unit, longest)))
+            case default
+               lower = log(least_exponent)
+               upper = log(most_exponent)
+            end select
+            if (problem%unit(k) > 0.0_wp) lower = log(0.01_wp*nothing*problem%unit(k))
+         end associate
+      end do
+   end subroutine set_free
+
+   !> Value of a time, a rate or the root of a rate, by its unit
+   pure function value_of_time(unit, time) result(value)
+      !> s, 1/s or s^-1/2
+      character(len=*), intent(in) :: unit
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Value, in the unit
+      real(wp) :: value
+
+      value = time
+      if (unit /= 's') value = 1.0_wp/time
+      if (unit == 's^-1/2') value = sqrt(value)
+   end function value_of_time
+
+   !> Make what has come to its bound free again, and the bounds wider
+   subroutine release(problem)
+      !> The problem
+      type(law_problem_t), intent(inout) :: problem
+
+      where (problem%parameters%state == state_bound) problem%parameters%state = state_free
+      problem%widest = widest_error
+      call set_free(problem)
+   end subroutine release
+
+   !> Unknowns of the values of the parameters, within the bounds
+   pure function unknowns_of(problem) result(x)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Logarithms of the free parameters
+      real(wp) :: x(size(problem%free))
+
+      x = log(max(problem%parameters(problem%free)%value, little*problem%unit(problem%free)))
+      x = max(problem%lower, min(problem%upper, x))
+   end function unknowns_of
+
+   !> A model with parameters as the description of a material
+   pure function described(model, parameters) result(data)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Its parameters
+      type(estimate_t), intent(in) :: parameters(:)
+      !> The description
+      type(material_data_t) :: data
+
+      integer :: i
+
+      data%name = model
+      data%model = model
+      do i = 1, size(parameters)
+         call data%set(trim(parameters(i)%name), parameters(i)%value)
+      end do
+      ! the rubbery modulus does not exceed the glassy one
+      if (model == 'sls') call data%set('alpha', min(data%number('alpha'), data%number('beta')))
+   end function described
+
+   !> Residuals: logarithms of model over data
+   subroutine residuals(self, x, r)
+      !> The problem
+      class(law_problem_t), intent(in) :: self
+      !> Logarithms of the free parameters
+      real(wp), intent(in) :: x(:)
+      !> Residuals
+      real(wp), intent(out) :: r(:)
+
+      type(estimate_t) :: parameters(size(self%parameters))
+
+      parameters = self%parameters
+      parameters(self%free)%value = exp(x)
+      r = misfit(self%model, parameters, self%samples)
+   end subroutine residuals
+
+   !> Logarithms of model over data
+   function misfit(model, parameters, samples) result(r)
+      !> Name of the model
+      character(len=*), intent(in) :: model
+      !> Its parameters
+      type(estimate_t), intent(in) :: parameters(:)
+      !> The samples
+      type(samples_t), intent(in) :: samples
+      !> Logarithms
+      real(wp) :: r(samples%count())
+
+      !> What stands for a model that is nothing there
+      real(wp), parameter :: far_off = 1.0e3_wp
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+
+      call new_material(material, described(model, parameters), error)
+      if (allocated(error)) then
+         r = far_off
+      else
+         r = log(max(moduli_of(material, samples), tiny(1.0_wp))/samples%all())
+      end if
+   end function misfit
+
+   !> Derivatives of the residuals, by central differences
+   subroutine jacobian(self, x, j)
+      !> The problem
+      class(law_problem_t), intent(in) :: self
+      !> Logarithms of the free parameters
+      real(wp), intent(in) :: x(:)
+      !> Derivatives
+      real(wp), intent(out) :: j(:, :)
+
+      real(wp) :: up(size(x)), down(size(x)), r(size(j, 1))
+      integer :: i
+
+      do i = 1, size(x)
+         up = x
+         down = x
+         up(i) = min(x(i) + step, self%upper(i))
+         down(i) = max(x(i) - step, self%lower(i))
+         call self%residuals(up, j(:, i))
+         call self%residuals(down, r)
+         j(:, i) = (j(:, i) - r)/(up(i) - down(i))
+      end do
+   end subroutine jacobian
+
+   !> Starts of the iteration: the minima of a scan of all shapes, the lowest ones first
+   subroutine find_starts(problem, starts)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Values of all parameters, shape (parameters, starts)
+      real(wp), allocatable, intent(out) :: starts(:, :)
+
+      real(wp), allocatable :: times(:), powers(:), cost(:, :), values(:, :, :)
+      logical, allocatable :: lowest(:, :)
+      integer :: i, k, place(2)
+
+      allocate (times, source=times_of_scan(problem))
+      allocate (powers, source=powers_of_scan(problem))
+      allocate (cost(0:size(times) + 1, 0:size(powers) + 1), source=huge(1.0_wp))
+      allocate (values(size(problem%parameters), size(times), size(powers)))
+      do k = 1, size(powers)
+         do i = 1, size(times)
+            call scan_shape(problem, times(i), powers(k), values(:, i, k), cost(i, k))
+         end do
+      end do
+      allocate (lowest(size(times), size(powers)))
+      do k = 1, size(powers)
+         do i = 1, size(times)
+            lowest(i, k) = cost(i, k) < huge(1.0_wp) &
+               .and. cost(i, k) <= minval(cost(i - 1:i + 1, k - 1:k + 1))
+         end do
+      end do
+      allocate (starts(size(problem%parameters), min(most_starts, count(lowest))))
+      do i = 1, size(starts, 2)
+         place = minloc(cost(1:size(times), 1:size(powers)), mask=lowest)
+         lowest(place(1), place(2)) = .false.
+         starts(:, i) = values(:, place(1), place(2))
+      end do
+   end subroutine find_starts
+
+   !> Whether a parameter is the time of the shape, as a time or a rate
+   elemental function is_time(parameter) result(yes)
+      !> The parameter
+      type(parameter_t), intent(in) :: parameter
+      !> Whether it is
+      logical :: yes
+
+      yes = parameter%scale /= linear .and. any(parameter%unit == ['s     ', '1/s   ', 's^-1/2'])
+   end function is_time
+
+   !> Whether the shape of a model is a time and an exponent
+   pure function has_two_shapes(problem) result(yes)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Whether it is
+      logical :: yes
+
+      yes = any(is_time(problem%stated)) .and. any(problem%stated%unit == '')
+   end function has_two_shapes
+
+   !> Times of the scan; a time that is given, or that the model does not have, is the only one
+   pure function times_of_scan(problem) result(times)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Times [s]
+      real(wp), allocatable :: times(:)
+
+      real(wp) :: first, last
+      integer :: i, n
+
+      first = problem%samples%first_time()/beyond
+      last = problem%samples%last_time()*beyond
+      n = 1 + ceiling(per_decade*log10(last/first))
+      times = first*(last/first)**([(real(i, wp), i=0, n - 1)]/real(n - 1, wp))
+      if (.not. any(is_time(problem%stated))) times = [1.0_wp]
+      do i = 1, size(problem%parameters)
+         associate (parameter => problem%parameters(i))
+            if (parameter%state /= state_fixed .or. .not. is_time(problem%stated(i))) cycle
+            times = [parameter%value]
+            if (parameter%unit /= 's') times = 1.0_wp/times
+            if (parameter%unit == 's^-1/2') times = times**2
+         end associate
+      end do
+   end function times_of_scan
+
+   !> Exponents of the scan; one that is given, or that the model does not have, is the only one
+   pure function powers_of_scan(problem) result(powers)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Exponents
+      real(wp), allocatable :: powers(:)
+
+      integer :: i
+
+      powers = [1.0_wp]
+      do i = 1, size(problem%parameters)
+         if (problem%stated(i)%unit /= '') cycle
+         powers = exponents
+         if (problem%parameters(i)%state == state_fixed) powers = [problem%parameters(i)%value]
+      end do
+   end function powers_of_scan
+
+   !> The best moduli for one shape, and what is left then
+   subroutine scan_shape(problem, time, power, values, cost)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Time of the shape [s]
+      real(wp), intent(in) :: time
+      !> Exponent of the shape
+      real(wp), intent(in) :: power
+      !> Values of all parameters
+      real(wp), intent(out) :: values(:)
+      !> Sum of the squares of the residuals
+      real(wp), intent(out) :: cost
+
+      !> Part of the data that a modulus which is not needed starts from
+      real(wp), parameter :: little = 1.0e-3_wp
+      type(estimate_t) :: parameters(size(values))
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+      real(wp) :: a(problem%samples%count(), 2), b(problem%samples%count()), modulus(2)
+      integer :: i
+
+      cost = huge(cost)
+      values = 0.0_wp
+      call new_material(material, unit_shape(problem, time, power), error)
+      if (allocated(error)) return
+      a(:, 2) = moduli_of(material, problem%samples)/problem%samples%all()
+      a(:, 1) = 0.0_wp
+      a(:size(problem%samples%modulus), 1) = 1.0_wp/problem%samples%modulus
+      b = 1.0_wp
+      parameters = problem%parameters
+      if (problem%model == 'sls') then
+         call solve_nnls(a, b, modulus)
+      else
+         do i = 1, 2
+            if (parameters(i)%state /= state_fixed) cycle
+            b = b - parameters(i)%value*a(:, i)
+            a(:, i) = 0.0_wp
+         end do
+         call solve_nnls(a, b, modulus)
+      end if
+      modulus = max(modulus, little*minval(problem%samples%modulus))
+
+      do i = 1, size(parameters)
+         if (parameters(i)%state == state_fixed) cycle
+         select case (parameters(i)%name)
+         case ('equilibrium_modulus')
+            parameters(i)%value = modulus(1)
+         case ('relaxing_modulus', 'coefficient')
+            parameters(i)%value = modulus(2)
+         case ('glassy_modulus')
+            parameters(i)%value = sum(modulus)
+         case ('alpha')
+            parameters(i)%value = modulus(1)/sum(modulus)/time
+         case default
+            parameters(i)%value = power
+            if (is_time(problem%stated(i))) &
+               parameters(i)%value = value_of_time(problem%stated(i)%unit, time)
+         end select
+      end do
+      values = parameters%value
+      cost = sum(misfit(problem%model, parameters, problem%samples)**2)
+   end subroutine scan_shape
+
+   !> The shape of a model, without equilibrium modulus and with a relaxing modulus of 1 Pa
+   pure function unit_shape(problem, time, power) result(data)
+      !> The problem
+      type(law_problem_t), intent(in) :: problem
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Exponent
+      real(wp), intent(in) :: power
+      !> Description
+      type(material_data_t) :: data
+
+      integer :: i
+
+      data%name = problem%model
+      data%model = problem%model
+      do i = 1, size(problem%stated)
+         associate (stated => problem%stated(i))
+            if (stated%scale == linear) cycle
+            if (is_time(stated)) then
+               call data%set(trim(stated%name), value_of_time(stated%unit, time))
+            else
+               call data%set(trim(stated%name), merge(power, 1.0_wp, stated%unit == ''))
+            end if
+         end associate
+      end do
+   end function unit_shape
+
+end module vcor_fit_law_problem
