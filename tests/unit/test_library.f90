@@ -5,15 +5,15 @@ program test_library
    use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, &
       contact_modulus_t, contact_separated, contact_sticking, error_file, error_input, &
       error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, fit_t, &
-      history_table, impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, new_contact_law, &
-      new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, new_part, new_plate, &
-      new_power_law, new_prony, new_rigid, new_sls, new_solver, new_summary, new_sweep, &
-      new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, &
-      power_law_t, problem_of_case, problem_t, prony_t, quantities, read_case, read_case_text, &
-      read_data, samples_t, solve_impact, solve_points, solver_settings_t, solver_t, summary_t, &
-      summary_table, sweep_t, table_t, tabulated_t, trajectory_t, validate, version, &
-      waves_constant, waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, &
-      write_hdf5
+      history_table, impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, &
+      new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
+      new_part, new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, &
+      new_summary, new_sweep, new_tabulated, outcome_t, override, pair_eq1, pair_series, &
+      plate_t, power_law_t, problem_of_case, problem_t, prony_t, quantities, read_case, &
+      read_case_text, read_data, samples_t, solve_impact, solve_points, solver_settings_t, &
+      solver_t, summary_t, summary_table, sweep_t, table_t, tabulated_t, trajectory_t, &
+      validate, version, waves_constant, waves_frozen, waves_hereditary, waves_none, &
+      waves_relaxing, wp, write_csv, write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
 

@@ -5,11 +5,14 @@ program test_material
    use, intrinsic :: ieee_exceptions, only : ieee_get_halting_mode, ieee_invalid, ieee_set_flag, &
       ieee_set_halting_mode
    use vcor_error, only : error_input, error_t
+   use vcor_interval, only : is_within
    use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t, material_t, new_material
+   use vcor_material, only : material_data_t, material_t, model_parameters, models, new_material, &
+      parameters_of
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
+   use vcor_material_parameter, only : linear, parameter_t
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_legendre, only : gauss_nodes
@@ -47,6 +50,7 @@ program test_material
    call test_refusals()
    call test_not_a_number()
    call test_factory()
+   call test_statements()
    call finish()
 
 contains
@@ -533,6 +537,36 @@ contains
       call new_material(material, data, error)
       call refused(error, "an impossible SLS", "alpha <= beta")
       call check(.not. allocated(material), "bad parameters make no material")
+      call data%set('glasy_modulus', 1.0e6_wp)
+      call new_material(material, data, error)
+      call refused(error, "a parameter that no model has", "glasy_modulus")
    end subroutine test_factory
+
+   !> What the models state of their parameters
+   subroutine test_statements()
+      character(len=:), allocatable :: model
+      type(parameter_t) :: stated
+      integer :: first, last, i
+
+      first = 1
+      do while (first <= len(models))
+         last = first - 2 + index(models(first:)//' ', ' ')
+         model = models(first:last)
+         call check(size(parameters_of(model)) > 0, model//" states its parameters")
+         first = last + 2
+      end do
+      do i = 1, size(model_parameters)
+         stated = model_parameters(i)%parameter
+         model = trim(model_parameters(i)%model)//", "//trim(stated%name)
+         call check(index(" "//models//" ", " "//trim(model_parameters(i)%model)//" ") > 0, &
+            model//": the model is known")
+         call check(stated%meaning /= '', model//" has a meaning")
+         call check(stated%default == '' .or. .not. stated%required, &
+            model//" has a default or is required")
+         call check((stated%scale == linear) .eqv. (stated%fitted .and. &
+            is_within(stated%range, 0.0_wp) .and. stated%name /= 'beta'), &
+            model//" is linear where a fit may find 0")
+      end do
+   end subroutine test_statements
 
 end program test_material

@@ -5,8 +5,9 @@
 module vcor_io_column_plan
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t
-   use vcor_io_header, only : check_unit, header_t, longest_word, most_columns, role_complex, &
-      role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, role_tangent, &
+   use vcor_io_header, only : check_unit, header_t, known_roles => roles, longest_word, &
+      most_columns, name_of, role_complex, role_frequency, role_loss, role_none, &
+      role_of, role_relaxation, role_storage, role_tangent, &
       role_time
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, shortened
@@ -15,7 +16,7 @@ module vcor_io_column_plan
    implicit none
    private
 
-   public :: plan_t, reading_t, make_plan, name_of, columns_text
+   public :: plan_t, reading_t, make_plan, columns_text
 
    !> What the user says about the columns
    type :: reading_t
@@ -147,7 +148,7 @@ contains
                //"or --units")
             return
          end if
-         if (word == "") word = default_unit(plan%roles(i))
+         if (word == "") word = known_roles(plan%roles(i))%unit
          place = name
          if (header%lines > 0) place = name//":" &
             //integer_text(header%columns(plan%places(i))%line)
@@ -206,12 +207,12 @@ contains
                ! some other spelling of a complex modulus, or of a complex viscosity
                call raise(error, error_input, head//": found '" &
                   //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
-                  //"expected one such as "//example(plan%roles(i)))
+                  //"expected one such as "//trim(known_roles(plan%roles(i))%example))
             else if (roles(place) == role_none .and. units(place) == "" .and. .not. told) then
                ! its place alone says nothing, the logarithm of a modulus may stand there
                call raise(error, error_input, head//": found '" &
                   //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
-                  //"expected one such as "//example(plan%roles(i)) &
+                  //"expected one such as "//trim(known_roles(plan%roles(i))%example) &
                   //", a unit beside it, or --units")
             end if
          end associate
@@ -247,55 +248,6 @@ contains
             plan%places = [(i, i=1, size(roles))]
       end if
    end subroutine choose_columns
-
-   !> What a column holds, in words
-   pure function name_of(role, unit) result(name)
-      !> One of the `role_*` constants
-      integer, intent(in) :: role
-      !> Its unit
-      character(len=*), intent(in) :: unit
-      !> The name
-      character(len=:), allocatable :: name
-
-      select case (role)
-      case (role_time)
-         name = "time"
-      case (role_frequency)
-         name = "frequency"
-         if (index(unit, "rad") > 0) name = "angular frequency"
-      case (role_relaxation)
-         name = "relaxation modulus"
-      case (role_storage)
-         name = "storage modulus"
-      case (role_complex)
-         name = "complex modulus"
-      case (role_tangent)
-         name = "loss tangent"
-      case default
-         name = "loss modulus"
-      end select
-   end function name_of
-
-   !> Names of columns as an example
-   pure function example(role) result(text)
-      !> What the column holds
-      integer, intent(in) :: role
-      !> Some names
-      character(len=:), allocatable :: text
-
-      select case (role)
-      case (role_time)
-         text = "t or time"
-      case (role_frequency)
-         text = "f or omega"
-      case (role_relaxation)
-         text = "E or relaxation_modulus"
-      case (role_storage)
-         text = "E' or E_stor"
-      case default
-         text = "E'' or E_loss"
-      end select
-   end function example
 
    !> What is missing of storage and loss modulus where one of them is there
    pure function lacking(roles) result(text)
@@ -340,24 +292,5 @@ contains
       if (columns > header%count .and. columns <= 2*header%count) text = text//" (with decimal " &
          //"commas expected semicolons or tabs between them)"
    end function expected_of
-
-   !> Unit of the SI
-   pure function default_unit(role) result(unit)
-      !> What the column holds
-      integer, intent(in) :: role
-      !> The unit
-      character(len=5) :: unit
-
-      select case (role)
-      case (role_time)
-         unit = "s"
-      case (role_frequency)
-         unit = "rad/s"
-      case (role_tangent)
-         unit = "1"
-      case default
-         unit = "Pa"
-      end select
-   end function default_unit
 
 end module vcor_io_column_plan

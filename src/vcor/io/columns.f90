@@ -5,12 +5,15 @@
 !> and a byte-order mark is passed over. Numbers may have decimal commas where something else stands
 !> between the columns. A line `sep=;` counts as blank.
 module vcor_io_columns
-   use vcor_text, only : lower
+   use vcor_case_real, only : read_real
+   use vcor_kinds, only : wp
+   use vcor_material_table, only : largest_value, smallest_value
+   use vcor_text, only : lower, real_text
    implicit none
    private
 
    public :: lines_in, take_line, split, start_of, blanks, decimals_t, take_decimals
-   public :: mixed_decimals, not_a_text
+   public :: mixed_decimals, not_a_text, read_value
 
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
@@ -174,5 +177,34 @@ contains
          if (between /= ",;" .and. verify(content(last+1:), blanks) == 0) exit
       end do
    end subroutine split
+
+   !> Read a time, a frequency or a modulus
+   subroutine read_value(cell, what, size_of_unit, value, message)
+      !> What stands in the file
+      character(len=*), intent(in) :: cell
+      !> What it is, in words
+      character(len=*), intent(in) :: what
+      !> Its unit in that of the SI
+      real(wp), intent(in) :: size_of_unit
+      !> The number, in its unit, > 0
+      real(wp), intent(out) :: value
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+      character(len=:), allocatable :: expected
+
+      value = 0.0_wp
+      expected = "a "//what//" > 0"
+      if (what(1:1) == "a") expected = "an"//expected(2:)
+      call read_real(cell, expected, value, message)
+      if (allocated(message)) return
+      if (.not. value > 0.0_wp) then
+         message = "found "//real_text(value)//", expected "//expected
+      else if (.not. (value >= smallest_value/size_of_unit &
+         & .and. value <= largest_value/size_of_unit)) then
+         message = "found "//real_text(value)//", expected "//expected//", between " &
+            & //real_text(smallest_value)//" and "//real_text(largest_value) &
+            & //" in units of the SI"
+      end if
+   end subroutine read_value
 
 end module vcor_io_columns

@@ -6,16 +6,15 @@
 !> of other units, of shear moduli or of dynamic data is refused.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
-      & take_decimals, take_line
-   use vcor_io_column_plan, only : name_of
-   use vcor_io_header, only : check_unit, header_t, longest_word, note_comment, read_names, &
-      & role_none, role_of, role_relaxation, role_time
+   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
+      & split, start_of, take_decimals, take_line
+   use vcor_io_header, only : check_unit, header_t, longest_word, name_of, note_comment, &
+      & read_names, role_none, role_of, role_relaxation, role_time
    use vcor_io_path, only : join_path
-   use vcor_case_real, only : looks_numeric, read_real
+   use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
-   use vcor_material_table, only : largest_value, modulus_rounding, smallest_value
+   use vcor_material_table, only : modulus_rounding
    use vcor_case_case, only : case_t
    use vcor_text, only : has_control, integer_text, printable, real_text, shortened
    use vcor_io_units, only : unit_size
@@ -126,7 +125,10 @@ contains
          else if (before%commas .and. before%points) then
             message = mixed_decimals
          else if (columns == 2) then
-            call read_point(content, from, to, scale, points(:, n+1), message)
+            call read_value(content(from(1):to(1)), trim(names(1)), scale(1), points(1, n+1), &
+               & message)
+            if (.not. allocated(message)) call read_value(content(from(2):to(2)), &
+               & trim(names(2)), scale(2), points(2, n+1), message)
             if (.not. allocated(message) .and. n > 0) &
                & call compare(points(:, n), points(:, n+1), last_line, message)
          else
@@ -215,40 +217,6 @@ contains
          if (i == 2) text = "E or modulus"
       end function example
    end subroutine check_header
-
-   !> Read time and modulus
-   subroutine read_point(content, from, to, scale, point, message)
-      !> The line
-      character(len=*), intent(in) :: content
-      !> Where the columns begin
-      integer, intent(in) :: from(2)
-      !> Where they end
-      integer, intent(in) :: to(2)
-      !> Units of time and modulus [s], [Pa]
-      real(wp), intent(in) :: scale(2)
-      !> Time and modulus, in these units
-      real(wp), intent(out) :: point(2)
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-      character(len=:), allocatable :: expected
-      integer :: i
-
-      point = 0.0_wp
-      do i = 1, 2
-         expected = "a "//trim(names(i))//" > 0"
-         call read_real(content(from(i):to(i)), expected, point(i), message)
-         if (allocated(message)) return
-         if (.not. point(i) > 0.0_wp) then
-            message = "found "//real_text(point(i))//", expected "//expected
-         else if (.not. (point(i) >= smallest_value/scale(i) &
-            & .and. point(i) <= largest_value/scale(i))) then
-            message = "found "//real_text(point(i))//", expected "//expected//", between " &
-               & //real_text(smallest_value)//" and "//real_text(largest_value) &
-               & //" in units of the SI"
-         end if
-         if (allocated(message)) return
-      end do
-   end subroutine read_point
 
    !> Compare a point with the one before it
    pure subroutine compare(before, point, line, message)

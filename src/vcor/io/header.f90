@@ -13,7 +13,8 @@ module vcor_io_header
    implicit none
    private
 
-   public :: header_t, column_name_t, read_names, names_columns, read_units, note_comment, role_of
+   public :: header_t, column_name_t, roles, name_of, role_of, names_columns
+   public :: read_names, read_units, note_comment
    public :: check_unit
    public :: most_columns, longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
@@ -23,6 +24,8 @@ module vcor_io_header
    integer, parameter :: most_columns = 64
    !> Letters of the longest name or unit
    integer, parameter :: longest_word = 40
+   !> Unit of a pure number
+   character(len=*), parameter :: pure_number = "1"
    !> What a column holds: something else
    integer, parameter :: role_none = 0
    !> Times
@@ -40,23 +43,40 @@ module vcor_io_header
    !> Magnitudes of complex moduli, which give the storage moduli where there are none
    integer, parameter :: role_complex = 7
 
-   !> Names of columns; moduli that begin with g are shear moduli
-   character(len=*), parameter :: time_names = " t time times step_time "
-   character(len=*), parameter :: cycle_names = " f freq "
-   character(len=*), parameter :: angular_names = " omega w angular_frequency "//char(207) &
-      //char(137)//" "
-   character(len=*), parameter :: frequency_names = cycle_names//angular_names//"frequency nu "
-   character(len=*), parameter :: relaxation_names = " e g modulus relaxation_modulus e_relax " &
-      //"g_relax e_t g_t young_modulus young's_modulus shear_modulus relaxation "
-   character(len=*), parameter :: storage_names = " e' g' e_stor g_stor e_storage g_storage " &
-      //"storage storage_modulus e_prime g_prime "
-   character(len=*), parameter :: loss_names = " e'' g'' e"" g"" e_loss g_loss loss " &
-      //"loss_modulus e_double_prime g_double_prime "
-   character(len=*), parameter :: tangent_names = " loss_tangent loss_factor damping_factor "
-   character(len=*), parameter :: complex_names = " e* g* |e*| |g*| |e| |g| e_star g_star " &
-      //"complex_modulus complex_shear_modulus "
-   !> Unit of a pure number
-   character(len=*), parameter :: pure_number = "1"
+   !> What a column may hold
+   type :: role_t
+      !> In words
+      character(len=18) :: words = ""
+      !> Unit where nothing tells it
+      character(len=5) :: unit = ""
+      !> Known units, separated by blanks
+      character(len=len(frequency_units)) :: units = ""
+      !> Names of such a column, separated by blanks; moduli that begin with g are shear moduli
+      character(len=132) :: names = ""
+      !> Some of them, for messages
+      character(len=26) :: example = ""
+   end type role_t
+
+   character(len=*), parameter :: cycle_names = "f freq"
+   character(len=*), parameter :: angular_names = "omega w angular_frequency "//char(207)//char(137)
+   !> By the `role_*` constants
+   type(role_t), parameter :: roles(7) = [ &
+      role_t("time", "s", time_units, "t time times step_time", "t or time"), &
+      role_t("frequency", "rad/s", frequency_units, &
+      cycle_names//" "//angular_names//" frequency nu", "f or omega"), &
+      role_t("relaxation modulus", "Pa", modulus_units, &
+      "e g modulus relaxation_modulus e_relax g_relax e_t g_t young_modulus young's_modulus " &
+      //"shear_modulus relaxation", "E or relaxation_modulus"), &
+      role_t("storage modulus", "Pa", modulus_units, &
+      "e' g' e_stor g_stor e_storage g_storage storage storage_modulus e_prime g_prime", &
+      "E' or E_stor"), &
+      role_t("loss modulus", "Pa", modulus_units, &
+      "e'' g'' e"" g"" e_loss g_loss loss loss_modulus e_double_prime g_double_prime", &
+      "E'' or E_loss"), &
+      role_t("loss tangent", pure_number, pure_number, &
+      "loss_tangent loss_factor damping_factor", "tan_delta"), &
+      role_t("complex modulus", "Pa", modulus_units, &
+      "e* g* |e*| |g*| |e| |g| e_star g_star complex_modulus complex_shear_modulus", "|E*|")]
 
    !> One column
    type :: column_name_t
@@ -317,15 +337,13 @@ contains
       !> Its unit; blank where nothing tells it
       character(len=longest_word), intent(out) :: unit
 
+      integer :: i
+
       unit = usual_unit(column%unit)
       role = role_none
-      if (contains_word(time_names, column%name)) role = role_time
-      if (contains_word(frequency_names, column%name)) role = role_frequency
-      if (contains_word(relaxation_names, column%name)) role = role_relaxation
-      if (contains_word(storage_names, column%name)) role = role_storage
-      if (contains_word(loss_names, column%name)) role = role_loss
-      if (contains_word(tangent_names, column%name)) role = role_tangent
-      if (contains_word(complex_names, column%name)) role = role_complex
+      do i = 1, size(roles)
+         if (contains_word(roles(i)%names, column%name)) role = i
+      end do
       shear = (role >= role_relaxation .or. contains_word(modulus_units, unit)) &
          .and. role /= role_tangent .and. names_shear(column%name)
       if (unit == "" .and. contains_word(cycle_names, column%name)) unit = "Hz"
@@ -334,6 +352,19 @@ contains
       if (contains_word(time_units, unit)) role = role_time
       if (contains_word(frequency_units, unit)) role = role_frequency
    end subroutine role_of
+
+   !> What a column holds, in words
+   pure function name_of(role, unit) result(name)
+      !> One of the `role_*` constants but `role_none`
+      integer, intent(in) :: role
+      !> Its unit
+      character(len=*), intent(in) :: unit
+      !> The name
+      character(len=:), allocatable :: name
+
+      name = trim(roles(role)%words)
+      if (role == role_frequency .and. index(unit, "rad") > 0) name = "angular frequency"
+   end function name_of
 
    !> Whether a name speaks of shear: G, Gt, G0, G', |G*|, or a word that begins with shear (Schub)
    pure function names_shear(name) result(yes)
@@ -374,21 +405,10 @@ contains
 
       character(len=:), allocatable :: known, near, what
 
-      select case (role)
-      case (role_time)
-         known = time_units
-         what = "time"
-      case (role_frequency)
-         known = frequency_units
-         what = "frequency"
-      case (role_tangent)
-         known = pure_number
-         what = "loss tangent"
-      case default
-         known = modulus_units
-         what = "modulus"
-      end select
+      known = trim(roles(role)%units)
       if (contains_word(known, unit)) return
+      what = trim(roles(role)%words)
+      if (index(what, "modulus") > 0) what = "modulus"
       near = nearest_unit(unit, known)
       if (near /= "") near = "; did you mean '"//near//"'?"
       call raise(error, error_input, place//": found '"//shortened(trim(unit))//"' as unit of " &

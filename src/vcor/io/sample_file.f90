@@ -7,16 +7,15 @@
 !> are those of the SI. What is read becomes tensile moduli in SI units, in rising order.
 module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_io_column_plan, only : columns_text, make_plan, name_of, plan_t, reading_t
-   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
-      take_decimals, take_line
-   use vcor_io_header, only : header_t, most_columns, names_columns, note_comment, read_names, &
-      read_units, role_complex, role_frequency, role_tangent
-   use vcor_case_real, only : looks_numeric, read_real
+   use vcor_io_column_plan, only : columns_text, make_plan, plan_t, reading_t
+   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
+      split, start_of, take_decimals, take_line
+   use vcor_io_header, only : header_t, most_columns, name_of, names_columns, note_comment, &
+      read_names, read_units, role_complex, role_frequency, role_tangent
+   use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
-   use vcor_material_table, only : largest_value, smallest_value
    use vcor_text, only : has_control, integer_text, printable, real_text
    use vcor_io_units, only : unit_size
    implicit none
@@ -175,7 +174,13 @@ contains
             message = "found "//columns_text(columns)//", expected " &
                //integer_text(plan%columns)//" as before"
          else
-            call read_point(content, from, to, plan, points(:, n + 1), message)
+            points(:, n + 1) = 0.0_wp
+            do i = 1, size(plan%places)
+               if (allocated(message)) exit
+               call read_value(content(from(plan%places(i)):to(plan%places(i))), &
+                  name_of(plan%roles(i), plan%units(i)), unit_size(trim(plan%units(i))), &
+                  points(i, n + 1), message)
+            end do
             if (.not. allocated(message) .and. n > 0) then
                ! instruments sweep frequencies in either direction
                if (n == 1) falls = plan%roles(1) == role_frequency &
@@ -242,45 +247,5 @@ contains
       text = content
       if (content == "" .and. index(comment, "#") == 1) text = comment(2:)
    end function names_in
-
-   !> Read one point
-   subroutine read_point(content, from, to, plan, point, message)
-      !> The line
-      character(len=*), intent(in) :: content
-      !> Where the columns begin
-      integer, intent(in) :: from(:)
-      !> Where they end
-      integer, intent(in) :: to(:)
-      !> What is read
-      type(plan_t), intent(in) :: plan
-      !> The point, shape (2 or 3 of 3)
-      real(wp), intent(out) :: point(:)
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-
-      character(len=:), allocatable :: expected
-      real(wp) :: size_of_unit
-      integer :: i
-
-      point = 0.0_wp
-      do i = 1, size(plan%places)
-         expected = "a "//name_of(plan%roles(i), plan%units(i))//" > 0"
-         if (expected(3:3) == "a") expected = "an"//expected(2:)
-         associate (first => from(plan%places(i)), last => to(plan%places(i)))
-            call read_real(content(first:last), expected, point(i), message)
-         end associate
-         if (allocated(message)) return
-         size_of_unit = unit_size(trim(plan%units(i)))
-         if (.not. point(i) > 0.0_wp) then
-            message = "found "//real_text(point(i))//", expected "//expected
-         else if (.not. (point(i) >= smallest_value/size_of_unit &
-            .and. point(i) <= largest_value/size_of_unit)) then
-            message = "found "//real_text(point(i))//", expected "//expected//", between " &
-               //real_text(smallest_value)//" and "//real_text(largest_value) &
-               //" in units of the SI"
-         end if
-         if (allocated(message)) return
-      end do
-   end subroutine read_point
 
 end module vcor_io_sample_file
