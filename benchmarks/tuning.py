@@ -23,7 +23,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 TUNING = "src/vcor/solver/ive/tuning.f90"
-CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?$", re.MULTILINE)
+CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
+                      re.MULTILINE)
 SETS = {"practical": 1.0e-11, "random": 1.0e-12, "designed": 3.0e-12}
 COLUMNS = ("cor cor_sphere contact_time max_indentation max_force residual_indentation "
            "hysteresis_energy wave_energy cor_error cor_sphere_error status").split()
@@ -67,7 +68,7 @@ contains
 
 def constants(text):
     """Names, kinds and values of the constants."""
-    return [(name, kind, float(value)) for kind, name, value, _ in CONSTANT.findall(text)]
+    return [(name, kind, float(value)) for kind, name, value, *_ in CONSTANT.findall(text)]
 
 
 def build(folder):

@@ -5,8 +5,8 @@ module vcor_solver_ive_collocator
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
    use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
-   use vcor_solver_ive_tuning, only : companion_tolerance, landing_tolerance, least_tolerance, &
-      most_steps, newton_tolerance
+   use vcor_solver_ive_tuning, only : companion_tolerance, least_tolerance, most_steps, &
+      newton_tolerance
    implicit none
    private
 
@@ -32,9 +32,6 @@ module vcor_solver_ive_collocator
       real(wp) :: second_coefficient = 0.0_wp
       !> Error that Newton's method may leave in the indentation, over its largest value
       real(wp) :: tolerance = 0.0_wp
-      !> The same at the end of a panel that is solved with the Jacobian of another one, where the
-      !> error falls slowly
-      real(wp) :: near_tolerance = 0.0_wp
       !> The same for the companion, whose difference to the solution is wanted to two digits only
       real(wp) :: coarse_tolerance = 0.0_wp
    contains
@@ -57,7 +54,6 @@ contains
       integer :: i, j
 
       self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
-      self%near_tolerance = max(least_tolerance, landing_tolerance*accuracy)
       self%coarse_tolerance = max(least_tolerance, companion_tolerance*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return

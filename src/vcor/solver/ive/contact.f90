@@ -30,9 +30,9 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, first_growth_fast, &
       first_growth_slow, first_longest, first_receding, first_receding_growth, first_short, &
       first_slow, first_three, force_share, frozen_first, inner_allowed, inner_felt, levels_base, &
-      levels_error, most_ahead, most_steps, next_to_branch, panel_share, &
-      peak_share, rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
-      share_of_growth, tolerable, usual_accuracy, usually_better
+      levels_error, most_ahead, most_steps, next_to_branch, panel_share, peak_share, &
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, share_of_growth, &
+      tolerable, usual_accuracy, usually_better
    implicit none
    private
 

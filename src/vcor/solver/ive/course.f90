@@ -6,8 +6,8 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_ive_tuning, only : best_time, few_panels, finer, immense, longest_growth, &
-      panel_share, time_share, time_share_power, usual_accuracy
+   use vcor_solver_ive_tuning, only : best_time, few_panels, longest_growth, solution_share, &
+      time_share, time_share_continuous, time_share_power, time_share_receding, usual_accuracy
    implicit none
    private
 
@@ -103,9 +103,10 @@ contains
       !> Tolerance [-]
       real(wp) :: tolerance
 
-      tolerance = self%accuracy
+      tolerance = time_share_continuous*self%accuracy
       if (.not. self%problem%modes%contact%error > 0.0_wp) tolerance = time_share*self%accuracy &
          *min(1.0_wp, (usual_accuracy/self%accuracy)**time_share_power)
+      if (associated(self%problem%approach)) tolerance = time_share_receding*tolerance
       tolerance = max(tolerance, best_time)
    end function time_tolerance
 
@@ -117,6 +118,8 @@ contains
       real(wp), intent(in) :: allowed
       !> Ratio
       real(wp) :: share
+
+      real(wp), parameter :: immense = 1.0e30_wp
 
       share = 0.0_wp
       if (actual > 0.0_wp) share = immense
@@ -132,7 +135,7 @@ contains
       !> Share
       real(wp) :: share
 
-      share = merge(1.0_wp, finer, panels <= few_panels)
+      share = merge(1.0_wp, solution_share, panels <= few_panels)
    end function share_of_difference
 
 end module vcor_solver_ive_course

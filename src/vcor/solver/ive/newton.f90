@@ -7,9 +7,8 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_ive_tuning, only : farthest_closing, farthest_contact, farthest_rebound, &
-      most_near_iterations, newton_close, newton_slow, newton_wildest, noticeable_time, &
-      shortest_panel, slowest_near
+   use vcor_solver_ive_tuning, only : farthest_closing, farthest_rebound, newton_close, &
+      newton_wildest, noticeable_time, shortest_panel, slowest_contraction
    implicit none
    private
 
@@ -54,7 +53,7 @@ contains
             panel%indentation(1:) = problem%impact%velocity*time
          else
             panel%indentation(1:) = &
-               rule%extend(previous%indentation, min(previous%theta(time), farthest_contact))
+               rule%extend(previous%indentation, previous%theta(time))
          end if
       end associate
    end subroutine guess
@@ -142,7 +141,7 @@ contains
       else
          rate = min(1.0_wp, size/self%last)
          left = size*rate/(1.0_wp - 0.5_wp*rate)
-         self%stale = rate > newton_slow
+         self%stale = rate > slowest_contraction
       end if
       self%converged = left <= problem%tolerance &
          .or. size <= problem%noise .and. .not. size < 0.5_wp*self%last
@@ -178,7 +177,7 @@ contains
       coarse = rule%stages < problem%collocator%rule%stages
       call problem%set_up(rule, step, start, panel, equations)
       last = 0.0_wp
-      do iteration = 1, most_near_iterations
+      do iteration = 1, most_iterations
          call problem%evaluate(equations, panel)
          change = equations%right - equations%x - product_with_m(equations, equations%f)
          if (equations%closes) change(rule%stages) = 0.0_wp
@@ -193,7 +192,7 @@ contains
          call problem%move(equations, change, panel)
          if (iteration > 1) then
             contraction = size/last
-            if (.not. contraction <= slowest_near) return
+            if (.not. contraction <= slowest_contraction) return
             rest = abs(change(rule%stages))
             if (equations%closes) rest = size
             panel%converged = rest*contraction <= tolerance*unit

@@ -37,7 +37,7 @@ module vcor_solver_ive_problem
    use vcor_solver_ive_modes, only : advance_lags, modes_t, resolve
    use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_ive_tuning, only : rebound_tolerance, rounding_of_condition
+   use vcor_solver_ive_tuning, only : rounding_of_condition
    implicit none
    private
 
@@ -549,7 +549,7 @@ contains
       start%t1 = start%time
       self%largest_condition = start%condition
       self%noise = rounding_of_condition
-      self%tolerance = rebound_tolerance*self%collocator%coarse_tolerance
+      self%tolerance = self%collocator%coarse_tolerance
    end subroutine turn_round
 
    !> Set up the second term of the Volterra series, for which the matrices of the modes are formed

@@ -19,10 +19,11 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       cut_most, end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, &
-      end_slow, enough_closings, expected_rebound, farthest_rebound, fast, finer, first_rate, &
+      end_slow, enough_closings, expected_rebound, farthest_rebound, fast, first_rate, &
       largest_share, margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, &
       rebound_growth, rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, &
-      slowest_fall, smallest_share, tolerable, tolerable_end, unreliable_kernel, usual_accuracy
+      slowest_fall, smallest_share, solution_share, tolerable, tolerable_end, unreliable_kernel, &
+      usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
    private
@@ -243,9 +244,9 @@ contains
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
-         self%error = finer*(impulse_error/impact%mass &
+         self%error = solution_share*(impulse_error/impact%mass &
             + abs(panel%indentation(n) - coarse%indentation(n - 1))/self%start%t1)/impact%velocity
-         self%error(1) = self%error(1) + finer*(impulse_error*alpha_rate &
+         self%error(1) = self%error(1) + solution_share*(impulse_error*alpha_rate &
             + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          time_error = 0.0_wp
          if (self%ends) then
