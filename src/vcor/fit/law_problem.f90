@@ -140,11 +140,15 @@ contains
                ! C t^-a may have any C where a is any
                lower = log(softest) + min(0.0_wp, log(shortest))
                upper = log(hardest) + max(0.0_wp, log(longest))
-            case ('s', '1/s', 's^-1/2')
-               lower = log(min(value_of_time(problem%stated(k)%unit, shortest), &
-                  value_of_time(problem%stated(k)%unit, longest)))
-               upper = log(max(value_of_time(problem%stated(k)%unit, shortest), &
-                  value_of_time(problem%stated(k)%unit, longest)))
+            case ('s')
+               lower = log(shortest)
+               upper = log(longest)
+            case ('1/s')
+               lower = -log(longest)
+               upper = -log(shortest)
+            case ('s^-1/2')
+               lower = -0.5_wp*log(longest)
+               upper = -0.5_wp*log(shortest)
             case default
                lower = log(least_exponent)
                upper = log(most_exponent)
