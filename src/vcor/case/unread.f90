@@ -146,14 +146,10 @@ contains
             reason = why_material_is_unread(case, item)
             if (reason == '' .and. case%model(group, item) == 'rigid') &
                reason = 'a rigid body does not deform'
-         case ('material.name', 'material.model', 'material.modulus', 'material.glassy_modulus', &
-            'material.alpha', 'material.beta', 'material.equilibrium_modulus', 'material.moduli', &
-            'material.rates', 'material.times', 'material.viscosity', 'material.coefficient', &
-            'material.exponent', 'material.relaxing_modulus', 'material.time', 'material.file', &
-            'material.time_unit', 'material.modulus_unit')
-            reason = why_material_is_unread(case, item)
          case default
+            ! what stands in a model's own file is a parameter of its modulus
             reason = 'nothing depends on it'
+            if (groups(group)%name == 'material') reason = why_material_is_unread(case, item)
          end select
       end associate
    end function why_unread
