@@ -34,8 +34,8 @@ module vcor_io_hdf5
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
    use vcor_io_seal, only : seal_of
-   use vcor_io_table, only : check_table, column_t, integer_column, real_column, row_count, &
-      table_t, text_column, text_value
+   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
+      text_column, text_value
    use vcor_kinds, only : wp
    implicit none
    private
@@ -112,7 +112,7 @@ contains
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         call begin_file(writer, size(table%columns)*row_count(table))
+         call begin_file(writer, bytes_of(table))
          call put_text(writer, writer%file, 'program', 'vcor')
          call put_text(writer, writer%file, 'version', table%version)
          call put_text(writer, writer%file, 'title', table%title)
@@ -141,20 +141,17 @@ contains
    end subroutine write_hdf5
 
    !> Begin a file in memory, with the property lists and the type that all its objects share
-   subroutine begin_file(writer, numbers)
+   subroutine begin_file(writer, growth)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
-      !> About how many numbers the file will have
-      integer, intent(in) :: numbers
+      !> Bytes by which the file grows in memory
+      integer(size_t), intent(in) :: growth
 
       ! HDF5 wants a name for a file in memory too and reads what has that name: nothing can
       character(len=*), parameter :: no_path = '/dev/null/vcor.h5'
-      integer(size_t) :: growth
       integer(hid_t) :: access, creation
       integer :: ignored, order, status(15)
 
-      ! bytes by which the file grows in memory, where it moves: a thirtieth of its length
-      growth = 65536_size_t + int(numbers, size_t)/4_size_t
       order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
       allocate (writer%left_out(2, 0))
       call h5pcreate_f(h5p_file_create_f, creation, status(1))
@@ -177,6 +174,33 @@ contains
       call h5pclose_f(creation, ignored)
       call h5pclose_f(access, ignored)
    end subroutine begin_file
+
+   !> Room that a table takes in a file, somewhat more: a file that grows in small steps moves in
+   !> memory, and what it leaves behind is a fifth of the memory of a large sweep
+   pure function bytes_of(table) result(bytes)
+      !> The table
+      type(table_t), intent(in) :: table
+      !> Number of bytes
+      integer(size_t) :: bytes
+
+      integer :: i
+
+      bytes = 65536_size_t + 8_size_t*sum(int(table%dimensions%length, size_t))
+      do i = 1, size(table%columns)
+         associate (column => table%columns(i))
+            select case (column%kind)
+            case (real_column)
+               bytes = bytes + 8_size_t*column%length
+            case (integer_column)
+               bytes = bytes + 4_size_t*column%length
+            case default
+               if (.not. is_uniform(column)) &
+                  bytes = bytes + int(column%width + 40, size_t)*column%length
+            end select
+         end associate
+      end do
+      bytes = bytes + bytes/50_size_t
+   end function bytes_of
 
    !> Write a table as a group
    subroutine put_table(writer, table, changing)
