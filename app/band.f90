@@ -10,7 +10,7 @@ module vcor_app_band
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
    use vcor_study_reliance, only : find_reliance, reliance_t
-   use vcor_sweep_quantity, only : quantities
+   use vcor_sweep_quantity, only : quantity_place
    use vcor_sweep_summary, only : summary_t
    use vcor_text, only : printable
    implicit none
@@ -55,12 +55,12 @@ contains
 
       if (.not. (job%case%given('material', 'valid_from', item) &
          .or. job%case%given('material', 'valid_to', item))) return
-      time = place_of('contact_time')
+      time = quantity_place('contact_time')
       allocate (known(size(summary%status)))
       known = summary%status == contact_separated
       if (.not. any(known)) return
-      points = [minloc(summary%values(time)%at, dim=1, mask=known), &
-         maxloc(summary%values(time)%at, dim=1, mask=known)]
+      points = [minloc(summary%values(time)%reals, dim=1, mask=known), &
+         maxloc(summary%values(time)%reals, dim=1, mask=known)]
       worst_point = 0
       do i = 1, merge(1, 2, points(1) == points(2))
          case = job%case
@@ -70,7 +70,7 @@ contains
             end associate
             if (allocated(error)) return
          end do
-         call find_reliance(reliance, case, item, summary%values(time)%at(points(i)))
+         call find_reliance(reliance, case, item, summary%values(time)%reals(points(i)))
          if (.not. reliance%leans) cycle
          if (worst_point > 0) then
             if (change(reliance) <= change(worst)) cycle
@@ -80,7 +80,7 @@ contains
       end do
       unseen = 0
       if (worst_point > 0 .and. worst%ends(1)) &
-         unseen = count(known .and. summary%values(time)%at <= worst%band(1))
+         unseen = count(known .and. summary%values(time)%reals <= worst%band(1))
       if (worst_point > 0) write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
          //message(worst, worst_point)
 
@@ -115,8 +115,8 @@ contains
          if (job%sweep%is_grid() .and. unseen > 0) lead = integer_text(unseen)//' of ' &
             //integer_text(size(known))//" contacts lie wholly before the data of '" &
             //printable(name)//"'; where cor changes most "
-         associate (contact_time => summary%values(time)%at(point), &
-                    cor => summary%values(place_of('cor'))%at(point))
+         associate (contact_time => summary%values(time)%reals(point), &
+                    cor => summary%values(quantity_place('cor'))%reals(point))
             text = lead//'the contact lasts '//short(contact_time)//' s'//place//', and ' &
                //share_outside(found%band, found%ends, contact_time)//" the data of '" &
                //printable(name)//"' ("
@@ -181,16 +181,5 @@ contains
       if (text(1:1) == '.') text = '0'//text
       text = text//' %'
    end function percent
-
-   !> Place of a quantity in a summary
-   pure function place_of(name) result(place)
-      !> Name of the quantity
-      character(len=*), intent(in) :: name
-      integer :: place
-
-      do place = 1, size(quantities)
-         if (quantities(place)%name == name) return
-      end do
-   end function place_of
 
 end module vcor_app_band

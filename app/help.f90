@@ -221,9 +221,7 @@ contains
       character(len=:), allocatable :: lines
       integer :: i
 
-      text = lines_of(quantities)
-      if (is_wanted("steps")) text = text//item("   steps", "number of time steps")
-      if (is_wanted("status")) text = text//item("   status", "how the contact ended")
+      text = lines_of(quantities())
       if (text /= "") text = "Columns of STEM_summary.csv and names for --print:"//nl//text
 
       lines = ""
@@ -264,13 +262,15 @@ contains
          !> A line for each
          character(len=:), allocatable :: lines
 
+         character(len=:), allocatable :: unit
          integer :: k
 
          lines = ""
          do k = 1, size(list)
-            if (is_wanted(list(k)%name) .or. is_wanted(list(k)%symbol)) lines = lines &
-               //item("   "//list(k)%name, trim(list(k)%meaning)//" ["//trim(list(k)%unit) &
-               //"], symbol "//list(k)%symbol)
+            unit = ""
+            if (list(k)%symbol /= "") unit = " ["//trim(list(k)%unit)//"], symbol "//list(k)%symbol
+            if (is_wanted(list(k)%name) .or. (unit /= "" .and. is_wanted(list(k)%symbol))) &
+               lines = lines//item("   "//list(k)%name, trim(list(k)%meaning)//unit)
          end do
       end function lines_of
 

@@ -55,10 +55,7 @@ contains
       end do
       text = text//array("groups", words)//","//nl
 
-      words = columns(quantities)
-      call add(words, column_object(quantity_t("steps", "", "1", "number of time steps")))
-      call add(words, column_object(quantity_t("status", "", "", "how the contact ended")))
-      text = text//array("summary", words)//","//nl
+      text = text//array("summary", columns(quantities()))//","//nl
       text = text//array("history", columns(history_quantities))//","//nl
 
       words = ""

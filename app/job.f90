@@ -22,7 +22,7 @@ module vcor_app_job
    implicit none
    private
 
-   public :: job_t, prepare, directory_of, endings, material_endings, shard_text
+   public :: job_t, prepare, name_files, directory_of, endings, material_endings, shard_text
 
    !> Letters of the longest ending
    integer, parameter :: longest_ending = 24

@@ -18,7 +18,8 @@ module vcor_app_run
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_sweep_mpi, only : share_error, this_rank
-   use vcor_sweep_summary, only : new_summary, row_of, summary_t
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_quantity, only : values_of
    use vcor_sweep_sweep, only : solve_point, worker_t
    implicit none
    private
@@ -63,13 +64,13 @@ contains
 
       identity = identity_of(job%case, job%part)
       call look_back(job, identity, previous)
-      call heed(request, previous, is_finished, error)
+      call heed(request, job, previous, is_finished, error)
       if (allocated(error) .or. is_finished) return
 
       call new_summary(summary, 1, error)
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
-      call summary%put(1, row_of(outcome))
+      call summary%put(1, values_of(outcome))
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
          ! there is no course that could be written

@@ -5,7 +5,8 @@ module vcor_app_screen
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
-   use vcor_sweep_quantity, only : quantities, quantity_value, status_name
+   use vcor_sweep_quantity, only : quantities, quantity_place, quantity_t, &
+      quantity_value, status_name
    use vcor_version, only : version
    implicit none
    private
@@ -37,21 +38,21 @@ contains
       !> Text of several lines
       character(len=:), allocatable :: text
 
-      integer :: i, j
+      type(quantity_t), allocatable :: columns(:)
+      integer :: i
 
+      allocate (columns, source=quantities())
       text = heading(filename, title)
       if (outcome%status /= contact_separated) then
          text = text//'  the bodies are in contact still at '//short(time)//' s ('//method//', ' &
             //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
       else
          do i = 1, size(shown)
-            do j = 1, size(quantities)
-               if (quantities(j)%name == shown(i)) text = text//line( &
-                  '  '//quantities(j)%meaning, 50, quantities(j)%symbol, &
-                  shown_value(quantities(j)%name, j), &
-                  merge('        ', quantities(j)%unit, quantities(j)%unit == '1'), &
-                  remark(quantities(j)%name))
-            end do
+            associate (quantity => columns(quantity_place(shown(i))))
+               text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
+                  shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &
+                  remark(shown(i)))
+            end associate
          end do
          text = text//nl//budget(outcome)//nl//'  '//method//', ' &
             //integer_text(outcome%steps)//' steps'//nl
@@ -61,14 +62,12 @@ contains
    contains
 
       !> A number of the table, 0 where only rounding is left of it
-      function shown_value(name, j) result(value)
+      function shown_value(name) result(value)
          !> Name of the quantity
          character(len=*), intent(in) :: name
-         !> Its place in `quantities`
-         integer, intent(in) :: j
          real(wp) :: value
 
-         value = quantity_value(outcome, j)
+         value = quantity_value(outcome, name)
          if (name == 'residual_indentation') value = visible(value, outcome%max_indentation)
          if (name == 'residual_ratio') value = visible(value, 1.0_wp)
       end function shown_value

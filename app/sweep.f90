@@ -7,17 +7,15 @@ module vcor_app_sweep
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : threads_of, write_files, write_numbers
    use vcor_app_job, only : directory_of, job_t, shard_text
-   use vcor_app_previous, only : heed, look_back, previous_t, refuse_unfinished, remark, &
-      replaced
+   use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, inexact, shard_report, sweep_report
    use vcor_app_watch, only : clock, watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : trajectory_t
-   use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint
-   use vcor_io_checkpoint_points, only : read_points, read_results
+   use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint, read_points, read_results
    use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout
-   use vcor_io_identity, only : identity_of, identity_t, number_of
+   use vcor_io_identity, only : identity_of, number_of
    use vcor_text, only : integer_text
    use vcor_io_path, only : anything_at, make_directory, quoted_path
    use vcor_io_results, only : summary_table
@@ -77,7 +75,6 @@ contains
          if (.not. allocated(error)) call finish(request, job, watch, previous, summary, failures, &
             stopped, error)
          call watch%file%close()
-         call watch%old%close()
       end if
       call share_error(error)
       call release_signals()
@@ -107,30 +104,27 @@ contains
       if (watch%keeps) is_unfinished = anything_at(watch%path)
       call look_back(job, watch%identity, previous)
       call need_memory(job, threads_of(request), error)
-      if (allocated(error)) return
-      call new_summary(summary, job%part%count(), error)
-      if (allocated(error)) return
-      if (.not. is_unfinished) then
+      if (.not. allocated(error)) call new_summary(summary, job%part%count(), error)
+      if (.not. (allocated(error) .or. is_unfinished)) then
          if (request%resume .and. request%shards > 0) &
             call look_into_shard(previous, watch, summary, is_unfinished, error)
          if (.not. (is_unfinished .or. allocated(error))) &
-            call heed(request, previous, is_finished, error)
-         if (allocated(error) .or. is_finished) return
+            call heed(request, job, previous, is_finished, error)
       end if
-      if (is_unfinished .and. request%resume) then
-         call open_checkpoint(watch%file, watch%path, watch%identity, summary, error)
+      if (allocated(error) .or. is_finished) return
+      if (is_unfinished) then
+         call open_checkpoint(watch%file, watch%path, watch%identity, summary, error, &
+            anew=.not. request%resume)
       else if (request%resume .and. previous%has_hdf5) then
-         ! the text is missing: all points are there
+         ! the text is missing, or not all of it is there: all points are
          call read_results(previous%path, summary, error)
-      else if (is_unfinished) then
-         call refuse_unfinished(watch%path, watch%identity, watch%old, error)
-         if (.not. allocated(error)) call remark(quoted_path(watch%path) &
-            //' is given up, the sweep begins anew (--resume would go on with it)')
       else if (watch%keeps) then
          ! better now than after hours
          call make_directory(directory_of(job), error)
       end if
       if (allocated(error)) return
+      if (is_unfinished .and. .not. request%resume) call remark(quoted_path(watch%path) &
+         //' is given up, the sweep begins anew (--resume would go on with it)')
       ! files do not hold why a point has no result: it is solved again, to the same bits
       where (summary%status == point_invalid .or. summary%status == point_failed) &
          summary%status = point_pending
@@ -178,11 +172,9 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(identity_t) :: found
-
       is_unfinished = .false.
       if (.not. previous%exist .or. allocated(previous%objection)) return
-      call read_points(previous%path, found, summary, error, watch%identity)
+      call read_points(previous%path, watch%identity, summary, error)
       if (allocated(error)) return
       is_unfinished = any(summary%status == point_pending)
       if (is_unfinished) call move_file(previous%path, watch%path, error)
@@ -213,7 +205,7 @@ contains
       is_shard = request%shards > 0
       if (watch%keeps .and. .not. watch%file%is_open() .and. (is_shard .or. stopped /= 0)) then
          call create_checkpoint(watch%file, watch%path, watch%identity, watch%grid, summary, &
-            error, watch%old)
+            error)
          if (allocated(error)) return
       end if
       if (stopped /= 0) then
@@ -263,10 +255,9 @@ contains
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
-         call watch%old%remove()
          if (size(request%names) > 0) then
             call write_numbers(request, table, error)
-            if (failures%inexact > 0 .and. .not. request%quiet) &
+            if (failures%inexact%count > 0 .and. .not. request%quiet) &
                call remark(job%case%source//': '//inexact(job, failures))
          else if (.not. request%quiet) then
             call write_stdout(sweep_report(job, identity%title, table, failures, files), error)

@@ -8,7 +8,7 @@ module vcor_app_sweep_screen
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
-   use vcor_sweep_quantity, only : quantities
+   use vcor_sweep_quantity, only : quantities, quantity_place, quantity_t
    implicit none
    private
 
@@ -38,7 +38,7 @@ contains
          //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
+      if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
       if (history .and. any(job%writes)) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
@@ -61,7 +61,7 @@ contains
          //integer_text(job%part%points)//' impacts'//shard_text(job%part)//', ' &
          //method_shown(job)//nl
       if (failures%count > 0) text = text//nl//reasons(job, failures)
-      if (failures%inexact > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
+      if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       text = text//nl//'  written '//path//nl//nl
    end function shard_report
 
@@ -118,33 +118,33 @@ contains
 
       character(len=:), allocatable :: line
       real(wp) :: least, most
+      type(quantity_t), allocatable :: columns(:)
       logical :: any_there
-      integer :: i, j, k
+      integer :: i, k
 
+      allocate (columns, source=quantities())
       text = padded('', 58)//'        smallest         largest'//nl
       do i = 1, size(shown)
-         do j = 1, size(quantities)
-            if (quantities(j)%name /= shown(i)) cycle
-            associate (column => summary%columns(place_in_table(summary, trim(shown(i))) &
-                       - size(summary%dimensions)))
-               any_there = .false.
-               do k = 1, column%length
-                  if (ieee_is_nan(column%reals(k))) cycle
-                  if (.not. any_there) then
-                     least = column%reals(k)
-                     most = least
-                  end if
-                  any_there = .true.
-                  least = min(least, column%reals(k))
-                  most = max(most, column%reals(k))
-               end do
-            end associate
+         associate (quantity => columns(quantity_place(shown(i))), &
+                    column => summary%columns(place_in_table(summary, trim(shown(i))) &
+                    - size(summary%dimensions)))
+            any_there = .false.
+            do k = 1, column%length
+               if (ieee_is_nan(column%reals(k))) cycle
+               if (.not. any_there) then
+                  least = column%reals(k)
+                  most = least
+               end if
+               any_there = .true.
+               least = min(least, column%reals(k))
+               most = max(most, column%reals(k))
+            end do
             if (.not. any_there) cycle
-            line = padded('  '//trim(quantities(j)%meaning), 50)//padded(quantities(j)%symbol, 8) &
+            line = padded('  '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
                //significant(least)//significant(most)
-            if (quantities(j)%unit /= '1') line = line//' '//trim(quantities(j)%unit)
+            if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
             text = text//line//nl
-         end do
+         end associate
       end do
    end function ranges
 
@@ -176,10 +176,10 @@ contains
       !> One line
       character(len=:), allocatable :: text
 
-      text = integer_text(failures%inexact)//' of '//integer_text(job%part%count()) &
+      text = integer_text(failures%inexact%count)//' of '//integer_text(job%part%count()) &
          //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
-         //'asked for, the first one is point '//integer_text(failures%first_inexact)//': ' &
-         //coordinates(job, failures%first_inexact)
+         //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
+         //coordinates(job, failures%inexact%first)
    end function inexact
 
    !> Parameters of a point

@@ -38,8 +38,6 @@ module vcor_app_watch
       type(grid_t) :: grid
       !> The file, open once there is one
       type(checkpoint_t) :: file
-      !> What a run before has left of the same sweep, locked until the file takes its place
-      type(checkpoint_t) :: old
       !> Points that are done
       integer :: done = 0
       !> Points that were done at the beginning
@@ -82,7 +80,7 @@ contains
          call self%file%put(first, last, summary, error)
       else if (self%keeps .and. now - self%start > time_without_file) then
          call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, &
-            error, self%old)
+            error)
       end if
       if (allocated(error)) return
       if (self%shows .and. now - self%shown > time_between_lines) then

@@ -33,7 +33,6 @@ module vcor
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_part, only : new_part
    use vcor_sweep_points, only : solve_points
-   use vcor_sweep_quantity, only : quantities
    use vcor_sweep_summary, only : new_summary, summary_t
    use vcor_sweep_sweep, only : new_sweep, sweep_t
    use vcor_version, only : version
@@ -61,7 +60,7 @@ module vcor
    ! sweeps
    public :: sweep_t, new_sweep, solve_points, new_part, summary_t, new_summary, failures_t
    ! results
-   public :: quantities, table_t, summary_table, history_table, write_csv, write_hdf5
+   public :: table_t, summary_table, history_table, write_csv, write_hdf5
    ! identification
    public :: samples_t, fit_t, estimate_t, fit_material
 

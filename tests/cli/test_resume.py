@@ -152,6 +152,46 @@ def test_resume_where_a_file_is_missing(vcor, missing):
     same_files(vcor.folder / "out", vcor.folder / "ref")
 
 
+@pytest.mark.parametrize("only", ["", "csv"])
+@pytest.mark.parametrize("kept", [0.0, 0.5, 0.99, "a row less", "a row more", "its last byte"])
+def test_resume_where_text_is_cut_short(vcor, kept, only):
+    """A CSV file without all of its rows is made anew, from the HDF5 file or the points."""
+    text = sweep_text(30)
+    if only:
+        text = text.replace("&output\n", "&output\n   hdf5 = .false.\n")
+    vcor.write(text)
+    vcor("run", "case.nml", "--output", "ref")
+    shutil.copytree(vcor.folder / "ref", vcor.folder / "out")
+    cut = vcor.folder / "out" / "case_summary.csv"
+    lines = cut.read_bytes().splitlines(keepends=True)
+    whole = b"".join(lines)
+    if kept == "a row less":
+        cut.write_bytes(b"".join(lines[:-1]))
+    elif kept == "a row more":
+        cut.write_bytes(whole + lines[-1])
+    elif kept == "its last byte":
+        cut.write_bytes(whole[:-1])
+    else:
+        head = sum(len(line) for line in lines if line.startswith(b"#"))
+        cut.write_bytes(whole[: head + int(kept * (len(whole) - head))])
+    done = vcor("run", "case.nml", "--output", "out", "--resume")
+    assert done.code == NUMERICAL
+    names = ["case_summary.csv"] if only else FILES
+    same_files(vcor.folder / "out", vcor.folder / "ref", names)
+    assert "finished" in vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
+
+
+@pytest.mark.parametrize("cut", ["case.csv", "case_summary.csv"])
+def test_resume_of_one_impact_where_text_is_cut_short(vcor, cut):
+    vcor.write(SLS)
+    vcor.succeeds("run", "case.nml", "--output", "ref")
+    shutil.copytree(vcor.folder / "ref", vcor.folder / "out")
+    path = vcor.folder / "out" / cut
+    path.write_bytes(b"".join(path.read_bytes().splitlines(keepends=True)[:-1]))
+    vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
+    same_files(vcor.folder / "out", vcor.folder / "ref", [*FILES, "case.csv"])
+
+
 @pytest.mark.parametrize("missing", ["case.h5", "case.csv", "case_summary.csv"])
 def test_resume_of_one_impact_where_a_file_is_missing(vcor, missing):
     vcor.write(SLS)

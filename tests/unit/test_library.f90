@@ -9,7 +9,7 @@ program test_library
       new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
       new_part, new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, &
       new_summary, new_sweep, new_tabulated, outcome_t, override, pair_eq1, pair_series, &
-      plate_t, power_law_t, problem_of_case, problem_t, prony_t, quantities, read_case, &
+      plate_t, power_law_t, problem_of_case, problem_t, prony_t, read_case, &
       read_case_text, read_data, samples_t, solve_impact, solve_points, solver_settings_t, &
       solver_t, summary_t, summary_table, sweep_t, table_t, tabulated_t, trajectory_t, &
       validate, version, waves_constant, waves_frozen, waves_hereditary, waves_none, &
@@ -243,8 +243,8 @@ contains
       call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), 2, summary, failures, error)
       call success(error, "its points are solved")
       call check(failures%count == 0, "all points have a result")
-      call check(quantities(1)%name == 'cor', "the first quantity is the COR")
-      call check_close(summary%values(1)%at(3), sls_cor, tolerance, "the last point")
+      call check(summary%quantities(1)%name == 'cor', "the first quantity is the COR")
+      call check_close(summary%values(1)%reals(3), sls_cor, tolerance, "the last point")
       call summary_table(table, 'sweep', case_text(case, complete=.true.), sweep%grid, summary)
       call check_close(table%columns(1)%reals(3), sls_cor, tolerance, "the same in the table")
    end subroutine test_sweep

@@ -1,44 +1,45 @@
-!> Files of a sweep under way, and shards of a sweep: a valid HDF5 file at every moment
+!> The file of a part of a sweep, under way or finished: a valid HDF5 file at every moment
 !>
 !>     /             attributes program, version, title, case, data, points, shard, shards
-!>     /summary      over the dimension `point`: what is swept, the columns of a summary, status as
-!>                   a number, check
+!>     /summary      over the dimension `point`: what is swept, check, the columns of a summary with
+!>                   numbers for texts
 !>
-!> HDF5 writes the file once, as a whole, all points pending: nan. Every dataset is in one piece and
+!> HDF5 writes the file once, as a whole, all points pending. Every dataset is in one piece and
 !> uncompressed, so its numbers have a fixed place in the file, and what makes the file an HDF5 file
-!> never changes again. Outcomes are written to their places by the system's `pwrite`, which is why
-!> neither SIGKILL nor a crash leaves a file that HDF5 cannot open, and why a chunk costs its own
-!> length only. The room is taken at the beginning: a disk that is too small is noticed then.
+!> never changes again: outcomes are written to their places as bytes. The room is taken at the
+!> beginning: a disk that is too small is noticed then.
+!>
+!> A point is done if its check sum is right. It is written last; after a crash of the machine the
+!> disk may have any part of what was written, in any order, and the sum tells.
 !>
 !> The file is made in a private folder and locked before it gets its name, which it takes from no
 !> other file. So of two processes that begin the same sweep one has it, and the lock goes with the
 !> process, however that ends. Links and pipes of that name are refused, not followed.
 module vcor_io_checkpoint
-   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
-      c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_loc, &
+      c_null_char, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_fortran_env, only : int8
+   use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_checkpoint_points, only : check_column, check_of, columns, dataset, read_points, &
-      status_column, steps_column
    use vcor_io_file, only : make_scratch, move_file, remember, remove_file, remove_scratch
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, reader_t
-   use vcor_io_identity, only : identity_t, remarks_of
-   use vcor_text, only : integer_text
+   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, reader_t
+   use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
-      c_text, errno_exists, errno_interrupted, errno_locked, file_at, last_errno, lock_alone, &
-      open_file, same_file_id, system_reason
+      c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
    use vcor_io_results, only : unit_of
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : add_column, add_dimension, column_t, integer_column, &
+      move_in_column, new_table, real_column, table_t, text_column, text_value
    use vcor_kinds, only : wp
-   use vcor_case_grid, only : grid_t
-   use vcor_sweep_part, only : part_t
-   use vcor_sweep_quantity, only : quantities
+   use vcor_numeric_crc, only : crc32
+   use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t
    use vcor_sweep_summary, only : summary_t
+   use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: checkpoint_t, create_checkpoint, open_checkpoint, attach
+   public :: checkpoint_t, create_checkpoint, open_checkpoint, read_points, read_results
 
    !> A file of a sweep under way
    type :: checkpoint_t
@@ -46,8 +47,8 @@ module vcor_io_checkpoint
       character(len=:), allocatable :: path
       !> Stream of C, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
-      !> Where in the file each column begins [bytes]
-      integer(c_int64_t), private :: offsets(columns) = 0_c_int64_t
+      !> Where in the file columns begin [bytes]: those of the summary in their order, check
+      integer(c_int64_t), allocatable, private :: offsets(:)
    contains
       !> Whether there is a file
       procedure :: is_open
@@ -74,10 +75,10 @@ contains
    end function is_open
 
    !> Begin a file, with what is done so far
-   subroutine create_checkpoint(self, path, identity, grid, summary, error, old)
+   subroutine create_checkpoint(self, path, identity, grid, summary, error)
       !> The file
       type(checkpoint_t), intent(inout) :: self
-      !> Its path; nothing but `old` may be there
+      !> Its path; nothing may be there
       character(len=*), intent(in) :: path
       !> What it is about
       type(identity_t), intent(in) :: identity
@@ -87,40 +88,22 @@ contains
       type(summary_t), intent(inout) :: summary
       !> Set if the file cannot be written, or another process has begun it
       type(error_t), allocatable, intent(out) :: error
-      !> File that it replaces, closed afterwards; there is none if it is not open or not given
-      type(checkpoint_t), intent(inout), optional :: old
 
       type(table_t) :: table
       character(len=:), allocatable :: folder, temporary
-      integer :: i, offset
+      integer :: i
 
       call make_scratch(folder, path, error)
       if (allocated(error)) return
       temporary = join_path(folder, 'part.h5')
       call remember(temporary)
       call summary%blank_pending()
-      call begin_table(table, identity, grid)
-      offset = size(table%columns)
-      call add_column(table, 'check', [(check_of(summary, i), i = 1, size(summary%status))], &
-         '1', 'CRC-32 of the numbers of the summary in this row and of its number; '// &
-         '0: pending')
-      do i = 1, size(quantities)
-         call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
-            trim(quantities(i)%unit), trim(quantities(i)%meaning))
-      end do
-      call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
-      call move_in_column(table, 'status', summary%status, '1', 'how the contact ended: -1 '// &
-         'pending, 0 separated, 1 no_separation, 2 sticks, 3 invalid, 4 failed')
-      call write_hdf5(temporary, table, error=error, remarks=remarks_of(identity), changing=columns)
-      if (.not. allocated(table%fault)) then
-         do i = 1, size(quantities)
-            call move_alloc(table%columns(offset + 1 + i)%reals, summary%values(i)%at)
-         end do
-         call move_alloc(table%columns(offset + 2 + size(quantities))%integers, summary%steps)
-         call move_alloc(table%columns(offset + 3 + size(quantities))%integers, summary%status)
-      end if
-      if (.not. allocated(error)) call attach(self, temporary, error)
-      if (.not. allocated(error)) call name_file(self, path, error, old)
+      call fill_table(table, identity, grid, summary)
+      call write_hdf5(temporary, table, error=error, remarks=remarks_of(identity), &
+         changing=size(summary%quantities) + 1)
+      if (.not. allocated(table%fault)) call empty_table(table, summary)
+      if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
+      if (.not. allocated(error)) call name_file(self, path, error)
       if (allocated(error)) then
          call self%remove()
          ! nobody knows the other name
@@ -132,62 +115,23 @@ contains
       call remove_scratch(folder)
    end subroutine create_checkpoint
 
-   !> Give a file its name
-   subroutine name_file(self, path, error, old)
-      !> The file
-      type(checkpoint_t), intent(inout) :: self
-      !> Its name; nothing but `old` may have it
-      character(len=*), intent(in) :: path
-      !> Set if it cannot have the name
-      type(error_t), allocatable, intent(out) :: error
-      !> File that it replaces, closed afterwards
-      type(checkpoint_t), intent(inout), optional :: old
-
-      logical :: replaces, taken
-
-      replaces = .false.
-      if (present(old)) replaces = old%is_open()
-      if (replaces) then
-         call move_file(self%path, path, error)
-         call old%close()
-      else if (c_link(c_text(self%path), c_text(path)) /= 0) then
-         taken = last_errno() == errno_exists
-         if (.not. taken) taken = anything_at(path)
-         if (taken) then
-            call raise(error, error_file, in_use(path))
-         else
-            ! there are file systems without links
-            call move_file(self%path, path, error)
-         end if
-      end if
-      if (.not. allocated(error)) self%path = path
-   end subroutine name_file
-
-   !> What there is to say where another process is at work
-   pure function in_use(path) result(text)
-      !> Path of the file
-      character(len=*), intent(in) :: path
-      !> One line
-      character(len=:), allocatable :: text
-
-      text = quoted_path(path)//' is in use: another vcor is at work on this sweep'
-   end function in_use
-
-   !> Table of the points of a part
-   subroutine begin_table(table, identity, grid)
-      !> The table, without outcomes
+   !> Points and outcomes of a part as a table
+   subroutine fill_table(table, identity, grid, summary)
+      !> The table
       type(table_t), intent(out) :: table
       !> What it is about
       type(identity_t), intent(in) :: identity
       !> Grid of the sweep
       type(grid_t), intent(in) :: grid
+      !> Outcomes; they move
+      type(summary_t), intent(inout) :: summary
 
       integer, allocatable :: points(:), places(:)
       real(wp), allocatable :: values(:)
       integer :: i, j
 
       call new_table(table, 'summary', identity%title, identity%case_text)
-      points = [(identity%part%point(i), i = 1, identity%part%count())]
+      points = [(identity%part%point(i), i=1, identity%part%count())]
       call add_dimension(table, 'point', points, '1', 'number of the point in the sweep')
       allocate (values(size(points)))
       do j = 1, size(grid%axes)
@@ -199,50 +143,150 @@ contains
             call add_column(table, axis%name, values, unit_of(axis%unit), axis%meaning)
          end associate
       end do
-   end subroutine begin_table
+      call add_column(table, 'check', checks_of(summary, 1, size(points)), '1', &
+         'CRC-32 of the numbers of the summary in this row and of its number; 0: pending')
+      do i = 1, size(summary%values)
+         associate (quantity => summary%quantities(i), values => summary%values(i))
+            if (allocated(values%reals)) then
+               call move_in_column(table, trim(quantity%name), values%reals, trim(quantity%unit), &
+                  trim(quantity%meaning))
+            else
+               call move_in_column(table, trim(quantity%name), values%integers, '1', &
+                  meaning_of(quantity))
+            end if
+         end associate
+      end do
+      call move_in_column(table, 'status', summary%status, '1', meaning_of(summary%quantities(i)))
+   end subroutine fill_table
+
+   !> Outcomes out of their table
+   subroutine empty_table(table, summary)
+      !> The table, as `fill_table` made it
+      type(table_t), intent(inout) :: table
+      !> Outcomes
+      type(summary_t), intent(inout) :: summary
+
+      integer :: i, before
+
+      before = size(table%columns) - size(summary%quantities)
+      do i = 1, size(summary%values)
+         call move_alloc(table%columns(before + i)%reals, summary%values(i)%reals)
+         call move_alloc(table%columns(before + i)%integers, summary%values(i)%integers)
+      end do
+      call move_alloc(table%columns(before + i)%integers, summary%status)
+   end subroutine empty_table
+
+   !> What a column of numbers is, and the texts that they stand for
+   function meaning_of(quantity) result(text)
+      !> The column
+      type(quantity_t), intent(in) :: quantity
+      !> One line
+      character(len=:), allocatable :: text
+
+      character(len=label_length), allocatable :: labels(:)
+      integer :: i
+
+      text = trim(quantity%meaning)
+      if (quantity%labels == '') return
+      allocate (labels, source=labels_of(quantity))
+      do i = 1, size(labels)
+         text = text//merge(': ', ', ', i == 1)//integer_text(quantity%first + i - 1)//' ' &
+            //trim(labels(i))
+      end do
+   end function meaning_of
+
+   !> Give a file its name
+   subroutine name_file(self, path, error)
+      !> The file
+      type(checkpoint_t), intent(inout) :: self
+      !> Its name; nothing may have it
+      character(len=*), intent(in) :: path
+      !> Set if it cannot have the name
+      type(error_t), allocatable, intent(out) :: error
+
+      logical :: is_taken
+
+      if (c_link(c_text(self%path), c_text(path)) /= 0) then
+         is_taken = last_errno() == errno_exists
+         if (.not. is_taken) is_taken = anything_at(path)
+         if (is_taken) then
+            call raise_in_use(path, error)
+         else
+            ! there are file systems without links
+            call move_file(self%path, path, error)
+         end if
+      end if
+      if (.not. allocated(error)) self%path = path
+   end subroutine name_file
+
+   !> Another process is at work
+   subroutine raise_in_use(path, error)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> Set
+      type(error_t), allocatable, intent(inout) :: error
+
+      call raise(error, error_file, quoted_path(path) &
+         //' is in use: another vcor is at work on this sweep')
+   end subroutine raise_in_use
 
    !> Go on with a file that is there
-   subroutine open_checkpoint(self, path, identity, summary, error)
+   subroutine open_checkpoint(self, path, identity, summary, error, anew)
       !> The file
       type(checkpoint_t), intent(inout) :: self
       !> Its path
       character(len=*), intent(in) :: path
       !> What it should be about
       type(identity_t), intent(in) :: identity
-      !> Outcomes: those that the file has
+      !> Outcomes, all pending; on return those that the file has
       type(summary_t), intent(inout) :: summary
       !> Error of code `error_file` if the file is about something else, is no such file, or another
       !> process is at work on it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-
-      type(identity_t) :: found
+      !> Whether to forget what the file has
+      logical, intent(in) :: anew
 
       call check_plain(path, error)
-      if (.not. allocated(error)) call read_points(path, found, summary, error, identity)
-      if (.not. allocated(error)) call attach(self, path, error)
+      if (allocated(error)) return
+      if (anew) then
+         call check_part(path, identity, error)
+         if (allocated(error)) error%message = error%message &
+            //'; remove it, or finish that sweep with --resume'
+      else
+         call read_points(path, identity, summary, error)
+      end if
+      if (.not. allocated(error)) call attach(self, path, summary%quantities, error)
+      if (allocated(error) .or. .not. anew) return
+      call summary%blank_pending()
+      call self%put(1, size(summary%status), summary, error)
    end subroutine open_checkpoint
 
    !> Open a file that is there for writing, and learn where its columns are
-   subroutine attach(self, path, error)
+   subroutine attach(self, path, quantities, error)
       !> The file
       type(checkpoint_t), intent(inout) :: self
       !> Its path
       character(len=*), intent(in) :: path
+      !> Columns of its summary
+      type(quantity_t), intent(in) :: quantities(:)
       !> Set if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
       integer(c_int) :: reason
-      integer :: i
+      integer :: i, n
 
       self%path = path
-      call check_plain(path, error)
-      if (.not. allocated(error)) call open_hdf5(reader, path, error)
+      n = size(quantities)
+      self%offsets = [(0_c_int64_t, i=0, n)]
+      call open_hdf5(reader, path, error)
       if (allocated(error)) return
-      do i = 1, columns
-         call find_place(reader, dataset(i), self%offsets(i), error)
+      do i = 1, n
+         call find_place(reader, dataset(quantities(i)%name), self%offsets(i), error)
          if (allocated(error)) exit
       end do
+      if (.not. allocated(error)) &
+         call find_place(reader, dataset('check'), self%offsets(n + 1), error)
       call close_hdf5(reader)
       if (allocated(error)) then
          error%code = error_file
@@ -252,20 +296,18 @@ contains
       self%stream = c_fopen(c_text(path), c_text('rb+'))
       reason = last_errno()
       if (.not. c_associated(self%stream)) then
-         call raise(error, error_file, 'cannot write '//quoted_path(path)//': '// &
-            system_reason(reason))
+         call raise_system(error, 'cannot write '//quoted_path(path), reason)
          return
       end if
       ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
       ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
       ! goes without
       if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) /= 0) then
-         reason = last_errno()
-         if (reason == errno_locked) call raise(error, error_file, in_use(path))
+         if (last_errno() == errno_locked) call raise_in_use(path, error)
       end if
       ! no link, and no file that has been replaced or removed since
       if (.not. same_file_id(file_at(path, follows=.false.), open_file(c_fileno(self%stream)))) &
-         call raise(error, error_file, in_use(path))
+         call raise_in_use(path, error)
       if (allocated(error)) call self%close()
    end subroutine attach
 
@@ -278,80 +320,48 @@ contains
       !> Last place
       integer, intent(in) :: last
       !> Outcomes of all places
-      type(summary_t), intent(in), target :: summary
+      type(summary_t), intent(in) :: summary
       !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
 
-      integer, target :: checks(last - first + 1)
-      integer :: i
-
-      do i = 1, size(quantities)
-         call write_at(self, self%offsets(i), storage_size(1.0_wp)/8, first, last, &
-            c_loc(summary%values(i)%at(first)), error)
-         if (allocated(error)) return
-      end do
-      call write_at(self, self%offsets(steps_column), storage_size(1)/8, first, last, &
-         c_loc(summary%steps(first)), error)
-      if (allocated(error)) return
-      call write_at(self, self%offsets(status_column), storage_size(1)/8, first, last, &
-         c_loc(summary%status(first)), error)
-      if (allocated(error)) return
-      do i = 1, size(checks)
-         checks(i) = check_of(summary, first + i - 1)
-      end do
-      call write_at(self, self%offsets(check_column), storage_size(1)/8, first, last, &
-         c_loc(checks), error)
-   end subroutine put
-
-   !> Write numbers to their place
-   subroutine write_at(self, offset, bytes, first, last, values, error)
-      !> The file
-      class(checkpoint_t), intent(in) :: self
-      !> Where the column begins
-      integer(c_int64_t), intent(in) :: offset
-      !> Bytes of a number
-      integer, intent(in) :: bytes
-      !> First place
-      integer, intent(in) :: first
-      !> Last place
-      integer, intent(in) :: last
-      !> Address of the numbers
-      type(c_ptr), intent(in) :: values
-      !> Set if they could not be written
-      type(error_t), allocatable, intent(out) :: error
-
-      integer(c_size_t) :: length, done, written
-      integer(c_int64_t) :: start
+      character(kind=c_char), parameter :: bytes(1) = c_null_char
       integer(c_int) :: reason
+      integer :: i, n
 
-      length = int(last - first + 1, c_size_t)*int(bytes, c_size_t)
-      start = offset + int(first - 1, c_int64_t)*int(bytes, c_int64_t)
-      done = 0_c_size_t
-      do while (done < length)
-         written = c_pwrite(c_fileno(self%stream), shifted(values, done), length - done, &
-            start + done)
-         reason = last_errno()
-         if (written > 0_c_size_t) then
-            done = done + written
-         else if (reason /= errno_interrupted) then
-            call raise(error, error_file, 'cannot write '//quoted_path(self%path)//': '// &
-               system_reason(reason))
-            return
-         end if
+      n = size(summary%values)
+      do i = 1, n
+         associate (values => summary%values(i))
+            if (allocated(values%reals)) then
+               call write_at(i, storage_size(1.0_wp)/8, transfer(values%reals(first:last), bytes))
+            else
+               call write_at(i, storage_size(1)/8, transfer(values%integers(first:last), bytes))
+            end if
+         end associate
       end do
-   end subroutine write_at
+      call write_at(n + 1, storage_size(1)/8, transfer(summary%status(first:last), bytes))
+      call write_at(n + 2, storage_size(1)/8, transfer(checks_of(summary, first, last), bytes))
 
-   !> An address so many bytes further
-   pure function shifted(place, bytes)
-      !> The address
-      type(c_ptr), intent(in) :: place
-      !> Number of bytes
-      integer(c_size_t), intent(in) :: bytes
-      !> The address there
-      type(c_ptr) :: shifted
+   contains
 
-      shifted = transfer(transfer(place, 0_c_int64_t) + int(bytes, c_int64_t), shifted)
-   end function shifted
+      !> Write numbers of a column to their places
+      subroutine write_at(column, width, what)
+         !> Number of the column
+         integer, intent(in) :: column
+         !> Bytes of one of its numbers
+         integer, intent(in) :: width
+         !> All bytes
+         character(kind=c_char), intent(in), contiguous, target :: what(:)
+
+         integer(c_size_t) :: length
+
+         if (allocated(error)) return
+         length = size(what, kind=c_size_t)
+         if (c_pwrite(c_fileno(self%stream), c_loc(what), length, self%offsets(column) &
+            + int(first - 1, c_int64_t)*width) == length) return
+         reason = last_errno()
+         call raise_system(error, 'cannot write '//quoted_path(self%path), reason)
+      end subroutine write_at
+   end subroutine put
 
    !> Close the file, which stays
    subroutine close_checkpoint(self)
@@ -375,16 +385,14 @@ contains
       !> Set if that failed
       type(error_t), allocatable, intent(out) :: error
 
-      integer(c_int) :: reason, status
+      integer(c_int) :: reason
 
-      status = c_fsync(c_fileno(self%stream))
-      reason = last_errno()
-      call self%close()
-      if (status == 0) then
-         call move_file(self%path, path, error)
-      else
+      if (c_fsync(c_fileno(self%stream)) /= 0) then
+         reason = last_errno()
          call raise_system(error, 'cannot write '//quoted_path(path), reason)
       end if
+      call self%close()
+      if (.not. allocated(error)) call move_file(self%path, path, error)
    end subroutine close_as
 
    !> Close the file and remove it; none is fine
@@ -400,5 +408,181 @@ contains
       ignored = c_fclose(self%stream)
       self%stream = c_null_ptr
    end subroutine remove
+
+   !> Refuse a file that is not of a part of a sweep
+   subroutine check_part(path, expected, error)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> What it should be about
+      type(identity_t), intent(in) :: expected
+      !> Error of code `error_file`; unallocated if it is
+      type(error_t), allocatable, intent(out) :: error
+
+      type(identity_t) :: found
+      logical :: is_ours
+
+      call read_identity(path, found, is_ours, error)
+      if (allocated(error)) return
+      if (.not. is_ours .or. found%part%points == 0) then
+         call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
+         return
+      end if
+      call check_same(path, found, expected, error)
+      if (allocated(error)) return
+      if (found%part%number /= expected%part%number &
+         .or. found%part%points /= expected%part%points) &
+         call raise(error, error_file, quoted_path(path)//' has other points of the sweep')
+   end subroutine check_part
+
+   !> Read the file of a part
+   subroutine read_points(path, identity, summary, error)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> What it should be about
+      type(identity_t), intent(in) :: identity
+      !> Outcomes of the points of the part, with room for all of them; on return pending where the
+      !> check sum is wrong
+      type(summary_t), intent(inout) :: summary
+      !> Error of code `error_file` if it cannot be read, or is not about what is expected
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, allocatable :: checks(:)
+
+      call check_part(path, identity, error)
+      if (allocated(error)) return
+      allocate (checks(size(summary%status)))
+      call read_columns(path, summary, error, checks)
+      if (allocated(error)) return
+      where (checks /= checks_of(summary, 1, size(checks))) &
+         summary%status = point_pending
+   end subroutine read_points
+
+   !> Read the results of a finished sweep
+   subroutine read_results(path, summary, error)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> Outcomes, with room for all of its points
+      type(summary_t), intent(inout) :: summary
+      !> Error of code `error_file` if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      call read_columns(path, summary, error)
+   end subroutine read_results
+
+   !> Read all columns of a file
+   subroutine read_columns(path, summary, error, checks)
+      !> Its path
+      character(len=*), intent(in) :: path
+      !> Outcomes, with room for all of its points
+      type(summary_t), intent(inout) :: summary
+      !> Error of code `error_file` if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+      !> Check sums, shape (points); a file without them has texts where this one has numbers
+      integer, intent(inout), optional :: checks(:)
+
+      type(reader_t) :: reader
+      type(column_t) :: column
+      integer :: i
+
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      do i = 1, size(summary%values)
+         if (allocated(summary%values(i)%reals)) then
+            call read_column(reader, dataset(summary%quantities(i)%name), real_column, &
+               size(summary%status), column, error)
+            if (.not. allocated(error)) call move_alloc(column%reals, summary%values(i)%reals)
+         else
+            call read_wholes(reader, summary%quantities(i), .not. present(checks), &
+               summary%values(i)%integers, error)
+         end if
+         if (allocated(error)) exit
+      end do
+      if (.not. allocated(error)) call read_wholes(reader, &
+         summary%quantities(size(summary%quantities)), .not. present(checks), summary%status, error)
+      if (present(checks) .and. .not. allocated(error)) then
+         call read_column(reader, dataset('check'), integer_column, size(checks), column, error)
+         if (.not. allocated(error)) checks = column%integers
+      end if
+      call close_hdf5(reader)
+      if (allocated(error)) error%code = error_file
+   end subroutine read_columns
+
+   !> Read whole numbers, or the texts that they stand for
+   subroutine read_wholes(reader, quantity, as_texts, numbers, error)
+      !> Open file
+      type(reader_t), intent(in) :: reader
+      !> The column
+      type(quantity_t), intent(in) :: quantity
+      !> Whether the file has texts, if there are any
+      logical, intent(in) :: as_texts
+      !> The numbers
+      integer, intent(inout) :: numbers(:)
+      !> Set if they cannot be read
+      type(error_t), allocatable, intent(out) :: error
+
+      type(column_t) :: column
+      character(len=label_length), allocatable :: labels(:)
+      integer :: i
+
+      if (quantity%labels == '' .or. .not. as_texts) then
+         call read_column(reader, dataset(quantity%name), integer_column, size(numbers), column, &
+            error)
+         if (.not. allocated(error)) numbers = column%integers
+         return
+      end if
+      call read_column(reader, dataset(quantity%name), text_column, size(numbers), column, error)
+      if (allocated(error)) return
+      allocate (labels, source=labels_of(quantity))
+      do i = 1, size(numbers)
+         numbers(i) = quantity%first - 1 + max(1, findloc(labels, text_value(column, i), dim=1))
+      end do
+   end subroutine read_wholes
+
+   !> Path of the dataset of a column
+   pure function dataset(name) result(path)
+      !> Name of the column
+      character(len=*), intent(in) :: name
+      !> Its path in the file
+      character(len=:), allocatable :: path
+
+      path = 'summary/'//trim(name)
+   end function dataset
+
+   !> Check sums of points: CRC-32 of their numbers as the file has them, in the order of columns,
+   !> and of their places, so that two points that have changed places are found
+   pure function checks_of(summary, first, last) result(checks)
+      !> Outcomes
+      type(summary_t), intent(in) :: summary
+      !> First place
+      integer, intent(in) :: first
+      !> Last place
+      integer, intent(in) :: last
+      !> The sums, 1 in place of 0; 0 where the point is pending, and nowhere else
+      integer :: checks(last - first + 1)
+
+      integer(int8), parameter :: bytes(1) = 0_int8
+      integer(int8) :: row(8*size(summary%quantities))
+      integer :: i, place, n
+
+      do place = first, last
+         checks(place - first + 1) = 0
+         if (summary%status(place) == point_pending) cycle
+         n = 0
+         do i = 1, size(summary%values)
+            associate (values => summary%values(i))
+               if (allocated(values%reals)) then
+                  row(n + 1:n + 8) = transfer(values%reals(place), bytes)
+                  n = n + 8
+               else
+                  row(n + 1:n + 4) = transfer(values%integers(place), bytes)
+                  n = n + 4
+               end if
+            end associate
+         end do
+         row(n + 1:n + 8) = transfer([summary%status(place), place], bytes)
+         checks(place - first + 1) = crc32(row(:n + 8), 0)
+         if (checks(place - first + 1) == 0) checks(place - first + 1) = 1
+      end do
+   end function checks_of
 
 end module vcor_io_checkpoint

@@ -16,8 +16,8 @@ module vcor_io_identity
    implicit none
    private
 
-   public :: identity_t, identity_of, read_identity, read_csv_identity, remarks_of, check_same, &
-      number_of
+   public :: identity_t, identity_of, read_identity, read_csv_identity, csv_rows, remarks_of, &
+      check_same, number_of
 
    !> What a file is about
    type :: identity_t
@@ -214,6 +214,41 @@ contains
       close (unit)
       is_ours = in_case .and. len(identity%version) > 0
    end subroutine read_csv_identity
+
+   !> Rows of a CSV file
+   function csv_rows(path) result(rows)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> Number of complete rows below the names of the columns; 0 where there is no such file
+      integer :: rows
+
+      integer, parameter :: length = 65536
+      character(len=length) :: block
+      integer(int64) :: bytes, at
+      integer :: unit, status, i, n
+      logical :: begins, counts
+
+      rows = 0
+      open (newunit=unit, file=path, status='old', action='read', access='stream', &
+         form='unformatted', iostat=status)
+      if (status /= 0) return
+      inquire (unit, size=bytes)
+      ! a line counts unless it begins as a remark
+      begins = .true.
+      counts = .false.
+      do at = 1, bytes, length
+         n = int(min(int(length, int64), bytes - at + 1))
+         read (unit, pos=at, iostat=status) block(:n)
+         if (status /= 0) exit
+         do i = 1, n
+            if (begins) counts = block(i:i) /= '#'
+            begins = block(i:i) == new_line('a')
+            if (begins .and. counts) rows = rows + 1
+         end do
+      end do
+      close (unit)
+      rows = max(0, rows - 1)
+   end function csv_rows
 
    !> Refuse a file that is not about the same; which of the shards it has does not matter
    subroutine check_same(path, found, expected, error)

@@ -7,8 +7,8 @@ module vcor_io_results
    use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
    use vcor_kinds, only : wp
    use vcor_case_grid, only : grid_t
-   use vcor_sweep_quantity, only : history_quantities, quantities, status_label
-   use vcor_sweep_summary, only : summary_t
+   use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t
+   use vcor_sweep_summary, only : summary_t, values_t
    implicit none
    private
 
@@ -42,13 +42,49 @@ contains
          end associate
       end do
       if (size(grid%axes) == 0) call add_dimension(table, 'impact', 1)
-      do i = 1, size(quantities)
-         call move_in_column(table, trim(quantities(i)%name), summary%values(i)%at, &
-            trim(quantities(i)%unit), trim(quantities(i)%meaning))
+      do i = 1, size(summary%values)
+         call move_in_quantity(table, summary%quantities(i), summary%values(i))
       end do
-      call move_in_column(table, 'steps', summary%steps, '1', 'number of time steps')
-      call add_column(table, 'status', status_label(summary%status), '', 'how the contact ended')
+      associate (status => summary%quantities(i))
+         call add_labels(table, status, summary%status)
+      end associate
    end subroutine summary_table
+
+   !> Move the values of a quantity to a column
+   subroutine move_in_quantity(table, quantity, values)
+      !> The table
+      type(table_t), intent(inout) :: table
+      !> The quantity
+      type(quantity_t), intent(in) :: quantity
+      !> Its values; not allocated afterwards but for texts
+      type(values_t), intent(inout) :: values
+
+      if (allocated(values%reals)) then
+         call move_in_column(table, trim(quantity%name), values%reals, trim(quantity%unit), &
+            trim(quantity%meaning))
+      else if (quantity%labels == '') then
+         call move_in_column(table, trim(quantity%name), values%integers, trim(quantity%unit), &
+            trim(quantity%meaning))
+      else
+         call add_labels(table, quantity, values%integers)
+      end if
+   end subroutine move_in_quantity
+
+   !> Add a column of the texts that numbers stand for
+   subroutine add_labels(table, quantity, numbers)
+      !> The table
+      type(table_t), intent(inout) :: table
+      !> The quantity
+      type(quantity_t), intent(in) :: quantity
+      !> Its numbers
+      integer, intent(in) :: numbers(:)
+
+      character(len=label_length), allocatable :: labels(:)
+
+      allocate (labels, source=labels_of(quantity))
+      call add_column(table, trim(quantity%name), labels(numbers - quantity%first + 1), '', &
+         trim(quantity%meaning))
+   end subroutine add_labels
 
    !> Unit as tables have it
    pure function unit_of(unit) result(name)

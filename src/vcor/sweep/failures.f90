@@ -15,8 +15,8 @@ module vcor_sweep_failures
       !> Number of points
       integer :: count = 0
       !> First of them
-      integer :: first = 0
-      !> What was wrong there
+      integer :: first = huge(1)
+      !> What was wrong there; empty: the estimated error is above the accuracy asked for
       character(len=:), allocatable :: message
    end type failure_t
 
@@ -28,15 +28,11 @@ module vcor_sweep_failures
       integer :: reasons = 0
       !> Reasons; those in use are 1 to `reasons`
       type(failure_t) :: reason(most_reasons)
-      !> Number of points with an estimated error above the accuracy asked for
-      integer :: inexact = 0
-      !> First of them
-      integer :: first_inexact = 0
+      !> Points with an estimated error above the accuracy asked for
+      type(failure_t) :: inexact
    contains
-      !> Note a point without a result
+      !> Note points
       procedure :: note
-      !> Note a point with an estimated error above the accuracy asked for
-      procedure :: note_inexact
       !> Order the reasons by their first point
       procedure :: sort
       !> All reasons as numbers
@@ -47,73 +43,50 @@ module vcor_sweep_failures
 
 contains
 
-   !> Note a point without a result. In whatever order the points come, the reasons are the same in
-   !> the end, as long as there are not more than `most_reasons`; the rest counts for the last one
-   pure subroutine note(self, point, message)
+   !> Note points. In whatever order they come, the reasons are the same in the end, as long as
+   !> there are not more than `most_reasons`; the rest counts for the last one
+   pure subroutine note(self, point, message, count)
       !> The reasons
       class(failures_t), intent(inout) :: self
-      !> Number of the point
+      !> Number of the first of the points
       integer, intent(in) :: point
-      !> What is wrong; what differs in its numbers only is the same reason
+      !> Why they have no result; what differs in its numbers only is the same reason. Empty: they
+      !> have one with an estimated error above the accuracy asked for
       character(len=*), intent(in) :: message
+      !> Number of points; absent: 1
+      integer, intent(in), optional :: count
 
-      call note_points(self, 1, point, message)
-   end subroutine note
+      integer :: i, n
 
-   !> Note a point with an estimated error above the accuracy asked for
-   pure subroutine note_inexact(self, point)
-      !> The reasons
-      class(failures_t), intent(inout) :: self
-      !> Number of the point
-      integer, intent(in) :: point
-
-      call note_inexact_points(self, 1, point)
-   end subroutine note_inexact
-
-   !> Note points with an estimated error above the accuracy asked for
-   pure subroutine note_inexact_points(self, count, point)
-      !> The reasons
-      class(failures_t), intent(inout) :: self
-      !> Number of points
-      integer, intent(in) :: count
-      !> First of them
-      integer, intent(in) :: point
-
-      if (count == 0) return
-      if (self%inexact == 0 .or. point < self%first_inexact) self%first_inexact = point
-      self%inexact = self%inexact + count
-   end subroutine note_inexact_points
-
-   !> Note points without a result, for one reason
-   pure subroutine note_points(self, count, point, message)
-      !> The reasons
-      class(failures_t), intent(inout) :: self
-      !> Number of points
-      integer, intent(in) :: count
-      !> First of them
-      integer, intent(in) :: point
-      !> What is wrong
-      character(len=*), intent(in) :: message
-
-      integer :: i
-
-      self%count = self%count + count
+      n = 1
+      if (present(count)) n = count
+      if (message == '') then
+         call add(self%inexact)
+         return
+      end if
+      self%count = self%count + n
       do i = 1, self%reasons
          if (words_of(self%reason(i)%message) == words_of(message)) exit
       end do
       i = min(i, most_reasons)
       self%reasons = max(self%reasons, i)
-      associate (reason => self%reason(i))
-         if (reason%count == 0 .or. point < reason%first) then
-            reason%first = point
-            reason%message = message
-         end if
-         reason%count = reason%count + count
-      end associate
-   end subroutine note_points
+      call add(self%reason(i))
 
-   !> All reasons as numbers: for each count, first point, numbers of its text, text; that of
-   !> inexact points has no text
+   contains
+
+      !> Add the points to a reason
+      pure subroutine add(reason)
+         !> The reason
+         type(failure_t), intent(inout) :: reason
+
+         reason%count = reason%count + n
+         if (point > reason%first) return
+         reason%first = point
+         reason%message = message
+      end subroutine add
+   end subroutine note
+
+   !> All reasons as numbers: for each first point, count, numbers of its text, text
    pure function pack_reasons(self) result(numbers)
       !> The reasons
       class(failures_t), intent(in) :: self
@@ -122,10 +95,12 @@ contains
 
       integer :: i
 
-      numbers = real([self%inexact, self%first_inexact, 0], wp)
+      allocate (numbers(0))
+      if (self%inexact%count > 0) &
+         numbers = real([self%inexact%first, self%inexact%count, 0], wp)
       do i = 1, self%reasons
          associate (reason => self%reason(i), text => numbers_of(self%reason(i)%message))
-            numbers = [numbers, real([reason%count, reason%first, size(text)], wp), text]
+            numbers = [numbers, real([reason%first, reason%count, size(text)], wp), text]
          end associate
       end do
    end function pack_reasons
@@ -137,21 +112,17 @@ contains
       !> Numbers, as `pack` made them, any number of times, shape (n)
       real(wp), intent(in) :: numbers(:)
 
-      integer :: at, count, first, length
+      integer :: at, next
 
-      at = 0
+      at = 1
       do while (at < size(numbers))
-         count = nint(numbers(at + 1))
-         first = nint(numbers(at + 2))
-         length = nint(numbers(at + 3))
-         if (length == 0) then
-            call note_inexact_points(self, count, first)
-         else
-            call note_points(self, count, first, trim(text_of(numbers(at + 4:at + 3 + length))))
-         end if
-         at = at + 3 + length
+         next = at + 3 + nint(numbers(at + 2))
+         call self%note(nint(numbers(at)), trim(text_of(numbers(at + 3:next - 1))), &
+            nint(numbers(at + 1)))
+         at = next
       end do
    end subroutine add_packed
+
    !> Order the reasons by their first point
    pure subroutine sort(self)
       !> The reasons

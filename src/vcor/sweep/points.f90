@@ -14,8 +14,8 @@ module vcor_sweep_points
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : gathered, largest, of_first, rank_count, this_rank
    use vcor_sweep_part, only : new_part, part_t
-   use vcor_sweep_quantity, only : point_pending
-   use vcor_sweep_summary, only : numbers_per_point, row_of, status_place, summary_t
+   use vcor_sweep_quantity, only : point_pending, quantities, values_of
+   use vcor_sweep_summary, only : summary_t
    use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
    implicit none
    private
@@ -179,10 +179,11 @@ contains
 
       type(part_t) :: own
       real(wp), allocatable :: rows(:, :), numbers(:)
-      integer :: team, chunk, count, i, j, k
+      integer :: columns, team, chunk, count, i, j, k
 
       own = new_part(size(places), this_rank() + 1, rank_count())
-      allocate (rows(numbers_per_point, own%count()))
+      columns = size(quantities())
+      allocate (rows(columns, own%count()))
       team = max(1, min(threads, own%count()))
       ! short enough that all threads end at about the same time
       chunk = max(1, min(longest_chunk, own%count()/(8*team)))
@@ -197,9 +198,9 @@ contains
       do i = 1, rank_count()
          own = new_part(size(places), i, rank_count())
          do j = 1, own%count()
-            call summary%put(places(own%point(j)), numbers(k + 1:k + numbers_per_point))
-            if (nint(numbers(k + status_place)) /= point_pending) count = count + 1
-            k = k + numbers_per_point
+            call summary%put(places(own%point(j)), numbers(k + 1:k + columns))
+            if (nint(numbers(k + columns)) /= point_pending) count = count + 1
+            k = k + columns
          end do
       end do
       if (present(monitor)) call monitor%finished(places(1), places(size(places)), count, &
@@ -233,18 +234,15 @@ contains
 !$omp do schedule(dynamic, chunk)
       do i = 1, size(rows, 2)
          if (stop_code(monitor) /= 0) then
-            outcome%status = point_pending
-            rows(:, i) = row_of(outcome)
+            rows(:, i) = values_of(outcome_t(status=point_pending))
             cycle
          end if
          point = part%point(places(own%point(i)))
          call solve_point(sweep, point, worker, outcome, error)
-         rows(:, i) = row_of(outcome)
+         rows(:, i) = values_of(outcome)
          if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
 !$omp critical (vcor_failures)
-         if (outcome%status == contact_separated) then
-            call failures%note_inexact(point)
-         else if (allocated(error)) then
+         if (allocated(error)) then
             call failures%note(point, error%message)
          else
             call failures%note(point, lacking(outcome%status))

@@ -1,4 +1,5 @@
-!> The numbers of an outcome under the names that files, the screen and --print use
+!> The columns of a summary and of a history: their names, units and values, for files, the screen
+!> and --print
 module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_impact_outcome, only : outcome_t
@@ -8,10 +9,9 @@ module vcor_sweep_quantity
    implicit none
    private
 
-   public :: quantity_t, quantities, history_quantities
-   public :: quantity_value, quantity_values, quantity_names, status_label, status_name, &
-      status_code
-   public :: status_t, statuses, point_pending, point_invalid, point_failed, longest_status
+   public :: quantity_t, quantities, history_quantities, values_of
+   public :: quantity_value, quantity_names, quantity_place, labels_of, label_length
+   public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
 
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
    integer, parameter :: point_pending = -1
@@ -19,22 +19,21 @@ module vcor_sweep_quantity
    integer, parameter :: point_invalid = 3
    !> The numerical solution failed
    integer, parameter :: point_failed = 4
-   !> Letters of the longest name of a status
-   integer, parameter :: longest_status = len('no_separation')
 
    !> One status
    type :: status_t
       !> One of the `contact_*` and `point_*` constants
       integer :: code
       !> Its name in the column `status`
-      character(len=longest_status) :: name
+      character(len=13) :: name
       !> What it says, one line
       character(len=64) :: meaning
       !> What to do about it, one line
       character(len=96) :: advice
    end type status_t
 
-   !> All that a contact, or a point of a sweep, may come to
+   !> All that a contact, or a point of a sweep, may come to; by their code, the first one at the
+   !> end
    type(status_t), parameter :: statuses(*) = [ &
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
@@ -50,36 +49,43 @@ module vcor_sweep_quantity
       status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
       'the same command with --resume')]
 
-   !> One quantity
+   !> A column of a file
    type :: quantity_t
       !> Name of the column
       character(len=20) :: name
       !> Symbol in the paper and in docs/theory.md
       character(len=8) :: symbol
-      !> Unit; 1 for a pure number
+      !> Unit; 1 for a pure number, empty for a text
       character(len=8) :: unit
       !> What it is
       character(len=56) :: meaning
+      !> Whether its values are whole numbers
+      logical :: is_whole = .false.
+      !> Texts that these numbers stand for, each with a blank before it; empty where they are
+      !> numbers
+      character(len=320) :: labels = ''
+      !> Number of the first text
+      integer :: first = 0
    end type quantity_t
 
-   !> Numbers of a summary, in the order of its columns; steps and status follow
-   type(quantity_t), parameter :: quantities(*) = [ &
-      quantity_t('cor', 'e', '1', 'coefficient of restitution, relative velocity'), &
-      quantity_t('cor_sphere', 'e_a', '1', 'coefficient of restitution, sphere alone'), &
-      quantity_t('contact_time', 't0', 's', 'contact time'), &
-      quantity_t('max_indentation', 's_max', 'm', 'largest indentation'), &
-      quantity_t('max_force', 'F_max', 'N', 'largest contact force'), &
-      quantity_t('residual_indentation', 's(t0)', 'm', 'indentation left at separation'), &
-      quantity_t('residual_ratio', 's0/smax', '1', 'residual over largest indentation'), &
-      quantity_t('hysteresis_energy', 'W_h', 'J', 'energy lost in the contact'), &
-      quantity_t('wave_energy', 'W_wave', 'J', 'energy radiated into the plate'), &
-      quantity_t('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact'), &
-      quantity_t('energy_imbalance', 'dW', 'J', 'what the energy budget misses'), &
-      quantity_t('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0'), &
-      quantity_t('inelasticity', 'lambda', '1', "Zener's inelasticity parameter"), &
-      quantity_t('loss_tangent', 'tan(d)', '1', 'loss tangent at min_frequency'), &
-      quantity_t('cor_error', 'de', '1', 'estimated error of cor'), &
-      quantity_t('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere')]
+   !> Most columns of a summary
+   integer, parameter :: most = 64
+   !> Letters of the longest text of a column
+   integer, parameter :: label_length = 20
+
+   !> The columns of a summary as `list_columns` goes through them
+   type :: list_t
+      !> Number of columns
+      integer :: n = 0
+      !> Their values
+      real(wp) :: values(most) = 0.0_wp
+      !> What they are, shape (most); unallocated where nobody asks
+      type(quantity_t), allocatable :: quantities(:)
+   contains
+      procedure, private :: add_real, add_whole, add_label
+      !> Add a column
+      generic :: add => add_real, add_whole, add_label
+   end type list_t
 
    !> Columns of a history, in the order of the rows of a trajectory's state
    type(quantity_t), parameter :: history_quantities(columns) = [ &
@@ -95,53 +101,206 @@ module vcor_sweep_quantity
 
 contains
 
-   !> Value of a quantity, NaN where the impact did not end in separation
-   pure function quantity_value(outcome, index) result(value)
+   !> The columns of a summary, in their order: name, symbol, unit, meaning, value. This is the only
+   !> place that a new column needs. An outcome without result has NaN for its numbers
+   pure subroutine list_columns(list, outcome)
+      !> The columns
+      type(list_t), intent(inout) :: list
+      !> The outcome that they are of
+      type(outcome_t), intent(in) :: outcome
+
+      call list%add('cor', 'e', '1', 'coefficient of restitution, relative velocity', outcome%cor)
+      call list%add('cor_sphere', 'e_a', '1', 'coefficient of restitution, sphere alone', &
+         outcome%cor_sphere)
+      call list%add('contact_time', 't0', 's', 'contact time', outcome%contact_time)
+      call list%add('max_indentation', 's_max', 'm', 'largest indentation', &
+         outcome%max_indentation)
+      call list%add('max_force', 'F_max', 'N', 'largest contact force', outcome%max_force)
+      call list%add('residual_indentation', 's(t0)', 'm', 'indentation left at separation', &
+         outcome%residual_indentation)
+      call list%add('residual_ratio', 's0/smax', '1', 'residual over largest indentation', &
+         outcome%residual_ratio)
+      call list%add('hysteresis_energy', 'W_h', 'J', 'energy lost in the contact', &
+         outcome%hysteresis_energy)
+      call list%add('wave_energy', 'W_wave', 'J', 'energy radiated into the plate', &
+         outcome%wave_energy)
+      call list%add('initial_energy', 'KE_0', 'J', 'kinetic energy before the impact', &
+         outcome%initial_energy)
+      call list%add('energy_imbalance', 'dW', 'J', 'what the energy budget misses', &
+         outcome%energy_imbalance)
+      call list%add('min_frequency', 'w_min', 'rad/s', 'lowest frequency of interest, 2 pi/t0', &
+         outcome%min_frequency)
+      call list%add('inelasticity', 'lambda', '1', "Zener's inelasticity parameter", &
+         outcome%inelasticity)
+      call list%add('loss_tangent', 'tan(d)', '1', 'loss tangent at min_frequency', &
+         outcome%loss_tangent)
+      call list%add('cor_error', 'de', '1', 'estimated error of cor', outcome%cor_error)
+      call list%add('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere', &
+         outcome%cor_sphere_error)
+      call list%add('steps', '', '1', 'number of time steps', outcome%steps)
+      ! it has to be the last one
+      call list%add('status', '', '', 'how the contact ended', outcome%status, &
+         [statuses(size(statuses))%name, statuses(:size(statuses) - 1)%name], first=point_pending)
+   end subroutine list_columns
+
+   !> Add a column of numbers
+   pure subroutine add_real(self, name, symbol, unit, meaning, value)
+      !> The columns
+      class(list_t), intent(inout) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Symbol
+      character(len=*), intent(in) :: symbol
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: meaning
+      !> Value, in this unit
+      real(wp), intent(in) :: value
+
+      self%n = self%n + 1
+      self%values(self%n) = value
+      if (allocated(self%quantities)) &
+         self%quantities(self%n) = quantity_t(name, symbol, unit, meaning)
+   end subroutine add_real
+
+   !> Add a column of whole numbers
+   pure subroutine add_whole(self, name, symbol, unit, meaning, value)
+      !> The columns
+      class(list_t), intent(inout) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Symbol
+      character(len=*), intent(in) :: symbol
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: meaning
+      !> Value, in this unit
+      integer, intent(in) :: value
+
+      call self%add(name, symbol, unit, meaning, real(value, wp))
+      if (allocated(self%quantities)) self%quantities(self%n)%is_whole = .true.
+   end subroutine add_whole
+
+   !> Add a column of texts
+   pure subroutine add_label(self, name, symbol, unit, meaning, value, labels, first)
+      !> The columns
+      class(list_t), intent(inout) :: self
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Symbol
+      character(len=*), intent(in) :: symbol
+      !> Unit, empty
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: meaning
+      !> Number of the text
+      integer, intent(in) :: value
+      !> All texts, each one word
+      character(len=*), intent(in) :: labels(:)
+      !> Number of the first one
+      integer, intent(in) :: first
+
+      integer :: i
+
+      call self%add(name, symbol, unit, meaning, value)
+      if (.not. allocated(self%quantities)) return
+      associate (quantity => self%quantities(self%n))
+         do i = 1, size(labels)
+            quantity%labels = trim(quantity%labels)//' '//labels(i)
+         end do
+         quantity%first = first
+      end associate
+   end subroutine add_label
+
+   !> Columns of a summary
+   pure function quantities()
+      !> What they are, in their order; the status is the last one
+      type(quantity_t), allocatable :: quantities(:)
+
+      type(list_t) :: list
+
+      allocate (list%quantities(most))
+      call list_columns(list, outcome_t())
+      quantities = list%quantities(:list%n)
+   end function quantities
+
+   !> An outcome as numbers
+   pure function values_of(outcome) result(values)
+      !> The outcome
+      type(outcome_t), intent(in) :: outcome
+      !> Values of the columns, each in its unit, in the order of `quantities`
+      real(wp), allocatable :: values(:)
+
+      type(list_t) :: list
+
+      call list_columns(list, outcome)
+      values = list%values(:list%n)
+   end function values_of
+
+   !> Place of a quantity among the columns
+   pure function quantity_place(name) result(place)
+      !> Its name
+      character(len=*), intent(in) :: name
+      !> Its place in `quantities`; 0 where there is none of this name
+      integer :: place
+
+      type(quantity_t), allocatable :: list(:)
+
+      allocate (list, source=quantities())
+      do place = size(list), 1, -1
+         if (list(place)%name == name) return
+      end do
+   end function quantity_place
+
+   !> Value of a quantity
+   pure function quantity_value(outcome, name) result(value)
       !> Outcome
       type(outcome_t), intent(in) :: outcome
-      !> Place of the quantity in `quantities`
-      integer, intent(in) :: index
-      !> Value, in its unit
+      !> Name of the quantity
+      character(len=*), intent(in) :: name
+      !> Value, in its unit; NaN where the impact did not end in separation, or there is no quantity
+      !> of this name
       real(wp) :: value
 
-      real(wp) :: all_values(size(quantities))
+      type(list_t) :: list
+      integer :: place
 
-      all_values = quantity_values(outcome)
-      value = all_values(index)
+      value = ieee_value(value, ieee_quiet_nan)
+      place = quantity_place(name)
+      if (place == 0 .or. outcome%status /= contact_separated) return
+      call list_columns(list, outcome)
+      value = list%values(place)
    end function quantity_value
 
-   !> Values of all quantities, NaN where the impact did not end in separation
-   pure function quantity_values(outcome) result(values)
-      !> Outcome
-      type(outcome_t), intent(in) :: outcome
-      !> Values, each in its unit, in the order of `quantities`
-      real(wp) :: values(size(quantities))
+   !> Texts that the numbers of a column stand for
+   pure function labels_of(quantity) result(labels)
+      !> The column
+      type(quantity_t), intent(in) :: quantity
+      !> The texts, the first one that of the number `quantity%first`
+      character(len=label_length), allocatable :: labels(:)
 
-      values = [outcome%cor, outcome%cor_sphere, outcome%contact_time, &
-         outcome%max_indentation, outcome%max_force, outcome%residual_indentation, &
-         outcome%residual_ratio, outcome%hysteresis_energy, outcome%wave_energy, &
-         outcome%initial_energy, outcome%energy_imbalance, outcome%min_frequency, &
-         outcome%inelasticity, outcome%loss_tangent, outcome%cor_error, &
-         outcome%cor_sphere_error]
-      if (outcome%status == contact_separated) return
-      values = ieee_value(1.0_wp, ieee_quiet_nan)
-      ! a contact that does not end has at least begun
-      if (any(outcome%status == [contact_lasting, contact_sticking])) &
-         where (quantities%name == 'initial_energy') values = outcome%initial_energy
-   end function quantity_values
+      integer :: i
 
-   !> Names of all columns of a summary, steps and status included, separated by blanks
+      ! each has a blank before it
+      allocate (labels(count([(quantity%labels(i:i) == ' ', i=1, len_trim(quantity%labels))])))
+      read (quantity%labels, *) labels
+   end function labels_of
+
+   !> Names of all columns of a summary, separated by blanks
    pure function quantity_names() result(names)
       !> Names
       character(len=:), allocatable :: names
 
+      type(quantity_t), allocatable :: list(:)
       integer :: i
 
-      names = ''
-      do i = 1, size(quantities)
-         names = names//trim(quantities(i)%name)//' '
+      allocate (list, source=quantities())
+      names = trim(list(1)%name)
+      do i = 2, size(list)
+         names = names//' '//trim(list(i)%name)
       end do
-      names = names//'steps status'
    end function quantity_names
 
    !> Name of a status
@@ -151,38 +310,12 @@ contains
       !> separated, no_separation, sticks, invalid, failed or pending
       character(len=:), allocatable :: name
 
-      name = trim(status_label(status))
+      integer :: i
+
+      name = 'failed'
+      do i = 1, size(statuses)
+         if (statuses(i)%code == status) name = trim(statuses(i)%name)
+      end do
    end function status_name
-
-   !> The same with blanks at its end
-   elemental function status_label(status) result(label)
-      !> One of the `contact_*` and `point_*` constants
-      integer, intent(in) :: status
-      !> Name
-      character(len=longest_status) :: label
-
-      integer :: i
-
-      do i = 1, size(statuses)
-         if (statuses(i)%code == status) exit
-      end do
-      label = 'failed'
-      if (i <= size(statuses)) label = statuses(i)%name
-   end function status_label
-
-   !> Status by its name
-   pure function status_code(name) result(status)
-      !> Its name
-      character(len=*), intent(in) :: name
-      !> One of the `contact_*` and `point_*` constants; pending where there is no such name
-      integer :: status
-
-      integer :: i
-
-      status = point_pending
-      do i = 1, size(statuses)
-         if (statuses(i)%name == name) status = statuses(i)%code
-      end do
-   end function status_code
 
 end module vcor_sweep_quantity

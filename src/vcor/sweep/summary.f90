@@ -2,38 +2,37 @@
 module vcor_sweep_summary
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_error, only : error_file, error_t, raise
-   use vcor_impact_outcome, only : outcome_t
    use vcor_kinds, only : wp
-   use vcor_sweep_quantity, only : point_pending, quantities, quantity_values
+   use vcor_sweep_part, only : part_t
+   use vcor_sweep_quantity, only : point_pending, quantities, quantity_t
    use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: summary_t, new_summary, row_of, numbers_per_point, status_place
+   public :: summary_t, values_t, new_summary
 
-   !> Numbers that an outcome is packed into
-   integer, parameter :: numbers_per_point = size(quantities) + 2
-   !> Place of the status among them
-   integer, parameter :: status_place = numbers_per_point
-
-   !> Values of one quantity
+   !> Values of one column, shape (points); NaN or 0 where a point has none, anything where it is
+   !> pending
    type :: values_t
-      !> Values in the unit of the quantity, NaN where a point has none, anything where it is
-      !> pending, shape (points)
-      real(wp), allocatable :: at(:)
+      !> Of numbers, in their unit
+      real(wp), allocatable :: reals(:)
+      !> Of whole numbers and of the numbers that stand for texts
+      integer, allocatable :: integers(:)
    end type values_t
 
    !> Outcomes
    type :: summary_t
-      !> Quantities, in the order of `quantities`
-      type(values_t) :: values(size(quantities))
-      !> Time steps, shape (points)
-      integer, allocatable :: steps(:)
+      !> What the columns are, the status the last one
+      type(quantity_t), allocatable :: quantities(:)
+      !> All but the status, in the order of `quantities`
+      type(values_t), allocatable :: values(:)
       !> Status, one of the `contact_*` and `point_*` constants, shape (points)
       integer, allocatable :: status(:)
    contains
       !> Keep the outcome of a point
       procedure :: put
+      !> Keep the outcomes of a part
+      procedure :: put_part
       !> NaN for the values of pending points
       procedure :: blank_pending
    end type summary_t
@@ -51,57 +50,90 @@ contains
 
       integer :: i, status
 
-      allocate (self%steps(points), stat=status)
-      if (status == 0) allocate (self%status(points), stat=status)
-      do i = 1, size(quantities)
-         if (status == 0) allocate (self%values(i)%at(points), stat=status)
+      allocate (self%quantities, source=quantities())
+      allocate (self%values(size(self%quantities) - 1))
+      allocate (self%status(points), stat=status)
+      do i = 1, size(self%values)
+         if (status /= 0) exit
+         if (self%quantities(i)%is_whole) then
+            allocate (self%values(i)%integers(points), stat=status)
+         else
+            allocate (self%values(i)%reals(points), stat=status)
+         end if
       end do
-      if (status /= 0) call raise(error, error_file, 'there is not enough memory for the ' &
-         //'outcomes of '//integer_text(points)//' impacts')
-      if (allocated(error)) return
-      self%steps = 0
-      self%status = point_pending
+      if (status == 0) then
+         self%status = point_pending
+      else
+         call raise(error, error_file, 'there is not enough memory for the outcomes of ' &
+            //integer_text(points)//' impacts')
+      end if
    end subroutine new_summary
 
-   !> NaN for the values of pending points, before they are written
+   !> NaN or 0 for the values of pending points, before they are written
    pure subroutine blank_pending(self)
       !> The summary
       class(summary_t), intent(inout) :: self
 
       integer :: i
 
-      do i = 1, size(quantities)
-         where (self%status == point_pending) &
-            self%values(i)%at = ieee_value(1.0_wp, ieee_quiet_nan)
+      do i = 1, size(self%values)
+         associate (values => self%values(i))
+            if (allocated(values%integers)) then
+               where (self%status == point_pending) values%integers = 0
+            else
+               where (self%status == point_pending) &
+                  values%reals = ieee_value(1.0_wp, ieee_quiet_nan)
+            end if
+         end associate
       end do
    end subroutine blank_pending
 
-   !> An outcome as numbers
-   pure function row_of(outcome) result(row)
-      !> The outcome
-      type(outcome_t), intent(in) :: outcome
-      !> Quantities, steps, status
-      real(wp) :: row(numbers_per_point)
-
-      row = [quantity_values(outcome), real([outcome%steps, outcome%status], wp)]
-   end function row_of
-
    !> Keep the outcome of a point
-   pure subroutine put(self, place, row)
+   pure subroutine put(self, place, values)
       !> The summary
       class(summary_t), intent(inout) :: self
       !> Its place
       integer, intent(in) :: place
-      !> The outcome as numbers, as `row_of` made them
-      real(wp), intent(in) :: row(numbers_per_point)
+      !> The outcome as numbers, as `values_of` makes them
+      real(wp), intent(in) :: values(:)
 
       integer :: i
 
-      do i = 1, size(quantities)
-         self%values(i)%at(place) = row(i)
+      do i = 1, size(self%values)
+         if (allocated(self%values(i)%integers)) then
+            self%values(i)%integers(place) = nint(values(i))
+         else
+            self%values(i)%reals(place) = values(i)
+         end if
       end do
-      self%steps(place) = nint(row(status_place - 1))
-      self%status(place) = nint(row(status_place))
+      self%status(place) = nint(values(size(values)))
    end subroutine put
+
+   !> Keep the outcomes of a part
+   pure subroutine put_part(self, part, outcomes)
+      !> Outcomes of all points
+      class(summary_t), intent(inout) :: self
+      !> The part
+      type(part_t), intent(in) :: part
+      !> Outcomes of its points
+      type(summary_t), intent(in) :: outcomes
+
+      integer :: i, j
+
+      do i = 1, size(self%values)
+         associate (all_values => self%values(i), values => outcomes%values(i))
+            do j = 1, part%count()
+               if (allocated(values%reals)) then
+                  all_values%reals(part%point(j)) = values%reals(j)
+               else
+                  all_values%integers(part%point(j)) = values%integers(j)
+               end if
+            end do
+         end associate
+      end do
+      do j = 1, part%count()
+         self%status(part%point(j)) = outcomes%status(j)
+      end do
+   end subroutine put_part
 
 end module vcor_sweep_summary

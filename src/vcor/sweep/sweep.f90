@@ -12,7 +12,8 @@
 module vcor_sweep_sweep
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_sticking, trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
+      trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver, only : solve_impact
    use vcor_case_axes, only : new_grid
@@ -140,8 +141,8 @@ contains
       if (.not. allocated(error)) call solve_impact(worker%problem%solver, worker%problem%impact, &
          worker%trajectory, outcome, error)
       if (.not. allocated(error)) return
-      outcome%status = point_failed
-      if (error%code == error_input) outcome%status = point_invalid
+      outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
+         steps=outcome%steps)
    end subroutine solve_point
 
    !> Build the impact of a point
@@ -182,10 +183,12 @@ contains
    pure function lacking(status) result(reason)
       !> Status of its outcome
       integer, intent(in) :: status
-      !> In words
+      !> In words; empty where it has one
       character(len=:), allocatable :: reason
 
       select case (status)
+      case (contact_separated)
+         reason = ''
       case (contact_lasting)
          reason = 'the bodies do not separate within solver.end_time'
       case (contact_sticking)

@@ -7,7 +7,7 @@ module vcor_verify_judge
    use vcor_verify_attempt, only : attempt_t
    use vcor_verify_comparison_type, only : attempt_count, attempt_first, &
       attempt_halved, attempt_refined, compared_names, compared_t, comparison_t, object
-   use vcor_sweep_quantity, only : quantities, quantity_value, status_name
+   use vcor_sweep_quantity, only : quantity_value, status_name
    implicit none
    private
 
@@ -88,7 +88,7 @@ contains
       self%name = name
       do i = 1, attempt_count
          self%value(i) = ieee_value(self%value(i), ieee_quiet_nan)
-         if (attempts(i)%made) self%value(i) = value_of(name, attempts(i)%outcome)
+         if (attempts(i)%made) self%value(i) = quantity_value(attempts(i)%outcome, name)
       end do
       self%direct = richardson(self%value(attempt_halved))
       if (two_methods) then
@@ -270,22 +270,5 @@ contains
          whole = 0.0_wp
       end select
    end function size_of_whole
-
-   !> Value of a quantity by its name
-   pure function value_of(name, outcome) result(value)
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Outcome
-      type(outcome_t), intent(in) :: outcome
-      !> Value
-      real(wp) :: value
-
-      integer :: i
-
-      value = ieee_value(value, ieee_quiet_nan)
-      do i = 1, size(quantities)
-         if (quantities(i)%name == name) value = quantity_value(outcome, i)
-      end do
-   end function value_of
 
 end module vcor_verify_judge

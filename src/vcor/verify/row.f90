@@ -9,7 +9,7 @@ module vcor_verify_row
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_sweep_quantity, only : quantities, quantity_value
+   use vcor_sweep_quantity, only : quantity_value
    implicit none
    private
 
@@ -264,14 +264,8 @@ contains
       !> The number; NaN for a quantity of this name that does not exist
       real(wp) :: value
 
-      integer :: i
-
-      value = ieee_value(value, ieee_quiet_nan)
-      do i = 1, size(quantities)
-         if (quantities(i)%name /= row%quantity) cycle
-         value = quantity_value(outcome, i)
-         if (ieee_is_finite(value)) value = value/row%unit
-      end do
+      value = quantity_value(outcome, row%quantity)
+      if (ieee_is_finite(value)) value = value/row%unit
    end function quantity_of
 
 end module vcor_verify_row
