@@ -119,7 +119,7 @@ contains
       integer, intent(in) :: n
       !> Position of the end in the step before, 0 .. 1
       real(wp), intent(in) :: theta
-      !> State: time, impulse and displacement of the sphere are set
+      !> State, of which time, impulse and displacement of the sphere are set
       real(wp), intent(inout) :: node(columns)
 
       real(wp) :: drift(-1:1)
