@@ -146,6 +146,22 @@ def test_stiff_material_without_equilibrium_modulus(vcor):
     assert ends["auto"] == ends["direct"] != ""
 
 
+@pytest.mark.parametrize("beta", ["3.3e7", "3.5e7", "1.0e8"])
+def test_nearly_a_fluid(vcor, beta):
+    """Contact lasts ten minutes and ends: that fixed steps give up earlier is no answer."""
+    found = []
+    for accuracy in ("1e-6", "1e-8", "1e-10"):
+        done = vcor(
+            *["run", PAPER / "sls.nml", "--print", "cor", "--set", f"rubber.beta={beta}"],
+            *["--set", "rubber.alpha=1e-4", "--set", f"solver.accuracy={accuracy}"],
+        )
+        assert done.code in {SUCCESS, NUMERICAL}
+        assert "do not separate" not in done.err
+        if done.code == SUCCESS:
+            found.append(float(done.out.split()[-1]))
+    assert found and max(found) - min(found) <= 1e-11
+
+
 def test_step_without_effect(vcor):
     """A time step beside the method that chooses its own is told to be without effect; set for it,
     it is refused."""

@@ -5,7 +5,8 @@
 module vcor_solver_auto
    use vcor_error, only : error_numerical, error_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
+   use vcor_kinds, only : wp
    use vcor_solver_ive, only : ive_t
    use vcor_solver_direct_product, only : product_t
    use vcor_solver_type, only : solver_t
@@ -37,13 +38,20 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(error_t), allocatable :: failure
+
       call self%ive%solve(impact, trajectory, error)
       if (allocated(error)) then
          if (error%code /= error_numerical) return
+         call move_alloc(error, failure)
       else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
          return
       end if
       call self%product%solve(impact, trajectory, error)
+      if (allocated(error) .or. .not. allocated(failure)) return
+      ! that equal steps run out says nothing about a contact whose end nobody has set
+      if (trajectory%status == contact_lasting .and. &
+          .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
    end subroutine solve
 
 end module vcor_solver_auto

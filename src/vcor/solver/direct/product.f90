@@ -42,7 +42,6 @@ module vcor_solver_direct_product
 
    !> Product integration
    type, extends(solver_t) :: product_t
-      private
       !> With a time step of 0 it is refined until the accuracy is reached
       type(solver_settings_t) :: settings
    contains
