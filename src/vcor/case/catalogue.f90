@@ -112,7 +112,7 @@ module vcor_case_catalogue
       !
       & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
       &    choices="boltzmann receding", default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "Rule that combines two viscoelastic bodies", &
+      & key_t("contact", "pair", text_key, "Rule that combines the moduli of two bodies", &
       &    choices="eq1 series", default="eq1"), &
       !
       & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
