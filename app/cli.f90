@@ -7,9 +7,9 @@ module vcor_app_cli
    use vcor_case_name, only : control_in, name_flaw
    use vcor_error, only : error_t, error_usage, raise
    use vcor_words, only : suggestion
-   use vcor_study_moduli, only : time_range_t
+   use vcor_material_moduli, only : time_range_t
    use vcor_sweep_quantity, only : quantity_names
-   use vcor_sweep_points, only : most_threads
+   use vcor_sweep_part, only : most_threads
    use vcor_text, only : printable
    implicit none
    private

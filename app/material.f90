@@ -7,6 +7,7 @@ module vcor_app_material
    use vcor_app_window, only : find_window, take_first_point, window_t
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
+   use vcor_case_problem, only : material_of_case
    use vcor_error, only : error_t
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : write_stdout
@@ -16,7 +17,7 @@ module vcor_app_material
    use vcor_io_path, only : make_directory
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
-   use vcor_study_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t
+   use vcor_material_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, specimen_t
    implicit none
    private
 
@@ -35,15 +36,24 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(case_t) :: case
+      type(specimen_t), allocatable :: materials(:)
       type(moduli_t) :: moduli
       type(table_t) :: summary
       character(len=:), allocatable :: title, files, notes
       type(window_t) :: window
+      integer :: i
 
       call take_first_point(job, case, notes, error)
       if (allocated(error)) return
       call find_window(job, window, notes)
-      call compute_moduli(moduli, case, window%contact_time, window%reference, request%range, error)
+      allocate (materials(case%count('material')))
+      do i = 1, size(materials)
+         call case%get('material', 'model', materials(i)%model, i)
+         call material_of_case(case, i, materials(i)%material, error)
+         if (allocated(error)) return
+      end do
+      call compute_moduli(moduli, materials, window%contact_time, window%reference, request%range, &
+         error)
       if (allocated(error)) return
 
       call case%get('case', 'title', title)

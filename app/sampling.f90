@@ -17,8 +17,8 @@ module vcor_app_sampling
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t
    use vcor_words, only : suggestion
-   use vcor_study_moduli, only : sampled_times, time_range_t
-   use vcor_study_reliance, only : solve_case
+   use vcor_material_moduli, only : sampled_times, time_range_t
+   use vcor_case_reliance, only : solve_case
    implicit none
    private
 

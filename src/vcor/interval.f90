@@ -1,4 +1,4 @@
-!> Ranges of numbers
+!> Ranges of numbers, and values spread over them
 module vcor_interval
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_kinds, only : wp
@@ -7,6 +7,7 @@ module vcor_interval
    private
 
    public :: interval_t, contains_number, is_within, is_computable, interval_text, largest, smallest
+   public :: spaced, log_spacing
 
    !> Largest magnitude of a number that is read
    real(wp), parameter :: largest = 1.0e300_wp
@@ -15,6 +16,9 @@ module vcor_interval
    !> Magnitudes of the numbers of a case; nothing physical comes near, and products of some stay
    !> finite
    real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
+
+   !> Spacing of values: equal steps of the logarithm; any other word: of the values themselves
+   character(len=*), parameter :: log_spacing = 'log'
 
    !> Range of a number
    type :: interval_t
@@ -102,5 +106,46 @@ contains
       if (abs(bound) >= whole_below) return
       if (abs(bound - anint(bound)) <= 0.0_wp) text = integer_text(nint(bound))
    end function bound_text
+
+   !> Values between two ends, which are met exactly
+   pure function spaced(start, stop, count, spacing) result(values)
+      !> First value; > 0 with logarithmic spacing
+      real(wp), intent(in) :: start
+      !> Last value, which may be below the first one; > 0 with logarithmic spacing
+      real(wp), intent(in) :: stop
+      !> Number of values, > 0; where it is 1, the value is `start`
+      integer, intent(in) :: count
+      !> `linear` or `log`
+      character(len=*), intent(in) :: spacing
+      !> The values, shape (count)
+      real(wp) :: values(count)
+
+      integer :: i
+
+      ! both forms are exact where the values are whole numbers or decades
+      do i = 2, count - 1
+         if (spacing == log_spacing) then
+            values(i) = 10.0_wp**between(log10(start), log10(stop))
+         else
+            values(i) = between(start, stop)
+         end if
+      end do
+      values(count) = stop
+      values(1) = start
+
+   contains
+
+      !> Value i of so many in equal steps
+      pure function between(a, b)
+         !> First value
+         real(wp), intent(in) :: a
+         !> Last value
+         real(wp), intent(in) :: b
+         !> Value i
+         real(wp) :: between
+
+         between = (a*real(count - i, wp) + b*real(i - 1, wp))/real(count - 1, wp)
+      end function between
+   end function spaced
 
 end module vcor_interval

@@ -9,8 +9,8 @@ module vcor_solver
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
-   use vcor_solver_type, only : default_accuracy, solve_by => solve_impact, solver_settings_t, &
-      solver_t
+   use vcor_solver_type, only : default_accuracy, method_for, solve_by => solve_impact, &
+      solver_settings_t, solver_t
    implicit none
    private
 
@@ -49,20 +49,6 @@ module vcor_solver
    end interface new_solver
 
 contains
-
-   !> The method: `auto` is ive, which hands over to direct where it fails, but direct where a
-   !> scheme other than product is asked for
-   pure function method_for(method, scheme) result(name)
-      !> What the user asks for: auto, ive or direct
-      character(len=*), intent(in) :: method
-      !> Scheme of the direct method that the user asks for
-      character(len=*), intent(in) :: scheme
-      !> ive or direct
-      character(len=:), allocatable :: name
-
-      name = method
-      if (method == 'auto') name = trim(merge('ive   ', 'direct', scheme == 'product'))
-   end function method_for
 
    !> Check that an impact can be solved as it is to be; the solver itself is the same for all of
    !> them

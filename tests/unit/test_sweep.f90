@@ -6,6 +6,7 @@ program test_sweep
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : override, read_case_text
+   use vcor_interval, only : spaced
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
    use vcor_case_axes, only : new_grid
@@ -13,7 +14,7 @@ program test_sweep
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_checks, only : validate
    use vcor_sweep_failures, only : failures_t
-   use vcor_case_grid, only : axis_t, grid_t, spaced
+   use vcor_case_grid, only : axis_t, grid_t
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, status_name, &
       values_of

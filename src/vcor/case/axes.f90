@@ -1,11 +1,12 @@
 !> From the &sweep groups of a case to a grid of parameters; what cannot be swept is refused
 module vcor_case_axes
    use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_interval, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_numeric_sorting, only : sort
    use vcor_case_address, only : resolve
    use vcor_case_case, only : case_t, operator(==)
-   use vcor_case_grid, only : axis_t, grid_t, log_spacing, spaced
+   use vcor_case_grid, only : axis_t, grid_t
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
       & row_for_model
    use vcor_text, only : integer_text, real_text, shortened

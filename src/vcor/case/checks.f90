@@ -5,18 +5,17 @@ module vcor_case_checks
    use vcor_case_axes, only : new_grid
    use vcor_case_consistency, only : check_consistency
    use vcor_case_grid, only : grid_t
-   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
-      & keys_of, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
+   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, &
+      & keys_of, last_row, row_for_model, wanted
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_interval, only : contains_number, is_computable
-   use vcor_kinds, only : wp
-   use vcor_text, only : integer_text, printable, real_text, shortened
-   use vcor_words, only : contains_word, join_words, nearest_name
+   use vcor_case_values, only : range_message
+   use vcor_text, only : printable, shortened
+   use vcor_words, only : join_words
    implicit none
    private
 
-   public :: validate, range_message
+   public :: validate
 
 contains
 
@@ -171,49 +170,5 @@ contains
 
       call raise(error, error_input, self%location(groups(group)%name, key, item)//": "//message)
    end subroutine fail
-
-   !> What is wrong with the value of an entry, as far as its range says
-   pure function range_message(key, entry) result(message)
-      !> The key, of the model of the entry's item
-      type(key_t), intent(in) :: key
-      !> The entry
-      type(entry_t), intent(in) :: entry
-      !> Found and expected; empty when nothing is wrong
-      character(len=:), allocatable :: message
-      character(len=:), allocatable :: near
-      integer :: i
-
-      message = ""
-      near = ""
-      select case (key%value_kind)
-      case (real_key)
-         if (.not. contains_number(key%range, entry%number)) message = real_text(entry%number)
-      case (integer_key)
-         if (.not. contains_number(key%range, entry%number)) &
-            & message = integer_text(nint(entry%number))
-      case (list_key)
-         do i = 1, size(entry%list)
-            if (contains_number(key%range, entry%list(i))) cycle
-            message = real_text(entry%list(i))//" in value "//integer_text(i)
-            exit
-         end do
-      case (text_key)
-         if (key%choices /= "" .and. .not. contains_word(key%choices, entry%text)) then
-            message = "'"//shortened(entry%text)//"'"
-            ! a single letter is near to every other
-            if (len_trim(entry%text) > 1) near = nearest_name(entry%text, trim(key%choices))
-         else if (entry%text == "" .and. key%default /= "''") then
-            message = "an empty text"
-         end if
-      case default
-         continue
-      end select
-      if (message /= "") message = "found "//message//", expected "//wanted(key)
-      if (message /= "" .and. key%value_kind == real_key) then
-         if (.not. is_computable(entry%number)) message = message//", between 1e-60 and 1e60 in " &
-            & //"magnitude: beyond that nothing can be computed"
-      end if
-      if (near /= "") message = message//"; did you mean '"//near//"'?"
-   end function range_message
 
 end module vcor_case_checks

@@ -8,10 +8,7 @@ module vcor_case_grid
    implicit none
    private
 
-   public :: axis_t, grid_t, spaced, log_spacing
-
-   !> Spacing of values: equal steps of the logarithm; any other word: of the values themselves
-   character(len=*), parameter :: log_spacing = 'log'
+   public :: axis_t, grid_t
 
    !> One parameter and its values
    type :: axis_t
@@ -74,46 +71,5 @@ contains
          end associate
       end do
    end function places
-
-   !> Values between two ends, which are met exactly
-   pure function spaced(start, stop, count, spacing) result(values)
-      !> First value; > 0 with logarithmic spacing
-      real(wp), intent(in) :: start
-      !> Last value, which may be below the first one; > 0 with logarithmic spacing
-      real(wp), intent(in) :: stop
-      !> Number of values, > 0; where it is 1, the value is `start`
-      integer, intent(in) :: count
-      !> `linear` or `log`
-      character(len=*), intent(in) :: spacing
-      !> The values, shape (count)
-      real(wp) :: values(count)
-
-      integer :: i
-
-      ! both forms are exact where the values are whole numbers or decades
-      do i = 2, count - 1
-         if (spacing == log_spacing) then
-            values(i) = 10.0_wp**between(log10(start), log10(stop))
-         else
-            values(i) = between(start, stop)
-         end if
-      end do
-      values(count) = stop
-      values(1) = start
-
-   contains
-
-      !> Value i of so many in equal steps
-      pure function between(a, b)
-         !> First value
-         real(wp), intent(in) :: a
-         !> Last value
-         real(wp), intent(in) :: b
-         !> Value i
-         real(wp) :: between
-
-         between = (a*real(count - i, wp) + b*real(i - 1, wp))/real(count - 1, wp)
-      end function between
-   end function spaced
 
 end module vcor_case_grid

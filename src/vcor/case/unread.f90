@@ -4,7 +4,7 @@
 !> What is read stands here by name, so a key that nobody has thought of is refused.
 module vcor_case_unread
    use vcor_error, only : error_input, error_t, raise
-   use vcor_solver, only : method_for
+   use vcor_solver_type, only : method_for
    use vcor_text, only : integer_text
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)

@@ -8,12 +8,13 @@ module vcor_case_values
       & text_key, wanted
    use vcor_case_case, only : entry_t
    use vcor_case_name, only : control_in
-   use vcor_text, only : integer_text, is_utf8, lower, quoted, shortened
-   use vcor_words, only : spelled
+   use vcor_interval, only : contains_number, is_computable
+   use vcor_text, only : integer_text, is_utf8, lower, quoted, real_text, shortened
+   use vcor_words, only : contains_word, nearest_name, spelled
    implicit none
    private
 
-   public :: convert, convert_text, longest_list
+   public :: convert, convert_text, range_message
 
    !> Most numbers of a list
    integer, parameter :: longest_list = 1000000
@@ -279,5 +280,49 @@ contains
       if (text(i:i) == "," .and. verify(text(values(1)%last:values(1)%last), digits) == 0) &
          & message = message//" (with a decimal point, not a comma)"
    end function too_many
+
+   !> What is wrong with the value of an entry, as far as its range says
+   pure function range_message(key, entry) result(message)
+      !> The key, of the model of the entry's item
+      type(key_t), intent(in) :: key
+      !> The entry
+      type(entry_t), intent(in) :: entry
+      !> Found and expected; empty when nothing is wrong
+      character(len=:), allocatable :: message
+      character(len=:), allocatable :: near
+      integer :: i
+
+      message = ""
+      near = ""
+      select case (key%value_kind)
+      case (real_key)
+         if (.not. contains_number(key%range, entry%number)) message = real_text(entry%number)
+      case (integer_key)
+         if (.not. contains_number(key%range, entry%number)) &
+            & message = integer_text(nint(entry%number))
+      case (list_key)
+         do i = 1, size(entry%list)
+            if (contains_number(key%range, entry%list(i))) cycle
+            message = real_text(entry%list(i))//" in value "//integer_text(i)
+            exit
+         end do
+      case (text_key)
+         if (key%choices /= "" .and. .not. contains_word(key%choices, entry%text)) then
+            message = "'"//shortened(entry%text)//"'"
+            ! a single letter is near to every other
+            if (len_trim(entry%text) > 1) near = nearest_name(entry%text, trim(key%choices))
+         else if (entry%text == "" .and. key%default /= "''") then
+            message = "an empty text"
+         end if
+      case default
+         continue
+      end select
+      if (message /= "") message = "found "//message//", expected "//wanted(key)
+      if (message /= "" .and. key%value_kind == real_key) then
+         if (.not. is_computable(entry%number)) message = message//", between 1e-60 and 1e60 in " &
+            & //"magnitude: beyond that nothing can be computed"
+      end if
+      if (near /= "") message = message//"; did you mean '"//near//"'?"
+   end function range_message
 
 end module vcor_case_values

@@ -6,10 +6,9 @@ module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
    use vcor_io_text_file, only : read_text_file
-   use vcor_case_values, only : convert, convert_text
+   use vcor_case_values, only : convert, convert_text, range_message
    use vcor_case_address, only : resolve, unknown_group, unknown_key
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_checks, only : range_message
    use vcor_case_catalogue, only : catalogue, find_group, groups, key_t, list_key, real_key
    use vcor_text, only : has_control, integer_text, printable, shortened
    implicit none

@@ -11,7 +11,7 @@
 module vcor_io_moduli_tables
    use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_study_moduli, only : curves_t, loss_tangent, moduli_t
+   use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    implicit none
    private
 

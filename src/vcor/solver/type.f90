@@ -9,7 +9,8 @@ module vcor_solver_type
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth, &
+      method_for
 
    !> Letters of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
@@ -59,6 +60,20 @@ module vcor_solver_type
    end interface
 
 contains
+
+   !> The method: `auto` is ive, which hands over to direct where it fails, but direct where a
+   !> scheme other than product is asked for
+   pure function method_for(method, scheme) result(name)
+      !> What the user asks for: auto, ive or direct
+      character(len=*), intent(in) :: method
+      !> Scheme of the direct method that the user asks for
+      character(len=*), intent(in) :: scheme
+      !> ive or direct
+      character(len=:), allocatable :: name
+
+      name = method
+      if (method == 'auto') name = trim(merge('ive   ', 'direct', scheme == 'product'))
+   end function method_for
 
    !> Accuracy of the coefficient of restitution where none is asked for
    pure function default_accuracy(method) result(accuracy)

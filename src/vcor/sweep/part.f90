@@ -8,7 +8,10 @@ module vcor_sweep_part
    implicit none
    private
 
-   public :: part_t, new_part
+   public :: part_t, new_part, most_threads
+
+   !> Most threads of a process that can be asked for
+   integer, parameter :: most_threads = 1024
 
    !> A part of the points
    type :: part_t

@@ -13,17 +13,15 @@ module vcor_sweep_points
    use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : gathered, largest, of_first, rank_count, this_rank
-   use vcor_sweep_part, only : new_part, part_t
+   use vcor_sweep_part, only : most_threads, new_part, part_t
    use vcor_sweep_quantity, only : point_pending, quantities, values_of
    use vcor_sweep_summary, only : summary_t
    use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
    implicit none
    private
 
-   public :: solve_points, monitor_t, default_threads, most_threads
+   public :: solve_points, monitor_t, default_threads
 
-   !> Most threads that can be asked for
-   integer, parameter :: most_threads = 1024
    !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
    !> and threads wait for each other at its end
    real(wp), parameter :: round_time = 0.2_wp

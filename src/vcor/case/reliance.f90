@@ -5,18 +5,18 @@
 !> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
 !> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it
 !> is; a sum of exponentials would go on growing before the band.
-module vcor_study_reliance
+module vcor_case_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
+   use vcor_material_moduli, only : sampled_times, time_range_t
    use vcor_material_type, only : material_t
    use vcor_solver, only : solve_impact
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_points, put_solver
    use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
-   use vcor_study_moduli, only : sampled_times, time_range_t
    implicit none
    private
 
@@ -114,4 +114,4 @@ contains
          call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
    end subroutine solve_case
 
-end module vcor_study_reliance
+end module vcor_case_reliance

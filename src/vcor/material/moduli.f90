@@ -1,20 +1,18 @@
-!> Moduli of the materials of a case over time and frequency: what Figs. 1 and 5 show
-module vcor_study_moduli
+!> Moduli of materials over time and frequency: what Figs. 1 and 5 show
+module vcor_material_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
       ieee_quiet_nan, ieee_value
    use vcor_constants, only : pi
    use vcor_error, only : error_t, error_usage, raise
+   use vcor_interval, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_case_case, only : case_t
-   use vcor_case_problem, only : material_of_case
-   use vcor_case_grid, only : log_spacing, spaced
    use vcor_text, only : real_text
    implicit none
    private
 
-   public :: moduli_t, curves_t, time_range_t, compute_moduli, sampled_times, usual_range
-   public :: loss_tangent
+   public :: moduli_t, curves_t, time_range_t, specimen_t
+   public :: compute_moduli, sampled_times, usual_range, loss_tangent
 
    !> Points per decade unless a number of points is given
    integer, parameter :: per_decade = 50
@@ -69,7 +67,7 @@ module vcor_study_moduli
       real(wp), allocatable :: loss(:)
    end type curves_t
 
-   !> Moduli of all materials of a case
+   !> Moduli of materials over the times of one range
    type :: moduli_t
       !> Contact time t0 of the impact [s]; 0: it has none
       real(wp) :: contact_time = 0.0_wp
@@ -79,47 +77,45 @@ module vcor_study_moduli
       real(wp), allocatable :: times(:)
       !> Angular frequencies [rad/s], the reciprocals of the times, increasing, shape (points)
       real(wp), allocatable :: frequencies(:)
-      !> The materials, shape (materials of the case)
+      !> The materials, shape (n)
       type(curves_t), allocatable :: materials(:)
    end type moduli_t
 
-   !> A material in an array
-   type :: holder_t
+   !> A material whose moduli are asked for
+   type :: specimen_t
+      !> Its model
+      character(len=:), allocatable :: model
       !> The material
       class(material_t), allocatable :: material
-   end type holder_t
+   end type specimen_t
 
 contains
 
-   !> Compute the moduli of all materials of a case
-   subroutine compute_moduli(self, case, contact_time, reference, range, error)
+   !> Compute the moduli of materials
+   subroutine compute_moduli(self, materials, contact_time, reference, range, error)
       !> The moduli
       type(moduli_t), intent(out) :: self
-      !> A validated case, its data read
-      type(case_t), intent(in) :: case
-      !> Contact time of its impact [s]; 0: it has none
+      !> The materials, shape (n)
+      type(specimen_t), intent(in) :: materials(:)
+      !> Contact time of their impact [s]; 0: it has none
       real(wp), intent(in) :: contact_time
       !> Time about which the range is chosen [s], > 0: the contact time, or the time scale of a
       !> contact that does not end
       real(wp), intent(in) :: reference
       !> Times to be taken
       type(time_range_t), intent(in) :: range
-      !> Error of code `error_input`, of code `error_usage` if the range is empty; unallocated on
-      !> success
+      !> Error of code `error_usage` if the range is empty, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(holder_t), allocatable :: holders(:)
       type(time_range_t) :: all, usual
       integer :: i, n
 
-      n = case%count('material')
-      allocate (holders(n), self%materials(n))
+      n = size(materials)
+      allocate (self%materials(n))
       all = time_range_t(huge(1.0_wp), 0.0_wp, range%points)
       do i = 1, n
-         call material_of_case(case, i, holders(i)%material, error)
-         if (allocated(error)) return
-         usual = usual_range(holders(i)%material, reference)
-         if (holders(i)%material%rigid .and. n > 1) cycle
+         usual = usual_range(materials(i)%material, reference)
+         if (materials(i)%material%rigid .and. n > 1) cycle
          all%first = min(all%first, usual%first)
          all%last = max(all%last, usual%last)
       end do
@@ -136,8 +132,8 @@ contains
       self%times = sampled_times(all)
       self%frequencies = sampled_times(time_range_t(1.0_wp/all%last, 1.0_wp/all%first, all%points))
       do i = 1, n
-         self%materials(i) = curves_of(holders(i)%material, self)
-         call case%get('material', 'model', self%materials(i)%model, i)
+         self%materials(i) = curves_of(materials(i)%material, self)
+         self%materials(i)%model = materials(i)%model
       end do
    end subroutine compute_moduli
 
@@ -253,4 +249,4 @@ contains
       times = spaced(range%first, range%last, n, log_spacing)
    end function sampled_times
 
-end module vcor_study_moduli
+end module vcor_material_moduli
