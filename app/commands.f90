@@ -192,7 +192,8 @@ module vcor_app_commands
       entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
       //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
       //"steps per contact, extrapolated. If the case asks for another scheme, that solution is " &
-      //"shown too. No files are written. The columns are:"), &
+      //"shown too. Then the numbers of every plate model, both contact laws and, where it makes " &
+      //"a difference, both pairs. No files are written. The columns are:"), &
       entry_t("states", "error of cor that the solution itself estimates"), &
       entry_t("off by", "distance from the best cor; honest if at most three times the estimate"), &
       entry_t("dW/KE_0", "energy imbalance over the energy before the impact"), &

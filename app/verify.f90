@@ -2,20 +2,18 @@
 module vcor_app_verify
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : heading, right, short, significant, visible
+   use vcor_app_screen, only : heading, padded, right, short, significant, visible
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_file, only : write_stdout
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : status_name
    use vcor_text, only : integer_text
-   use vcor_verify_comparison, only : compare
-   use vcor_verify_comparison_type, only : attempt_case, attempt_count, attempt_first, &
-      attempt_halved, attempt_refined, comparison_t
+   use vcor_verify, only : build_law, evaluate_law, law_count, law_t, verdict_t
+   use vcor_verify_comparison, only : compare, model_t, solve_models
    use vcor_verify_judge, only : error_of_best, is_honest
-   use vcor_verify_models, only : model_t, solve_models
-   use vcor_verify_row, only : law_t, verdict_t
-   use vcor_verify_table, only : build_law, law_count, verify_law
+   use vcor_verify_solutions, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
+      attempt_refined, comparison_t
    use vcor_version, only : version
    implicit none
    private
@@ -46,14 +44,14 @@ contains
       do i = 1, law_count
          if (.not. allocated(error)) call build_law(i, law, error)
          if (allocated(error)) return
-         call verify_law(law, verdicts)
+         call evaluate_law(law, verdicts)
          if (.not. quiet) call write_stdout(nl//law_text(law, verdicts), error)
-         do j = 1, law%count
+         do j = 1, size(verdicts)
             rows = rows + 1
             if (verdicts(j)%passed) cycle
             failed = failed + 1
-            if (failed == 1) first = law%title//': '//law%rows(j)%name//', ' &
-               //trim(law%rows(j)%method)
+            if (failed == 1) first = law%title//': '//trim(verdicts(j)%name)//', ' &
+               //trim(verdicts(j)%method)
          end do
       end do
       if (.not. quiet .and. .not. allocated(error)) call write_stdout(nl//integer_text(rows) &
@@ -96,22 +94,16 @@ contains
       type(verdict_t), intent(in) :: verdicts(:)
       character(len=:), allocatable :: text
 
-      character(len=32) :: name
-      character(len=6) :: method
       integer :: i
 
-      name = 'check'
-      method = 'method'
-      text = law%title//nl//'  source: '//law%source//nl//'  '//name//method &
-         //'         expected            found deviation tolerance'//nl
-      do i = 1, law%count
-         associate (row => law%rows(i), verdict => verdicts(i))
-            name = row%name
-            method = row%method
-            text = text//'  '//name//method//significant(verdict%expected, 10, 17) &
-               //significant(verdict%found, 10, 17)//column(verdict%deviation, 10) &
-               //column(row%tolerance, 10)//'  '//merge('pass', 'FAIL', verdict%passed)//nl
-            if (.not. verdict%passed) text = text//'    reason of the tolerance: '//row%reason//nl
+      text = law%title//nl//'  source: '//law%source//nl//'  '//padded('check', 32) &
+         //'method         expected            found deviation tolerance'//nl
+      do i = 1, size(verdicts)
+         associate (row => verdicts(i))
+            text = text//'  '//padded(row%name, 32)//row%method//significant(row%expected, 10, 17) &
+               //significant(row%found, 10, 17)//column(row%deviation, 10) &
+               //column(row%tolerance, 10)//'  '//merge('pass', 'FAIL', row%passed)//nl
+            if (.not. row%passed) text = text//'    reason of the tolerance: '//trim(row%reason)//nl
          end associate
       end do
    end function law_text
@@ -151,22 +143,22 @@ contains
       text = text//nl
    end function comparison_text
 
-   !> A case with every plate model and both contact laws
+   !> A case with every plate model and both contact laws, and where that makes a difference all of
+   !> it with the other pair
    function models_text(models) result(text)
       type(model_t), intent(in) :: models(:)
       character(len=:), allocatable :: text
 
-      character(len=10) :: waves
-      character(len=9) :: law
       integer :: i
 
-      waves = 'waves'
-      law = 'law'
       text = '  effect of the choice of model; * marks that of the case'//nl &
-         //'  '//waves//'  '//law//right('cor', 16)//right('cor_sphere', 16) &
-         //right('contact_time [s]', 18)//right('residual_indentation [m]', 26)//nl
+         //'  '//padded('waves', 10)//'  '//padded('law', 9)//right('cor', 16) &
+         //right('cor_sphere', 16)//right('contact_time [s]', 18) &
+         //right('residual_indentation [m]', 26)//nl
       do i = 1, size(models)
          associate (this => models(i))
+            if (this%pair /= models(max(1, i - 1))%pair) &
+               text = text//"  the same with pair = '"//trim(this%pair)//"'"//nl
             text = text//merge('* ', '  ', this%given)//this%waves//'  '//this%law
             if (allocated(this%failure)) then
                text = text//right('refused', 16)//nl

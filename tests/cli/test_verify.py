@@ -78,6 +78,41 @@ def test_nothing_left_is_shown_as_zero(vcor):
     assert len(shown) == 10 and set(shown) == {"0"}
 
 
+def mechanics(out):
+    """Cor by waves and law, of the case's pair and of the other one if that is shown."""
+    lines = out[out.index("effect of the choice of model") :].splitlines()[2:]
+    words = [line.lstrip("* ").split() for line in lines if line]
+    middle = next((i for i, line in enumerate(words) if line[0] == "the"), len(words))
+    tables = [{tuple(line[:2]): float(line[2]) for line in part}
+              for part in (words[:middle], words[middle + 1 :])]  # fmt: skip
+    return tables, [line for line in lines if "pair" in line]
+
+
+def test_the_other_pair_is_shown_where_it_matters(vcor):
+    """Two bodies that relax differently: the rows are those of the case with the other pair."""
+    vcor.write(SLS + SLS[SLS.rindex("&material") :].replace("'rubber'", "'ball'"))
+    soft = ["--set", "sphere.material=ball", "--set", "ball.beta=900.0"]
+    (eq1, series), heading = mechanics(vcor.succeeds("verify", "case.nml", *soft))
+    assert heading == ["  the same with pair = 'series'"]
+    assert len(eq1) == len(series) == 10
+    (first, second), heading = mechanics(
+        vcor.succeeds("verify", "case.nml", *soft, "--set", "contact.pair=series")
+    )
+    assert heading == ["  the same with pair = 'eq1'"]
+    assert (first, second) == (series, eq1)
+    assert series["relaxing", "boltzmann"] != pytest.approx(eq1["relaxing", "boltzmann"], abs=1e-4)
+    run = vcor.succeeds("run", "case.nml", *soft, "--set", "contact.pair=series", "--print", "cor")
+    assert series["relaxing", "boltzmann"] == pytest.approx(float(run), abs=1e-8)
+
+
+@pytest.mark.parametrize("sphere", ["steel", "rubber"])
+def test_the_other_pair_is_left_out_where_it_is_the_same(vcor, sphere):
+    vcor.write(SLS)
+    out = vcor.succeeds("verify", "case.nml", "--set", f"sphere.material={sphere}")
+    (_, other), heading = mechanics(out)
+    assert not other and not heading
+
+
 # ------------------------------------------------------------------------------ the table of laws
 
 

@@ -4,21 +4,19 @@ program test_verification
       ieee_quiet_nan, ieee_value
    use vcor_error, only : error_internal, error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, contact_sticking
    use vcor_io_case_reader, only : override, read_case
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_verify, only : build_law, evaluate_law, law_count
    use vcor_verify_comparison, only : compare
-   use vcor_verify_attempt, only : attempt_t
    use vcor_verify_judge, only : is_honest, judge_ends, judge_numbers
-   use vcor_verify_comparison_type, only : attempt_first, attempt_halved, attempt_refined, &
+   use vcor_verify_law, only : judge, law_t, row_t, second_cor, verdict_t
+   use vcor_verify_solutions, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
       comparison_t
-   use vcor_verify_table, only : build_law, law_count, verify_law
-   use vcor_verify_impacts, only : elastic, sls, strike
-   use vcor_verify_row, only : judge, law_t, row_t, verdict_t
+   use vcor_verify_strike, only : elastic, sls, strike_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite
    use vcor_test_cases, only : success
@@ -59,8 +57,8 @@ contains
 
       row%name = "cor"
       row%expected = expected
-      row%tolerance = tolerance
-      allocate (row%parameters(0))
+      row%times = 0.0_wp
+      row%more = tolerance
    end function row_of
 
    !> An outcome with a restitution
@@ -80,37 +78,37 @@ contains
       real(wp) :: infinite
 
       infinite = ieee_value(infinite, ieee_positive_inf)
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), [outcome_of(0.5005_wp)])
+      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.5005_wp)])
       call check(verdict%passed, "a value within the tolerance passes")
       call check_close([verdict%expected, verdict%found, verdict%deviation], &
          [0.5_wp, 0.5005_wp, 0.0005_wp], rounding, "expected, found and their difference")
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), [outcome_of(0.4995_wp)])
+      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.4995_wp)])
       call check(verdict%passed, "a value below passes as well")
-      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), [outcome_of(0.4985_wp)])
+      verdict = judge(row_of(0.5_wp, 1.0e-3_wp), 1, [outcome_of(0.4985_wp)])
       call check(.not. verdict%passed, "a value beyond the tolerance fails")
-      verdict = judge(row_of(0.6_wp, 1.0e-3_wp), [outcome_of(0.5_wp)])
+      verdict = judge(row_of(0.6_wp, 1.0e-3_wp), 1, [outcome_of(0.5_wp)])
       call check(.not. verdict%passed, "a wrong expected value fails")
-      verdict = judge(row_of(0.5_wp, 0.0_wp), [outcome_of(0.5_wp)])
+      verdict = judge(row_of(0.5_wp, 0.0_wp), 1, [outcome_of(0.5_wp)])
       call check(verdict%passed, "no tolerance is one")
 
-      verdict = judge(row_of(0.5_wp, 1.0_wp), [outcome_of(nan())])
+      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [outcome_of(nan())])
       call check(.not. verdict%passed, "NaN fails")
-      verdict = judge(row_of(nan(), 1.0_wp), [outcome_of(0.5_wp)])
+      verdict = judge(row_of(nan(), 1.0_wp), 1, [outcome_of(0.5_wp)])
       call check(.not. verdict%passed, "NaN expected fails")
-      verdict = judge(row_of(0.5_wp, nan()), [outcome_of(0.5_wp)])
+      verdict = judge(row_of(0.5_wp, nan()), 1, [outcome_of(0.5_wp)])
       call check(.not. verdict%passed, "NaN for a tolerance fails")
-      verdict = judge(row_of(0.5_wp, infinite), [outcome_of(0.5_wp)])
+      verdict = judge(row_of(0.5_wp, infinite), 1, [outcome_of(0.5_wp)])
       call check(.not. verdict%passed, "an infinite tolerance fails")
-      verdict = judge(row_of(0.5_wp, 1.0_wp), [outcome_of(infinite)])
+      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [outcome_of(infinite)])
       call check(.not. verdict%passed, "infinity fails")
 
       row = row_of(6.0_wp, 1.0e-9_wp)
       row%quantity = "max_force"
       row%unit = 100.0_wp
-      verdict = judge(row, [outcome_of(0.5_wp)])
+      verdict = judge(row, 1, [outcome_of(0.5_wp)])
       call check(verdict%passed, "another quantity in another unit")
       row%quantity = "no_such_quantity"
-      verdict = judge(row, [outcome_of(0.5_wp)])
+      verdict = judge(row, 1, [outcome_of(0.5_wp)])
       call check(.not. verdict%passed, "a quantity that does not exist fails")
    end subroutine test_judge
 
@@ -120,11 +118,11 @@ contains
       type(verdict_t) :: verdict
 
       row = row_of(0.0_wp, 1.0e-3_wp)
-      row%pair = .true.
-      verdict = judge(row, [outcome_of(0.5_wp), outcome_of(0.5004_wp)])
+      row%expectation => second_cor
+      verdict = judge(row, 1, [outcome_of(0.5_wp), outcome_of(0.5004_wp)])
       call check(verdict%passed, "a pair that agrees passes")
       call check_close(verdict%expected, 0.5004_wp, 0.0_wp, "the second one is expected")
-      verdict = judge(row, [outcome_of(0.5_wp), outcome_of(0.502_wp)])
+      verdict = judge(row, 1, [outcome_of(0.5_wp), outcome_of(0.502_wp)])
       call check(.not. verdict%passed, "a pair that does not fails")
    end subroutine test_judge_of_pairs
 
@@ -136,28 +134,25 @@ contains
       row = row_of(0.0_wp, rounding)
       row%measure => weighted_sum
       row%expectation => twice_the_first
-      row%parameters = [1.0_wp, 2.0_wp]
-      verdict = judge(row, [outcome_of(0.4_wp), outcome_of(0.2_wp)])
+      verdict = judge(row, 1, [outcome_of(0.4_wp), outcome_of(0.2_wp)])
       call check(verdict%passed, "a measure against an expectation")
       call check_close([verdict%found, verdict%expected], 0.8_wp, rounding, "both of them")
    end subroutine test_judge_of_measures
 
    !> A sum of restitutions
-   pure function weighted_sum(outcomes, parameters) result(value)
+   pure function weighted_sum(outcomes) result(value)
       type(outcome_t), intent(in) :: outcomes(:)
-      real(wp), intent(in) :: parameters(:)
       real(wp) :: value
 
-      value = sum(parameters*outcomes%cor)
+      value = sum([1.0_wp, 2.0_wp]*outcomes%cor)
    end function weighted_sum
 
    !> Twice the first restitution
-   pure function twice_the_first(outcomes, parameters) result(value)
+   pure function twice_the_first(outcomes) result(value)
       type(outcome_t), intent(in) :: outcomes(:)
-      real(wp), intent(in) :: parameters(:)
       real(wp) :: value
 
-      value = parameters(2)*outcomes(1)%cor
+      value = 2.0_wp*outcomes(1)%cor
    end function twice_the_first
 
    !> No outcome, or one without separation
@@ -165,12 +160,12 @@ contains
       type(verdict_t) :: verdict
       type(outcome_t) :: none(0), sticking
 
-      verdict = judge(row_of(0.5_wp, 1.0_wp), none)
+      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, none)
       call check(.not. verdict%passed, "a row without outcomes fails")
       call check(ieee_is_nan(verdict%found), "nothing was found")
       sticking = outcome_of(0.5_wp)
       sticking%status = contact_sticking
-      verdict = judge(row_of(0.5_wp, 1.0_wp), [sticking])
+      verdict = judge(row_of(0.5_wp, 1.0_wp), 1, [sticking])
       call check(.not. verdict%passed, "a sphere that sticks has no restitution")
    end subroutine test_judge_of_nothing
 
@@ -179,20 +174,29 @@ contains
       integer, parameter :: name_width = 31
       type(law_t) :: law
       type(error_t), allocatable :: error
-      integer :: i, j
+      type(outcome_t) :: none(0)
+      type(verdict_t) :: verdict
+      integer :: i, j, k, method
 
       do i = 1, law_count
          call build_law(i, law, error)
          call success(error, "a law is built")
          call check(len(law%title) > 0 .and. len(law%source) > 0, "a law has a title and a source")
-         call check(law%count > 0 .and. allocated(law%rows(1)%impacts), "a law has rows")
+         call check(law%count > 0, "a law has checks")
          do j = 1, law%count
-            associate (row => law%rows(j))
-               call check(len(row%name) <= name_width, "a name fits its column: "//row%name)
-               call check(len(row%reason) > 0, "a tolerance has a reason: "//row%name)
-               call check(row%tolerance > 0.0_wp .and. row%tolerance &
-                  <= max(1.0e-2_wp, 0.05_wp*abs(row%expected)), "a row can fail: "//row%name)
-               call check(row%method == "ive" .or. row%method == "direct", "a row has a method")
+            associate (this => law%checks(j))
+               call check(this%count > 0 .and. size(this%strikes) > 0, "a check has rows")
+               do k = 1, this%count
+                  associate (row => this%rows(k))
+                     call check(len_trim(row%name) <= name_width, "a name fits: "//row%name)
+                     call check(len_trim(row%reason) > 0, "a tolerance has a reason: "//row%name)
+                     do method = 1, merge(1, 2, this%ive_only)
+                        verdict = judge(row, method, none)
+                        call check(verdict%tolerance > 0.0_wp .and. verdict%tolerance &
+                           <= max(1.0e-2_wp, 0.05_wp*abs(row%expected)), "it can fail: "//row%name)
+                     end do
+                  end associate
+               end do
             end associate
          end do
       end do
@@ -201,26 +205,31 @@ contains
    !> A wrong number is found, an impact without an end too, and the others are not touched
    subroutine test_wrong_law()
       type(law_t) :: law
-      type(impact_t) :: impact, glue
+      type(strike_t) :: rebound, glue
       type(verdict_t), allocatable :: verdicts(:)
 
+      rebound = strike_t(elastic(15.0e6_wp))
+      glue = strike_t(sls(15.0e6_wp, 0.0_wp, 1.0e6_wp))
       call law%begin("a law", "a source")
-      call strike(impact, law%error, elastic(15.0e6_wp))
-      call strike(glue, law%error, sls(15.0e6_wp, 0.0_wp, 1.0e6_wp))
-      call success(law%error, "impacts are built")
-      call law%add("right", "ive", 1.0_wp, 1.0e-8_wp, "accuracy", impact)
-      call law%add("wrong", "ive", 0.9_wp, 1.0e-8_wp, "accuracy")
-      call law%add("glue", "ive", 0.0_wp, 1.0_wp, "any number would do", glue)
-      call law%add("glue again", "ive", 0.0_wp, 1.0_wp, "any number would do")
-      call law%add_pair("pair", "direct", 1.0_wp, "any number would do", impact, glue)
-      call law%add("right again", "direct", 1.0_wp, 1.0e-6_wp, "accuracy", impact)
-      call verify_law(law, verdicts)
-      call check(size(verdicts) == law%count, "a verdict for each row")
-      call check(verdicts(1)%passed .and. verdicts(6)%passed, "right rows pass")
-      call check(.not. verdicts(2)%passed, "a wrong number fails")
+      call law%add_check([rebound])
+      call law%add_row("right", 1.0_wp)
+      call law%add_row("wrong", 0.9_wp)
+      call law%add_check([glue], ive_only=.true.)
+      call law%add_row("glue", 0.0_wp, more=1.0_wp, reason="any number would do")
+      call law%add_row("glue again", 0.0_wp, more=1.0_wp)
+      call law%add_check([rebound, glue], ive_only=.true.)
+      call law%add_row("pair", more=1.0_wp, expectation=second_cor)
+      call law%add_check([strike_t(elastic(-1.0_wp))], ive_only=.true.)
+      call law%add_row("no material", 0.0_wp, more=1.0_wp)
+      call evaluate_law(law, verdicts)
+      call check(size(verdicts) == 8, "a verdict for each row and method")
+      call check(all(verdicts(:4)%method == ["ive   ", "ive   ", "direct", "direct"]), &
+         "all rows of a check by one method, then by the other")
+      call check(verdicts(1)%passed .and. verdicts(3)%passed, "right rows pass")
+      call check(.not. any(verdicts([2, 4])%passed), "a wrong number fails")
       call check_close(verdicts(2)%deviation, 0.1_wp, 1.0e-8_wp, "by as much as it is wrong")
-      call check(.not. any(verdicts(3:5)%passed), "impacts without an end fail")
-      call check(all(ieee_is_nan(verdicts(3:5)%found)), "and leave no number")
+      call check(.not. any(verdicts(5:)%passed), "impacts without an end, or none at all, fail")
+      call check(all(ieee_is_nan(verdicts(5:)%found)), "and leave no number")
    end subroutine test_wrong_law
 
    !> Asking for too many laws is a mistake of the program

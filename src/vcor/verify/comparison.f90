@@ -1,24 +1,40 @@
-!> One case by several methods: what of its outcome can be trusted
+!> One case by several methods: what of its outcome can be trusted; and by other mechanics: what the
+!> choice of the model is worth
 !>
 !> The internal variables at the accuracy of the case and at a hundredth of it, product integration
 !> with three steps halved from one to the next, and the case's own scheme where it is another one.
 !> Product integration gets its steps from the contact time, not from the case. The two methods
 !> share the equation of motion and nothing else, so what they agree on is its solution.
 module vcor_verify_comparison
-   use vcor_error, only : error_t
-   use vcor_impact_problem, only : impact_t
-   use vcor_kinds, only : wp
-   use vcor_solver, only : default_accuracy, solver_settings_t
    use vcor_case_case, only : case_t
-   use vcor_verify_attempt, only : attempt_t
+   use vcor_case_checks, only : validate
+   use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_solver, only : default_accuracy, method_for, new_solver, solve_impact, &
+      solver_settings_t, solver_t
    use vcor_verify_judge, only : judge_ends, judge_numbers
-   use vcor_verify_comparison_type, only : attempt_case, attempt_count, attempt_first, &
-      attempt_halved, attempt_refined, comparison_t
-   use vcor_verify_methods, only : method_of_case, methods_for
+   use vcor_verify_solutions, only : attempt_case, attempt_first, attempt_halved, &
+      attempt_refined, attempt_t, comparison_t
    implicit none
    private
 
-   public :: compare
+   public :: compare, model_t, solve_models
+
+   !> The case with one plate model, one contact law and one pair
+   type :: model_t
+      character(len=10) :: waves = ''
+      character(len=9) :: law = ''
+      character(len=6) :: pair = ''
+      !> Whether it is that of the case
+      logical :: given = .false.
+      !> Why there is no outcome, one line; unallocated if there is one
+      character(len=:), allocatable :: failure
+      type(outcome_t) :: outcome
+   end type model_t
 
 contains
 
@@ -28,103 +44,97 @@ contains
       type(case_t), intent(in) :: case
       !> Its impact
       type(impact_t), intent(in) :: impact
-      !> The comparison
       type(comparison_t), intent(out) :: comparison
       !> What no method can do; numerical failures are part of the comparison. Unallocated on
       !> success
       type(error_t), allocatable, intent(out) :: error
 
+      real(wp), parameter :: finest = 1.0e-11_wp
       type(solver_settings_t) :: settings
-      character(len=:), allocatable :: method
+      type(problem_t) :: problem
+      character(len=:), allocatable :: method, scheme
 
-      comparison%two_methods = size(methods_for()) == 2
-      call take_settings(case, comparison%two_methods, settings)
-      call comparison%attempts(attempt_first)%try(settings, impact, error)
-      if (allocated(error)) return
       call case%get('solver', 'method', method)
-      if (method == 'auto' .and. allocated(comparison%attempts(attempt_first)%failure)) then
-         ! as auto does: direct by itself where ive fails
-         comparison%two_methods = .false.
-         comparison%attempts(attempt_first) = attempt_t()
-         call take_settings(case, comparison%two_methods, settings)
-         call comparison%attempts(attempt_first)%try(settings, impact, error)
+      call case%get('solver', 'scheme', scheme)
+      associate (first => comparison%attempts(attempt_first), &
+                 own => comparison%attempts(attempt_case))
+         settings = settings_of(case, 'ive')
+         call try(first, settings, impact, error)
          if (allocated(error)) return
-      end if
-      if (comparison%two_methods) then
-         settings%accuracy = refined(settings%accuracy)
-         ! a hundredth is more than anybody has asked for
-         call comparison%attempts(attempt_refined)%try(settings, impact, error, lenient=.true.)
+         if (method == 'auto' .and. allocated(first%failure)) then
+            ! as auto does: direct by itself where ive fails
+            comparison%two_methods = .false.
+            first = attempt_t()
+            settings = settings_of(case, 'direct')
+            call try(first, settings, impact, error)
+         else
+            ! a hundredth is more than anybody has asked for, and may be more than ive can do
+            settings%accuracy = max(0.01_wp*settings%accuracy, finest)
+            call try(comparison%attempts(attempt_refined), settings, impact, error, lenient=.true.)
+         end if
+         if (.not. allocated(error)) call halve(comparison%attempts, settings, impact, error)
          if (allocated(error)) return
-      end if
-      call halve(comparison%attempts, settings, impact, error)
-      if (allocated(error)) return
-      if (is_another(case, comparison%two_methods)) then
-         call comparison%attempts(attempt_case)%try_case(case, error)
-         if (allocated(error)) return
-      end if
+         if (method_for(method, scheme) == 'direct' .and. (comparison%two_methods &
+            .or. scheme /= 'product' .or. case%given('solver', 'time_step'))) then
+            own%label = 'case: '//scheme
+            if (case%given('solver', 'time_step')) &
+               call case%get('solver', 'time_step', own%time_step)
+            call problem_of_case(problem, case, error)
+            if (.not. allocated(error)) call own%try(problem%solver, problem%impact, error)
+            if (allocated(error)) return
+         end if
+      end associate
       call judge_ends(comparison)
       if (comparison%separated) call judge_numbers(comparison)
    end subroutine compare
 
+   !> Make an attempt with given settings
+   subroutine try(attempt, settings, impact, error, lenient)
+      type(attempt_t), intent(inout) :: attempt
+      type(solver_settings_t), intent(in) :: settings
+      type(impact_t), intent(in) :: impact
+      !> What is no numerical failure; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      !> Whether an error far above the accuracy is no failure; absent: it is one
+      logical, intent(in), optional :: lenient
+
+      class(solver_t), allocatable :: solver
+
+      attempt%label = settings%method
+      attempt%time_step = settings%time_step
+      if (.not. attempt%time_step > 0.0_wp) attempt%accuracy = settings%accuracy
+      call new_solver(solver, settings, impact, error)
+      if (.not. allocated(error)) call attempt%try(solver, impact, error, lenient)
+   end subroutine try
+
    !> What the attempts take over from the case; not its steps, its scheme or its ghost lines
-   subroutine take_settings(case, two_methods, settings)
+   function settings_of(case, method) result(settings)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Whether its impact can be solved by internal variables
-      logical, intent(in) :: two_methods
-      !> Settings
-      type(solver_settings_t), intent(out) :: settings
+      !> ive or direct
+      character(len=*), intent(in) :: method
+      type(solver_settings_t) :: settings
 
       integer :: order
 
-      settings%method = 'direct'
-      if (two_methods) settings%method = 'ive'
+      settings%method = method
       settings%scheme = 'product'
-      settings%accuracy = default_accuracy(settings%method)
+      settings%accuracy = default_accuracy(method)
       if (case%given('solver', 'accuracy')) &
          call case%get('solver', 'accuracy', settings%accuracy)
       if (case%given('solver', 'end_time')) call case%get('solver', 'end_time', settings%end_time)
       call case%get('solver', 'volterra_order', order)
       if (order == 2) &
          call case%get('solver', 'volterra_coefficient', settings%second_coefficient)
-   end subroutine take_settings
-
-   !> Whether the case's own solver is none of those that are tried anyway
-   function is_another(case, two_methods)
-      !> A validated case
-      type(case_t), intent(in) :: case
-      !> Whether the internal variables were tried
-      logical, intent(in) :: two_methods
-      !> Whether it is
-      logical :: is_another
-
-      character(len=:), allocatable :: scheme
-
-      call case%get('solver', 'scheme', scheme)
-      is_another = method_of_case(case) == 'direct' .and. (two_methods &
-         .or. scheme /= 'product' .or. case%given('solver', 'time_step'))
-   end function is_another
-
-   !> A hundredth of an accuracy, but not below what the internal variables can do
-   pure function refined(accuracy)
-      !> Accuracy
-      real(wp), intent(in) :: accuracy
-      !> Refined one
-      real(wp) :: refined
-
-      real(wp), parameter :: finest = 1.0e-11_wp
-
-      refined = max(0.01_wp*accuracy, finest)
-   end function refined
+   end function settings_of
 
    !> Product integration with steps dt, dt/2 and dt/4; once, and with steps of its own, where the
    !> bodies do not separate and there is no number to extrapolate
    subroutine halve(attempts, settings, impact, error)
       !> All attempts; the first one is made
-      type(attempt_t), intent(inout) :: attempts(attempt_count)
+      type(attempt_t), intent(inout) :: attempts(:)
       !> Settings but for method and step
       type(solver_settings_t), intent(in) :: settings
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -144,14 +154,95 @@ contains
          direct%time_step = impact%law%contact_time*impact%time_scale()/per_contact
       else
          direct%accuracy = default_accuracy('direct')
-         call attempts(attempt_halved(1))%try(direct, impact, error)
+         call try(attempts(attempt_halved(1)), direct, impact, error)
          return
       end if
       do i = 1, size(attempt_halved)
-         call attempts(attempt_halved(i))%try(direct, impact, error)
+         call try(attempts(attempt_halved(i)), direct, impact, error)
          if (allocated(error)) return
          direct%time_step = 0.5_wp*direct%time_step
       end do
    end subroutine halve
+
+   !> Solve a case with every plate model and both contact laws, by the internal variables, then all
+   !> of it with the other pair where that makes a difference. A plate without half thickness or
+   !> density has the model `none` only
+   subroutine solve_models(case, models)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      !> The table
+      type(model_t), allocatable, intent(out) :: models(:)
+
+      character(len=*), parameter :: plates(5) = [character(len=10) :: 'none', 'constant', &
+         'relaxing', 'frozen', 'hereditary']
+      character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
+      type(model_t) :: all(2*size(plates)*size(laws))
+      character(len=:), allocatable :: waves, law, pair
+      logical :: exists
+      integer :: i, j, k, n, half
+
+      call case%get('plate', 'waves', waves)
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      n = 0
+      do k = 1, 2
+         half = n
+         do i = 1, size(plates)
+            do j = 1, size(laws)
+               associate (model => all(n + 1))
+                  model = model_t(plates(i), laws(j), pair, &
+                     plates(i) == waves .and. laws(j) == law .and. k == 1)
+                  call solve_model(case, model, exists)
+                  exists = exists .or. plates(i) == waves .or. j > 1 &
+                     .or. case%given('plate', 'half_thickness')
+               end associate
+               if (.not. exists) exit
+               n = n + 1
+            end do
+         end do
+         pair = trim(merge('series', 'eq1   ', pair == 'eq1'))
+      end do
+      if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
+      allocate (models, source=all(:n))
+   end subroutine solve_models
+
+   !> Whether two outcomes have another restitution, or only one of them has any
+   elemental function differ(a, b)
+      type(outcome_t), intent(in) :: a, b
+      logical :: differ
+
+      differ = a%status /= b%status
+      if (.not. differ .and. a%status == contact_separated) &
+         differ = abs(a%cor - b%cor) > a%cor_error + b%cor_error
+   end function differ
+
+   !> Solve a case with other mechanics
+   subroutine solve_model(case, model, valid)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      !> Its row, outcome or failure to be set
+      type(model_t), intent(inout) :: model
+      !> Whether it is still a valid case
+      logical, intent(out) :: valid
+
+      type(case_t) :: other
+      type(problem_t) :: problem
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+
+      other = case
+      call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
+      call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
+      call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
+      call other%set(other%address('solver', 'method'), 'auto', given=.false.)
+      call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
+      call other%unset(other%address('solver', 'continue_after_separation'))
+      call validate(other, error)
+      valid = .not. allocated(error)
+      if (valid) call problem_of_case(problem, other, error)
+      if (.not. allocated(error)) call solve_impact(problem%solver, problem%impact, trajectory, &
+         model%outcome, error)
+      if (allocated(error)) model%failure = error%message
+   end subroutine solve_model
 
 end module vcor_verify_comparison

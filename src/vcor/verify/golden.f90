@@ -1,19 +1,15 @@
 !> The impacts of Green's paper in the verification table: own reference values and printed ones
 module vcor_verify_golden
    use vcor_impact_plate, only : waves_frozen, waves_hereditary, waves_none, waves_relaxing
-   use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
-   use vcor_verify_methods, only : methods_for
-   use vcor_verify_impacts, only : elastic, sls, strike
-   use vcor_verify_row, only : accuracy_of, law_t
+   use vcor_verify_law, only : law_t, others_follow
+   use vcor_verify_strike, only : elastic, sls, strike_t
    implicit none
    private
 
    public :: golden, beyond, printed
 
-   !> Why printed digits have the tolerance that they have
-   character(len=*), parameter :: half_digit = "half a unit of the last digit printed"
    !> Quantities that are compared
    character(len=*), parameter :: quantity(6) = [character(len=20) :: 'cor', 'cor_sphere', &
       'contact_time', 'max_indentation', 'max_force', 'residual_ratio']
@@ -29,7 +25,6 @@ contains
    !> butyl_prony_v10, butyl_cerf_v10 and butyl_power_law_v10 of tests/reference/reference.csv, made
    !> by a method that shares nothing with vcor's (spectral collocation of the Volterra equation)
    subroutine golden(law)
-      !> The law
       type(law_t), intent(inout) :: law
 
       character(len=*), parameter :: title(4) = [character(len=5) :: 'SLS', 'Prony', 'CERF', &
@@ -43,30 +38,17 @@ contains
          2.215303361745405_wp, 940.8233886678752_wp, 0.7270799023942698_wp, &
          0.2114372758956541_wp, 0.1938882475239019_wp, 0.7748556793933617_wp, &
          2.179684101936804_wp, 921.2217702666395_wp, 0.7310900351604307_wp], [6, 4])
-      ! the steps are chosen for cor; the peaks are found between the nodes
-      real(wp), parameter :: other_quantities = 10.0_wp
-      type(material_data_t) :: data
-      type(impact_t) :: impact
-      character(len=6) :: methods(2)
-      real(wp) :: tolerance
-      integer :: i, j, k
+      integer :: i, k
 
       call law%begin("Steel on SLS and on BUTYL-B252 (three models), 10 m/s", &
          "impacts of I. Green's paper; own reference values, 13 digits")
       do i = 1, size(title)
-         data = material(i)
-         call strike(impact, law%error, data, waves_relaxing)
-         if (allocated(law%error)) return
-         methods = methods_for()
-         do j = 1, size(methods)
-            tolerance = accuracy_of(methods(j))
-            call law%add(trim(title(i))//': '//trim(label(1)), methods(j), value(1, i), &
-               tolerance, 'twice what the method is asked for', impact)
-            do k = 2, size(quantity)
-               call law%add(trim(title(i))//': '//trim(label(k)), methods(j), value(k, i), &
-                  other_quantities*tolerance*max(1.0_wp, value(k, i)), &
-                  'ten times the accuracy asked of cor', quantity=quantity(k), unit=unit(k))
-            end do
+         call law%add_check([strike_t(material(i), waves=waves_relaxing)])
+         call law%add_row(trim(title(i))//': cor', value(1, i))
+         do k = 2, size(quantity)
+            call law%add_row(trim(title(i))//': '//trim(label(k)), value(k, i), &
+               10.0_wp*max(1.0_wp, value(k, i)), reason=others_follow, quantity=quantity(k), &
+               unit=unit(k))
          end do
       end do
    end subroutine golden
@@ -74,7 +56,6 @@ contains
    !> The SLS impact where contact, plate or pair are others than the paper's. The values are the
    !> impacts 6, 7, 9, 10, 66 and 67 of tests/reference/make_impacts.py, made as those above
    subroutine beyond(law)
-      !> The law
       type(law_t), intent(inout) :: law
 
       character(len=*), parameter :: title(6) = [character(len=10) :: 'receding', 'frozen', &
@@ -90,58 +71,40 @@ contains
          0.4875824381023549_wp, 0.4606655774754929_wp, 1.433384910695691_wp, &
          0.6127767320701085_wp, 0.6127767320701085_wp, 2.024774984972933_wp, &
          0.5317037221192804_wp, 0.5085781999891421_wp, 2.206094551675828_wp], [3, 6])
-      ! the steps are chosen for cor
-      real(wp), parameter :: contact_times = 10.0_wp
-      type(impact_t) :: impact
-      character(len=6) :: methods(2)
-      real(wp) :: tolerance
-      integer :: i, j
+      type(strike_t) :: strike
+      integer :: i
 
       call law%begin('SLS plate, 10 m/s: receding contact, two plates, both exact ones, series', &
          'own reference values, 12 digits: Ting, correspondence principle, compliances in series')
-      methods = methods_for()
       do i = 1, size(title)
-         if (i < first_in_series) then
-            call strike(impact, law%error, material(1), waves(i), receding=receding(i))
-         else
-            call strike(impact, law%error, material(1), waves(i), receding=receding(i), &
-               sphere=sls(8.0e6_wp, 360.0_wp, 900.0_wp))
-         end if
-         if (allocated(law%error)) return
-         do j = 1, size(methods)
-            tolerance = accuracy_of(methods(j))
-            call law%add(trim(title(i))//': '//trim(label(1)), methods(j), value(1, i), &
-               tolerance, 'twice what the method is asked for', impact)
-            call law%add(trim(title(i))//': '//trim(label(2)), methods(j), value(2, i), &
-               tolerance, 'twice what the method is asked for', quantity=quantity(2))
-            call law%add(trim(title(i))//': '//trim(label(3)), methods(j), value(3, i), &
-               contact_times*tolerance*value(3, i), 'ten times the accuracy asked of cor', &
-               quantity=quantity(3), unit=unit(3))
-         end do
+         strike = strike_t(material(1), waves=waves(i), receding=receding(i))
+         if (i >= first_in_series) strike%sphere = sls(8.0e6_wp, 360.0_wp, 900.0_wp)
+         call law%add_check([strike])
+         call law%add_row(trim(title(i))//': cor', value(1, i))
+         call law%add_row(trim(title(i))//': cor_sphere', value(2, i), quantity='cor_sphere')
+         call law%add_row(trim(title(i))//': contact time [ms]', value(3, i), 10.0_wp*value(3, i), &
+            reason=others_follow, quantity='contact_time', unit=unit(3))
       end do
    end subroutine beyond
 
    !> Printed digits of the paper that its discretisation does not touch; the others are repeated
    !> with its own scheme, see docs/reproducing_the_paper.md
    subroutine printed(law)
-      !> The law
       type(law_t), intent(inout) :: law
 
-      type(impact_t) :: impact
+      character(len=*), parameter :: half_digit = "half a unit of the last digit printed"
 
       call law%begin("Printed numbers of the paper that do not depend on its scheme", &
          'I. Green, The Viscoelastic Coefficient of Restitution; the digits as printed')
-      call strike(impact, law%error, elastic(15.0e6_wp), waves_relaxing)
-      if (allocated(law%error)) return
-      call law%add('elastic limit: cor', 'ive', 0.79_wp, 0.005_wp, half_digit, impact)
-      call law%add('elastic limit: t0 [ms]', 'ive', 1.4_wp, 0.05_wp, half_digit, &
-         quantity='contact_time', unit=1.0e-3_wp)
-      call strike(impact, law%error, material(1), waves_relaxing)
-      if (allocated(law%error)) return
-      call law%add('SLS: t0 [ms]', 'ive', 1.34_wp, 0.005_wp, half_digit, impact, &
+      call law%add_check([strike_t(elastic(15.0e6_wp), waves=waves_relaxing)], ive_only=.true.)
+      call law%add_row('elastic limit: cor', 0.79_wp, 0.0_wp, 0.005_wp, half_digit)
+      call law%add_row('elastic limit: t0 [ms]', 1.4_wp, 0.0_wp, 0.05_wp, half_digit, &
          'contact_time', 1.0e-3_wp)
-      call law%add('SLS: 2 pi/t0 [rad/s]', 'ive', 4684.0_wp, 0.5_wp, half_digit, &
-         quantity='min_frequency')
+      call law%add_check([strike_t(material(1), waves=waves_relaxing)], ive_only=.true.)
+      call law%add_row('SLS: t0 [ms]', 1.34_wp, 0.0_wp, 0.005_wp, half_digit, 'contact_time', &
+         1.0e-3_wp)
+      call law%add_row('SLS: 2 pi/t0 [rad/s]', 4684.0_wp, 0.0_wp, 0.5_wp, half_digit, &
+         'min_frequency')
    end subroutine printed
 
    !> Materials of the paper: Eqs. (14), (26), (24) and (23-b)

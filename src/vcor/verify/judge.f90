@@ -4,10 +4,9 @@ module vcor_verify_judge
    use vcor_impact_outcome, only : outcome_t
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_verify_attempt, only : attempt_t
-   use vcor_verify_comparison_type, only : attempt_count, attempt_first, &
-      attempt_halved, attempt_refined, compared_names, compared_t, comparison_t, object
    use vcor_sweep_quantity, only : quantity_value, status_name
+   use vcor_verify_solutions, only : attempt_count, attempt_first, attempt_halved, &
+      attempt_refined, attempt_t, compared_names, compared_t, comparison_t, object
    implicit none
    private
 
@@ -26,7 +25,6 @@ contains
 
    !> Whether no attempt failed and all ended in the same way
    pure subroutine judge_ends(self)
-      !> The comparison
       type(comparison_t), intent(inout) :: self
 
       integer :: i
@@ -71,13 +69,9 @@ contains
    !> limit of product integration; how many of its digits can be trusted is decided by what is
    !> farthest from it, the solution at the accuracy of the case or the limit of the other method
    pure subroutine tabulate(self, name, attempts, two_methods)
-      !> The quantity
       type(compared_t), intent(inout) :: self
-      !> Its name
       character(len=*), intent(in) :: name
-      !> All attempts
       type(attempt_t), intent(in) :: attempts(attempt_count)
-      !> Whether there are two methods
       logical, intent(in) :: two_methods
 
       ! the internal variables have no more than 11
@@ -134,7 +128,6 @@ contains
       type(attempt_t), intent(in) :: self
       !> Errors that the best cor and cor_sphere state themselves
       real(wp), intent(in) :: reference(2)
-      !> Whether each of them is
       logical :: is_honest(2)
 
       is_honest = within(self%seen, honest_factor*(self%stated() + reference) + rounding)
@@ -154,11 +147,8 @@ contains
 
    !> Whether a number is at most so large; one that is not finite is not
    elemental function within(value, largest)
-      !> The number
       real(wp), intent(in) :: value
-      !> What it may be at most
       real(wp), intent(in) :: largest
-      !> Whether it is
       logical :: within
 
       within = .false.
@@ -223,9 +213,7 @@ contains
 
    !> Change from step to step, over the size of a number, that is no matter: what the case allows
    pure function allowed_change(self) result(change)
-      !> The comparison
       type(comparison_t), intent(in) :: self
-      !> Change [-]
       real(wp) :: change
 
       change = other_quantities*self%attempts(attempt_first)%accuracy + rounding
@@ -240,7 +228,6 @@ contains
       real(wp), intent(in) :: value(3)
       !> Difference that is no matter
       real(wp), intent(in) :: close_enough
-      !> Whether they do
       logical :: settles
 
       real(wp), parameter :: chance = 1.5_wp
@@ -252,9 +239,7 @@ contains
 
    !> What a quantity is a part of, against which its digits are counted where it is small or none
    pure function size_of_whole(name, outcome) result(whole)
-      !> Quantity
       character(len=*), intent(in) :: name
-      !> Outcome
       type(outcome_t), intent(in) :: outcome
       !> Size of the whole, 0 if the quantity stands for itself
       real(wp) :: whole

@@ -1,0 +1,232 @@
+!> A law of the verification table, and the judge of its rows
+!>
+!> A law (Hertz's, Zener's ...) is a list of checks: impacts, and rows that say what is expected of
+!> their outcomes and how far off it may be, with the reason. Each check is solved by both methods,
+!> ive and direct, and its rows are judged for each. What does not pass fails, NaN too.
+module vcor_verify_law
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_kinds, only : wp
+   use vcor_solver, only : solve_impact, solver_settings_t
+   use vcor_sweep_quantity, only : quantity_value
+   use vcor_verify_strike, only : strike_t
+   implicit none
+   private
+
+   public :: row_t, law_t, verdict_t, judge, evaluate_law, others_follow, second_cor
+
+   !> Why most tolerances are what they are: that of cor ...
+   character(len=*), parameter :: as_asked = 'twice what the method is asked for'
+   !> ... and those of other quantities: the steps are chosen for cor, and the others follow with
+   !> errors of the same order
+   character(len=*), parameter :: others_follow = 'ten times the accuracy asked of cor'
+   !> Methods that solve the impacts
+   character(len=*), parameter :: methods(2) = [character(len=6) :: 'ive', 'direct']
+   !> Accuracies that they are to show, asked for half of it. Half of that of ive is the smallest
+   !> that it takes, the other half is left to rounding, some 5e-13 per panel. That of direct is its
+   !> default: below it the estimate of its error is too small where an elastic contact ends on a
+   !> moving plate
+   real(wp), parameter :: accuracies(2) = [2.0e-11_wp, 1.0e-6_wp]
+
+   abstract interface
+      !> A number that is made of the outcomes of a check, in the order of its impacts
+      pure function measure_i(outcomes) result(value)
+         import :: outcome_t, wp
+         type(outcome_t), intent(in) :: outcomes(:)
+         real(wp) :: value
+      end function measure_i
+   end interface
+
+   !> What is expected of the outcomes of a check
+   type :: row_t
+      character(len=40) :: name = ''
+      !> The number that is known
+      real(wp) :: expected = 0.0_wp
+      !> Largest deviation that passes, in the unit of the number: so many accuracies of the method
+      !> and so much more
+      real(wp) :: times = 1.0_wp, more = 0.0_wp
+      !> Why the tolerance is what it is
+      character(len=100) :: reason = as_asked
+      !> What is found: this quantity of the first outcome, in this unit ...
+      character(len=20) :: quantity = 'cor'
+      real(wp) :: unit = 1.0_wp
+      !> ... or, if there is one, this number made of all outcomes
+      procedure(measure_i), pointer, nopass :: measure => null()
+      !> What takes the place of `expected` where the outcomes themselves tell it
+      procedure(measure_i), pointer, nopass :: expectation => null()
+   end type row_t
+
+   !> Impacts and what is expected of them; the first `count` rows are in use
+   type :: check_t
+      type(strike_t), allocatable :: strikes(:)
+      !> Whether ive alone solves them
+      logical :: ive_only = .false.
+      type(row_t) :: rows(6)
+      integer :: count = 0
+   end type check_t
+
+   !> Checks from one source; the first `count` are in use
+   type :: law_t
+      !> What the law says, and where its numbers come from, one line each
+      character(len=:), allocatable :: title, source
+      type(check_t), allocatable :: checks(:)
+      integer :: count = 0
+   contains
+      procedure :: begin
+      procedure :: add_check
+      procedure :: add_row
+   end type law_t
+
+   !> What came out of a row by one method
+   type :: verdict_t
+      character(len=40) :: name = ''
+      character(len=6) :: method = ''
+      character(len=100) :: reason = ''
+      !> NaN for what there is not
+      real(wp) :: expected = 0.0_wp, found = 0.0_wp, deviation = 0.0_wp
+      real(wp) :: tolerance = 0.0_wp
+      logical :: passed = .false.
+   end type verdict_t
+
+contains
+
+   !> Begin a law
+   subroutine begin(self, title, source)
+      class(law_t), intent(out) :: self
+      character(len=*), intent(in) :: title, source
+
+      integer, parameter :: most_checks = 8
+
+      self%title = title
+      self%source = source
+      allocate (self%checks(most_checks))
+   end subroutine begin
+
+   !> Begin a check: the rows that follow are about these impacts
+   subroutine add_check(self, strikes, ive_only)
+      class(law_t), intent(inout) :: self
+      type(strike_t), intent(in) :: strikes(:)
+      !> Whether ive alone solves them; absent: both methods do
+      logical, intent(in), optional :: ive_only
+
+      self%count = self%count + 1
+      allocate (self%checks(self%count)%strikes(size(strikes)))
+      self%checks(self%count)%strikes(:) = strikes
+      if (present(ive_only)) self%checks(self%count)%ive_only = ive_only
+   end subroutine add_check
+
+   !> Append a row to the last check; what is left out has the default of `row_t`
+   subroutine add_row(self, name, expected, times, more, reason, quantity, unit, measure, &
+                      expectation)
+      class(law_t), intent(inout) :: self
+      character(len=*), intent(in) :: name
+      real(wp), intent(in), optional :: expected, times, more
+      character(len=*), intent(in), optional :: reason, quantity
+      real(wp), intent(in), optional :: unit
+      procedure(measure_i), optional :: measure, expectation
+
+      associate (check => self%checks(self%count))
+         check%count = check%count + 1
+         associate (row => check%rows(check%count))
+            row%name = name
+            if (present(expected)) row%expected = expected
+            if (present(times)) row%times = times
+            if (present(more)) row%more = more
+            if (present(reason)) row%reason = reason
+            if (present(quantity)) row%quantity = quantity
+            if (present(unit)) row%unit = unit
+            if (present(measure)) row%measure => measure
+            if (present(expectation)) row%expectation => expectation
+         end associate
+      end associate
+   end subroutine add_row
+
+   !> Solve the impacts of a law and judge its rows
+   subroutine evaluate_law(law, verdicts)
+      type(law_t), intent(in) :: law
+      !> Check by check, for each its rows by ive, then those by direct
+      type(verdict_t), allocatable, intent(out) :: verdicts(:)
+
+      type(outcome_t), allocatable :: outcomes(:)
+      integer :: i, k, method
+
+      allocate (verdicts(0))
+      do i = 1, law%count
+         associate (check => law%checks(i))
+            do method = 1, merge(1, 2, check%ive_only)
+               call solve_check(check, method, outcomes)
+               verdicts = [verdicts, (judge(check%rows(k), method, outcomes), k=1, check%count)]
+            end do
+         end associate
+      end do
+   end subroutine evaluate_law
+
+   !> Outcomes of the impacts of a check; none if one of them fails or does not end in separation
+   subroutine solve_check(check, method, outcomes)
+      type(check_t), intent(in) :: check
+      !> Number of the method
+      integer, intent(in) :: method
+      type(outcome_t), allocatable, intent(out) :: outcomes(:)
+
+      type(outcome_t) :: outcome(size(check%strikes))
+      type(solver_settings_t) :: settings
+      type(impact_t) :: impact
+      type(error_t), allocatable :: error
+      integer :: i
+
+      settings%method = trim(methods(method))
+      settings%scheme = 'product'
+      settings%accuracy = 0.5_wp*accuracies(method)
+      allocate (outcomes(0))
+      do i = 1, size(check%strikes)
+         call check%strikes(i)%get_impact(impact, error)
+         if (.not. allocated(error)) call solve_impact(impact, outcome(i), error, settings)
+         if (allocated(error)) return
+         if (outcome(i)%status /= contact_separated) return
+      end do
+      outcomes = outcome
+   end subroutine solve_check
+
+   !> Judge a row
+   pure function judge(row, method, outcomes) result(verdict)
+      type(row_t), intent(in) :: row
+      !> Number of the method: 1 ive, 2 direct
+      integer, intent(in) :: method
+      !> Outcomes in the order of the impacts; none: an impact had no outcome
+      type(outcome_t), intent(in) :: outcomes(:)
+      type(verdict_t) :: verdict
+
+      verdict%name = row%name
+      verdict%method = methods(method)
+      verdict%reason = row%reason
+      verdict%tolerance = row%times*accuracies(method) + row%more
+      verdict%expected = row%expected
+      verdict%found = ieee_value(verdict%found, ieee_quiet_nan)
+      verdict%deviation = verdict%found
+      if (size(outcomes) == 0) return
+      if (associated(row%measure)) then
+         verdict%found = row%measure(outcomes)
+      else
+         verdict%found = quantity_value(outcomes(1), row%quantity)
+         if (ieee_is_finite(verdict%found)) verdict%found = verdict%found/row%unit
+      end if
+      if (associated(row%expectation)) verdict%expected = row%expectation(outcomes)
+      if (.not. ieee_is_finite(verdict%found)) return
+      if (.not. ieee_is_finite(verdict%expected)) return
+      verdict%deviation = verdict%found - verdict%expected
+      if (ieee_is_finite(verdict%tolerance)) &
+         verdict%passed = abs(verdict%deviation) <= verdict%tolerance
+   end function judge
+
+   !> The expectation of a row about two impacts of one restitution
+   pure function second_cor(outcomes) result(cor)
+      type(outcome_t), intent(in) :: outcomes(:)
+      real(wp) :: cor
+
+      cor = outcomes(2)%cor
+   end function second_cor
+
+end module vcor_verify_law
