@@ -6,7 +6,11 @@ set(vcor_cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/vcor")
 
 # Program and library. A shared library (BUILD_SHARED_LIBS) belongs to the program; its version
 # changes with every release, since the layout of Fortran types is part of the interface
-set_target_properties(${vcor_parts} PROPERTIES
+set(vcor_libraries_installed ${vcor_parts})
+if(TARGET vcor_c)
+  list(APPEND vcor_libraries_installed vcor_c)
+endif()
+set_target_properties(${vcor_libraries_installed} PROPERTIES
   VERSION "${PROJECT_VERSION}"
   SOVERSION "${PROJECT_VERSION}")
 file(RELATIVE_PATH from_program "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
@@ -15,9 +19,10 @@ if(BUILD_SHARED_LIBS)
   set_target_properties(${vcor_parts} PROPERTIES INSTALL_RPATH "$ORIGIN")
 endif()
 install(TARGETS vcor_program RUNTIME COMPONENT program)
-install(TARGETS ${vcor_parts} EXPORT vcorTargets
+install(TARGETS ${vcor_libraries_installed} EXPORT vcorTargets
   LIBRARY COMPONENT program NAMELINK_COMPONENT development
   ARCHIVE COMPONENT development)
+install(FILES include/vcor.h DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
 install(DIRECTORY "${PROJECT_BINARY_DIR}/include/${vcor_module_folder}/"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${vcor_module_folder}" COMPONENT development
   FILES_MATCHING PATTERN "*.mod")
@@ -39,7 +44,9 @@ install(FILES
 # not private then, and nobody has to know about --static
 file(RELATIVE_PATH vcor_up "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" vcor_up "${vcor_up}")
-# vcor_pkg_config(<name> <part> ...): the file of some parts, those that need others first
+# vcor_pkg_config(<name> <part> ...): the file of some parts, those that need others first. Part vcor is
+# names without code, which need not be linked
+set(vcor_includes "${CMAKE_INSTALL_INCLUDEDIR}/${vcor_module_folder}")
 function(vcor_pkg_config name)
   set(vcor_name "${name}")
   set(own)
@@ -60,8 +67,14 @@ function(vcor_pkg_config name)
   install(FILES "${PROJECT_BINARY_DIR}/${name}.pc"
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 endfunction()
-vcor_pkg_config(vcor vcor vcor_files vcor_fit vcor_core)
+vcor_pkg_config(vcor vcor_files vcor_fit vcor_core)
 vcor_pkg_config(vcor-core vcor_core)
+set(vcor_name vcor-c)
+set(vcor_libraries -lvcor)
+set(vcor_includes "${CMAKE_INSTALL_INCLUDEDIR}")
+configure_file("${PROJECT_SOURCE_DIR}/cmake/vcor.pc.in" "${PROJECT_BINARY_DIR}/vcor-c.pc" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/vcor-c.pc"
+  DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig" COMPONENT development)
 
 # Pages of man, compressed where there is gzip (without a time stamp: the same bytes each time)
 file(GLOB vcor_pages CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/man/*.[1-9]")

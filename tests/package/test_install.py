@@ -123,6 +123,37 @@ def test_consumer_with_cmake(prefix, tmp_path):
     assert "hdf5" not in (tmp_path / "CMakeCache.txt").read_text().lower()
 
 
+def test_consumer_in_c(prefix, tmp_path):
+    """A project in C only: the core as a shared library, by CMake and by pkg-config."""
+    run("cmake", "-S", CONSUMER / "c", "-B", tmp_path, f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", tmp_path)
+    shown = run(tmp_path / "from_c", cwd=PAPER)
+    assert is_close(shown)
+    folder = library_folder(prefix)
+    env = {**os.environ, "PKG_CONFIG_PATH": str(folder / "pkgconfig")}
+    command = 'eval gcc "$1" $(pkg-config --cflags --libs vcor-c) -o drop'
+    run("sh", "-c", command, "sh", CONSUMER / "c/from_c.c", env=env, cwd=tmp_path)
+    env = {**os.environ, "LD_LIBRARY_PATH": str(folder)}
+    assert run(tmp_path / "drop", cwd=PAPER, env=env) == shown
+    needs = set(re.findall(r"NEEDED +(\S+)", run("objdump", "-p", folder / "libvcor.so")))
+    known = r"lib(lapack|blas|gomp|gfortran|quadmath|m|mvec|gcc_s|c)\.so"
+    assert "liblapack.so.3" in needs and all(re.match(known, name) for name in needs)
+    # no name but those of vcor.h
+    names = run("nm", "-D", "--defined-only", folder / "libvcor.so").split()[2::3]
+    header = (ROOT / "include/vcor.h").read_text()
+    assert set(names) == set(re.findall(r"^\w[\w *]*\b(vcor_\w+)\(", header, re.MULTILINE))
+
+
+def test_an_error_in_c(prefix, tmp_path):
+    """The code of the program, and its line."""
+    (tmp_path / "sls.nml").write_text("&impact velocity = -1.0 /\n")
+    run("cmake", "-S", CONSUMER / "c", "-B", tmp_path / "b", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", tmp_path / "b")
+    found = run(tmp_path / "b/from_c", cwd=tmp_path, code=3)
+    program = run(prefix / "bin/vcor", "run", "sls.nml", cwd=tmp_path, code=3)
+    assert program == f"vcor: error: {found}"
+
+
 # A project that uses all of the library
 ALL = f"""\
 cmake_minimum_required(VERSION 3.20)

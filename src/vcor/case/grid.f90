@@ -1,7 +1,8 @@
 !> Grids of parameters: the points of a sweep
 !>
 !> Points are numbered from 1, in the order of nested loops with the first axis outside: row-major,
-!> as C and Python count. A grid without axes has one point.
+!> as C and Python count. A grid without axes has one point. A list of points is a grid in which all
+!> axes go on together.
 module vcor_case_grid
    use vcor_case_case, only : address_t
    use vcor_kinds, only : wp
@@ -28,6 +29,8 @@ module vcor_case_grid
    type :: grid_t
       !> Parameters, the slowest first, shape (axes)
       type(axis_t), allocatable :: axes(:)
+      !> Whether point i has value i of each parameter: a list of points, not their product
+      logical :: is_list = .false.
    contains
       !> Number of points
       procedure :: count => count_points
@@ -47,7 +50,7 @@ contains
       integer :: i
 
       n = 1
-      do i = 1, size(self%axes)
+      do i = 1, merge(1, size(self%axes), self%is_list)
          n = n*size(self%axes(i)%values)
       end do
    end function count_points
@@ -63,6 +66,8 @@ contains
 
       integer :: i, rest
 
+      places = point
+      if (self%is_list) return
       rest = point - 1
       do i = size(self%axes), 1, -1
          associate (n => size(self%axes(i)%values))

@@ -9,7 +9,7 @@ module vcor_impact_trajectory
    public :: trajectory_t
    public :: columns, col_time, col_indentation, col_velocity, col_force, col_impulse
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
-   public :: contact_separated, contact_lasting, contact_sticking
+   public :: contact_separated, contact_lasting, contact_sticking, history_steps
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -38,6 +38,9 @@ module vcor_impact_trajectory
    integer, parameter :: contact_lasting = 1
    !> All motion died out in contact
    integer, parameter :: contact_sticking = 2
+
+   !> Steps of a history where the solver does not work in equal steps
+   integer, parameter :: history_steps = 500
 
    !> Course of an impact from first contact (node 0) on
    type :: trajectory_t

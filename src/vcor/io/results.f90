@@ -1,7 +1,7 @@
 !> Outcomes and trajectories as tables, and the files of a summary
 module vcor_io_results
    use vcor_error, only : error_t
-   use vcor_impact_trajectory, only : col_time, trajectory_t
+   use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
    use vcor_io_csv, only : write_csv
    use vcor_io_hdf5, only : remark_t, write_hdf5
    use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
@@ -13,9 +13,6 @@ module vcor_io_results
    private
 
    public :: summary_table, history_table, write_summary, unit_of
-
-   !> Steps of a history where the solver does not work in equal steps
-   integer, parameter :: history_steps = 500
 
 contains
 

@@ -1,0 +1,136 @@
+/* vcor: coefficient of restitution of viscoelastic spheres and plates, from C.
+ *
+ * A case is made from its text or its file, its values are set by address (as --set of the program
+ * takes them), and then it is solved: once, or for n points of some of its values. All numbers are
+ * in SI units and the same bits as those of the program.
+ *
+ * Errors. Every function that can fail returns one of the codes below, and puts code and message
+ * into `error`, which may be NULL. The message is the line that the program prints. Nothing is
+ * printed, nothing ends the process.
+ *
+ * Memory. What a function hands over as a pointer (a text, an array) is released with free(), a case
+ * with vcor_free().
+ *
+ * Threads. All functions may be called from several threads at once, for the same case too; texts
+ * are read and checked by one thread at a time, impacts are solved side by side. A library that was
+ * built without OpenMP (CMake: VCOR_OPENMP=OFF) has no lock and may be called from one thread only.
+ * After fork() the child may call everything if no other thread of the parent was in a call; a child
+ * of a process that has solved on several threads solves on one, since the threads are not copied.
+ */
+#ifndef VCOR_H
+#define VCOR_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Codes: those of the program at its exit */
+enum {
+   VCOR_OK = 0,
+   VCOR_ERROR_INTERNAL = 1,  /* a fault of the library */
+   VCOR_ERROR_USAGE = 2,     /* an address or a name does not exist */
+   VCOR_ERROR_INPUT = 3,     /* the case or a data file is wrong */
+   VCOR_ERROR_FILE = 4,      /* a file cannot be read */
+   VCOR_ERROR_NUMERICAL = 5  /* no result to be trusted */
+};
+
+/* Values of the column `status` */
+enum {
+   VCOR_SEPARATED = 0,      /* the force returned to zero: the normal end */
+   VCOR_NO_SEPARATION = 1,  /* end_time came first */
+   VCOR_STICKS = 2,         /* all motion died out in contact */
+   VCOR_INVALID = 3,        /* the values of the point make no impact */
+   VCOR_FAILED = 4          /* the numerical solution failed */
+};
+
+/* Tables that vcor_column describes */
+enum {
+   VCOR_SUMMARY = 0,  /* one row per impact */
+   VCOR_HISTORY = 1,  /* one row per time */
+   VCOR_COMPARED = 2  /* quantities that vcor_verify compares */
+};
+
+typedef struct vcor_case vcor_case;
+
+typedef struct {
+   int code;            /* one of VCOR_OK, VCOR_ERROR_... */
+   char message[2048];  /* one line, empty if there is nothing to say */
+} vcor_error;
+
+typedef struct {
+   char name[256];
+   char symbol[16];
+   char unit[32];      /* "1" for a pure number, empty for a text */
+   char meaning[128];
+   char labels[512];   /* words that the numbers of the column stand for, blanks between them; or empty */
+   int first;          /* number of the first word */
+} vcor_column;
+
+/* Version of the library */
+const char *vcor_library_version(void);
+
+/* A case from `text`, or from the file `name` if `text` is NULL. `name` stands in messages, and data
+ * files that the case names are relative to its folder. What the case says is checked when it is
+ * used, so that vcor_set can complete it. */
+int vcor_read(const char *text, const char *name, vcor_case **self, vcor_error *error);
+
+/* Release a case; NULL is allowed */
+void vcor_free(vcor_case *self);
+
+/* Set the value at an address such as "impact.velocity", "rubber.beta" or "rubber.moduli(2)"; the
+ * value as a namelist has it, a text also without quotes */
+int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error *error);
+
+/* Value at an address as a namelist has it, given or by default; `*value` is NULL if there is none */
+int vcor_get(const vcor_case *self, const char *address, char **value, vcor_error *error);
+
+/* The case as namelists; with `complete` also every default. The case is checked first. */
+int vcor_case_text(const vcor_case *self, int complete, char **text,
+                   vcor_error *error);
+
+/* Column `index`, from 0, of a table; returns 0 if there is none, 1 otherwise */
+int vcor_column_of(int table, int index, vcor_column *column);
+
+/* Parameter `index`, from 0, that the &sweep groups of the case vary, slowest first: its address is
+ * column->name, and it has `*n` values. `*values` is NULL if there is none of this index. */
+int vcor_axis(const vcor_case *self, int index, vcor_column *column, int *n, double **values,
+              vcor_error *error);
+
+/* Solve n points, in each of which m addresses have values of their own.
+ *
+ *   values   n rows of m numbers: values[i*m + j] at addresses[j] in point i
+ *   columns  names of k columns of the summary
+ *   results  n rows of k numbers, nan where there is none; `status` and other texts by their number
+ *   threads  threads to use, 0: as many as there are cores
+ *
+ * With m = 0 and n = 1 the case itself is solved, and an impact without a result is an error. With
+ * m > 0 such a point has a status, and error->message says what the matter is while the code is
+ * VCOR_OK. If the case has &sweep groups, their addresses must be among those that are given. */
+int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
+               int k, const char *const *columns, double *results, int threads, vcor_error *error);
+
+/* History of a single impact: `*rows` rows of the columns of VCOR_HISTORY. An impact that does not end
+ * in separation has one, too. */
+int vcor_history(vcor_case *self, int *rows, double **values, vcor_error *error);
+
+/* Relaxation modulus E(t) [Pa] of a material at n times [s] */
+int vcor_relaxation(const vcor_case *self, const char *material, int n, const double *times,
+                    double *moduli, vcor_error *error);
+
+/* Storage and loss modulus [Pa] of a material at n angular frequencies [rad/s] */
+int vcor_complex_modulus(const vcor_case *self, const char *material, int n,
+                         const double *frequencies, double *storage, double *loss,
+                         vcor_error *error);
+
+/* The case by all methods: for each row of VCOR_COMPARED the most accurate value, that by internal
+ * variables (nan if they cannot solve it), that by product integration extrapolated to steps of no
+ * length, and the number of digits that can be trusted: 4 numbers a row, nan where the bodies do not
+ * separate. Methods that contradict each other are an error. */
+int vcor_verify(vcor_case *self, double *results, vcor_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

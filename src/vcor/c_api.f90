@@ -1,0 +1,821 @@
+!> The C interface, include/vcor.h: what a function does is told there
+!>
+!> One thread at a time handles texts, in the critical section `vcor_c_api`: gfortran 12 keeps the
+!> length of a text that a function returns in static storage. Impacts are solved outside of it.
+module vcor_c_api
+   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
+      c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
+   use vcor_case_address, only : material_names, resolve, swept_addresses
+   use vcor_case_axes, only : new_grid
+   use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_catalogue, only : catalogue, find_group
+   use vcor_case_checks, only : validate
+   use vcor_case_grid, only : grid_t
+   use vcor_case_printed, only : case_text, value_text
+   use vcor_case_problem, only : material_of_case
+   use vcor_case_unread, only : refuse_unread
+   use vcor_error, only : error_input, error_numerical, error_t, error_usage, raise
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : history_steps
+   use vcor_io_case_reader, only : override, read_case, read_case_text
+   use vcor_io_data_file, only : read_data
+   use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
+   use vcor_sweep_failures, only : failures_t
+   use vcor_sweep_part, only : most_threads, new_part
+   use vcor_sweep_points, only : default_threads, solve_points
+   use vcor_sweep_quantity, only : history_quantities, point_invalid, quantities, &
+      quantity_names, quantity_place, quantity_t
+   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
+   use vcor_text, only : canonical_name, integer_text, real_text, shortened
+   use vcor_verify_comparison, only : compare
+   use vcor_verify_solutions, only : attempt_first, compared_names, comparison_t
+   use vcor_version, only : version
+   use vcor_words, only : suggestion
+   implicit none
+   private
+
+   public :: c_error_t, c_column_t
+   public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_case_text, &
+      vcor_column_of, vcor_axis, vcor_solve, vcor_history, vcor_relaxation, vcor_complex_modulus, &
+      vcor_verify
+
+   !> `vcor_error`
+   type, bind(c) :: c_error_t
+      !> 0 or one of the `error_*` constants
+      integer(c_int) :: code
+      !> One line, ended by a null
+      character(kind=c_char) :: message(2048)
+   end type c_error_t
+
+   !> `vcor_column`
+   type, bind(c) :: c_column_t
+      !> Name, or address of what is swept
+      character(kind=c_char) :: name(256)
+      !> Symbol of the paper
+      character(kind=c_char) :: symbol(16)
+      !> Unit
+      character(kind=c_char) :: unit(32)
+      !> What it is
+      character(kind=c_char) :: meaning(128)
+      !> Words that its numbers stand for
+      character(kind=c_char) :: labels(512)
+      !> Number of the first word
+      integer(c_int) :: first
+   end type c_column_t
+
+   !> What `vcor_case` points at
+   type :: handle_t
+      !> The case as it was read and set
+      type(case_t) :: case
+      !> What its impacts have in common
+      type(sweep_t) :: sweep
+      !> Addresses that `sweep` was built for, a line each; unallocated: it has to be built
+      character(len=:), allocatable :: built_for
+   end type handle_t
+
+   !> Tables of `vcor_column_of`
+   integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
+   !> The version for C
+   character(kind=c_char), target :: version_text(len(version) + 1) = ' '
+   !> Process that has solved on several threads, 0: none
+   integer(c_int) :: process = 0
+
+   interface
+      !> Room for what the caller releases by free()
+      function malloc(size) bind(c, name='malloc') result(room)
+         import :: c_ptr, c_size_t
+         !> Bytes
+         integer(c_size_t), value :: size
+         !> The room
+         type(c_ptr) :: room
+      end function malloc
+
+      !> Length of a text of C
+      pure function strlen(text) bind(c, name='strlen') result(length)
+         import :: c_ptr, c_size_t
+         !> The text
+         type(c_ptr), value :: text
+         !> Bytes before its null
+         integer(c_size_t) :: length
+      end function strlen
+
+      !> Number of the process
+      function getpid() bind(c, name='getpid') result(number)
+         import :: c_int
+         !> The number
+         integer(c_int) :: number
+      end function getpid
+   end interface
+
+contains
+
+   !> Version of the library
+   function vcor_library_version() bind(c) result(text)
+      !> The text
+      type(c_ptr) :: text
+
+!$omp critical (vcor_c_api)
+      call put_text(version, version_text)
+      text = c_loc(version_text)
+!$omp end critical (vcor_c_api)
+   end function vcor_library_version
+
+   !> A case from its text or its file
+   function vcor_read(text, name, self, error) bind(c) result(code)
+      !> Text of the case, or null
+      type(c_ptr), value :: text
+      !> Name of the file
+      type(c_ptr), value :: name
+      !> The case; null on failure
+      type(c_ptr), intent(out) :: self
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+
+      self = c_null_ptr
+!$omp critical (vcor_c_api)
+      allocate (handle)
+      if (c_associated(text)) then
+         call read_case_text(handle%case, fortran(text), fortran(name), trouble)
+      else
+         call read_case(handle%case, fortran(name), trouble)
+      end if
+      if (allocated(trouble)) then
+         deallocate (handle)
+      else
+         self = c_loc(handle)
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_read
+
+   !> Release a case
+   subroutine vcor_free(self) bind(c)
+      !> The case, or null
+      type(c_ptr), value :: self
+
+      type(handle_t), pointer :: handle
+
+      if (.not. c_associated(self)) return
+      call c_f_pointer(self, handle)
+      deallocate (handle)
+   end subroutine vcor_free
+
+   !> Set a value
+   function vcor_set(self, address, value, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Where
+      type(c_ptr), value :: address
+      !> What
+      type(c_ptr), value :: value
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call override(handle%case, fortran(address)//'='//fortran(value), trouble)
+      if (allocated(handle%built_for)) deallocate (handle%built_for)
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_set
+
+   !> Value at an address
+   function vcor_get(self, address, value, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Where
+      type(c_ptr), value :: address
+      !> Its text, or null
+      type(c_ptr), intent(out) :: value
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(address_t) :: place
+      type(entry_t) :: entry
+      character(len=:), allocatable :: message
+
+      value = c_null_ptr
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call resolve(handle%case, fortran(address), place, message)
+      if (allocated(message)) then
+         call raise(trouble, error_usage, shortened(fortran(address))//': '//message)
+      else
+         entry = handle%case%entry(place)
+         if (place%element > 0) then
+            value = c_text(real_text(entry%number))
+         else if (entry%present) then
+            value = c_text(value_text(catalogue(place%row), entry))
+         end if
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_get
+
+   !> The case as namelists
+   function vcor_case_text(self, complete, text, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Whether with all defaults
+      integer(c_int), value :: complete
+      !> The text, null on failure
+      type(c_ptr), intent(out) :: text
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+
+      text = c_null_ptr
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call validate(handle%case, trouble)
+      if (.not. allocated(trouble)) text = c_text(case_text(handle%case, complete=complete /= 0))
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_case_text
+
+   !> A column of a table
+   function vcor_column_of(table, index, column) bind(c) result(found)
+      !> Which table
+      integer(c_int), value :: table
+      !> Which column, from 0
+      integer(c_int), value :: index
+      !> The column
+      type(c_column_t), intent(out) :: column
+      !> 1, or 0 if there is none
+      integer(c_int) :: found
+
+      type(quantity_t), allocatable :: list(:)
+      integer :: i
+
+!$omp critical (vcor_c_api)
+      select case (table)
+      case (summary_columns)
+         allocate (list, source=quantities())
+      case (history_columns)
+         allocate (list, source=history_quantities)
+      case (compared_columns)
+         allocate (list, source=quantities())
+         list = list([(quantity_place(trim(compared_names(i))), i=1, size(compared_names))])
+      case default
+         allocate (list(0))
+      end select
+      found = merge(1_c_int, 0_c_int, index >= 0 .and. index < size(list))
+      if (found > 0) then
+         associate (quantity => list(index + 1))
+            call put_column(column, quantity%name, quantity%unit, quantity%meaning)
+            call put_text(trim(quantity%symbol), column%symbol)
+            call put_text(trim(adjustl(quantity%labels)), column%labels)
+            column%first = quantity%first
+         end associate
+      end if
+!$omp end critical (vcor_c_api)
+   end function vcor_column_of
+
+   !> What a &sweep group of the case varies
+   function vcor_axis(self, index, column, n, values, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Which group, from 0
+      integer(c_int), value :: index
+      !> Its parameter
+      type(c_column_t), intent(out) :: column
+      !> Number of values
+      integer(c_int), intent(out) :: n
+      !> The values, null if there is no such group
+      type(c_ptr), intent(out) :: values
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(grid_t) :: grid
+
+      n = 0
+      values = c_null_ptr
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call validate(handle%case, trouble)
+      if (.not. allocated(trouble)) call new_grid(handle%case, grid, trouble)
+      if (.not. allocated(trouble)) then
+         if (index >= 0 .and. index < size(grid%axes)) then
+            associate (axis => grid%axes(index + 1))
+               call put_column(column, axis%name, axis%unit, axis%meaning)
+               n = size(axis%values)
+               values = c_numbers(axis%values)
+            end associate
+         end if
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_axis
+
+   !> Solve points
+   function vcor_solve(self, m, addresses, n, values, k, columns, results, threads, error) &
+      bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Number of addresses
+      integer(c_int), value :: m
+      !> The addresses
+      type(c_ptr), intent(in) :: addresses(m)
+      !> Number of points
+      integer(c_int), value :: n
+      !> Values of the points
+      real(c_double), intent(in) :: values(m, n)
+      !> Number of columns
+      integer(c_int), value :: k
+      !> Names of the columns
+      type(c_ptr), intent(in) :: columns(k)
+      !> What they are
+      real(c_double), intent(inout) :: results(k, n)
+      !> Threads, 0: as many as there are cores
+      integer(c_int), value :: threads
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(sweep_t) :: sweep
+      type(summary_t) :: summary
+      type(failures_t) :: failures
+      integer(c_int) :: current
+      integer :: places(k), team, i
+
+      results = ieee_value(1.0_wp, ieee_quiet_nan)
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      do i = 1, k
+         places(i) = quantity_place(fortran(columns(i)))
+         if (places(i) > 0) cycle
+         call raise(trouble, error_usage, "unknown name '"//shortened(fortran(columns(i))) &
+            //"'; "//suggestion(fortran(columns(i)), quantity_names()))
+         exit
+      end do
+      if (.not. allocated(trouble)) call build(handle, addresses, values, trouble)
+      if (.not. allocated(trouble) .and. n > 0) then
+         sweep = handle%sweep
+         call give_values(sweep, handle%case, addresses, values)
+         call new_summary(summary, n, trouble)
+      end if
+      team = max(1, min(int(threads), most_threads))
+      if (threads == 0) team = default_threads()
+      ! a child of fork has none of the threads that its parent works with
+      current = getpid()
+      if (process /= 0 .and. process /= current) team = 1
+      if (process == 0 .and. team > 1 .and. n > 1) process = current
+!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble) .and. n > 0) then
+         call solve_points(sweep, new_part(n, 1, 1), team, summary, failures, trouble)
+         do i = 1, k
+            if (places(i) > size(summary%values)) then
+               results(i, :) = real(summary%status, wp)
+            else if (allocated(summary%values(places(i))%reals)) then
+               results(i, :) = summary%values(places(i))%reals
+            else
+               results(i, :) = real(summary%values(places(i))%integers, wp)
+            end if
+         end do
+      end if
+!$omp critical (vcor_c_api)
+      if (failures%count > 0 .and. m == 0) then
+         call raise(trouble, merge(error_input, error_numerical, &
+            summary%status(1) == point_invalid), handle%case%source//': ' &
+            //failures%reason(1)%message)
+      else if (failures%count > 0) then
+         call put_remark(error, integer_text(failures%count)//' of '//integer_text(int(n)) &
+            //' points have no result, the first is point ' &
+            //integer_text(failures%reason(1)%first)//': '//failures%reason(1)%message)
+      end if
+!$omp end critical (vcor_c_api)
+      code = 0
+      if (allocated(trouble) .or. failures%count == 0) code = told(trouble, error)
+   end function vcor_solve
+
+   !> History of a single impact
+   function vcor_history(self, rows, values, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Number of times
+      integer(c_int), intent(out) :: rows
+      !> The columns at each time, null on failure
+      type(c_ptr), intent(out) :: values
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(sweep_t) :: sweep
+      type(worker_t) :: worker
+      type(outcome_t) :: outcome
+      type(c_ptr) :: none(0)
+      real(wp), allocatable :: state(:, :)
+      real(wp) :: nothing(0, 1)
+
+      rows = 0
+      values = c_null_ptr
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call build(handle, none, nothing, trouble)
+      if (.not. allocated(trouble)) sweep = handle%sweep
+!$omp end critical (vcor_c_api)
+      if (.not. allocated(trouble)) then
+         call solve_point(sweep, 1, worker, outcome, trouble)
+         if (allocated(trouble)) then
+!$omp critical (vcor_c_api)
+            trouble%message = handle%case%source//': '//trouble%message
+!$omp end critical (vcor_c_api)
+         else
+            call worker%trajectory%sample(history_steps, state)
+            rows = size(state, 2)
+            values = c_numbers(reshape(state, [size(state)]))
+         end if
+      end if
+      code = told(trouble, error)
+   end function vcor_history
+
+   !> Relaxation modulus of a material
+   function vcor_relaxation(self, material, n, times, moduli, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Name of the material
+      type(c_ptr), value :: material
+      !> Number of times
+      integer(c_int), value :: n
+      !> Times [s]
+      real(c_double), intent(in) :: times(n)
+      !> E(t) [Pa]
+      real(c_double), intent(inout) :: moduli(n)
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      class(material_t), allocatable :: body
+      type(error_t), allocatable :: trouble
+
+      call find_body(self, material, body, trouble)
+      if (.not. allocated(trouble)) moduli = body%relaxation(times)
+      code = told(trouble, error)
+   end function vcor_relaxation
+
+   !> Storage and loss modulus of a material
+   function vcor_complex_modulus(self, material, n, frequencies, storage, loss, error) bind(c) &
+      result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Name of the material
+      type(c_ptr), value :: material
+      !> Number of frequencies
+      integer(c_int), value :: n
+      !> Angular frequencies [rad/s]
+      real(c_double), intent(in) :: frequencies(n)
+      !> Storage modulus [Pa]
+      real(c_double), intent(inout) :: storage(n)
+      !> Loss modulus [Pa]
+      real(c_double), intent(inout) :: loss(n)
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      class(material_t), allocatable :: body
+      type(error_t), allocatable :: trouble
+      complex(wp) :: modulus(n)
+
+      call find_body(self, material, body, trouble)
+      if (.not. allocated(trouble)) then
+         modulus = body%complex_modulus(cmplx(0.0_wp, frequencies, wp))
+         storage = real(modulus, wp)
+         loss = aimag(modulus)
+      end if
+      code = told(trouble, error)
+   end function vcor_complex_modulus
+
+   !> The case by all methods
+   function vcor_verify(self, results, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Best value, internal variables, product integration, digits
+      real(c_double), intent(inout) :: results(4, size(compared_names))
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(case_t) :: case
+      type(comparison_t) :: comparison
+      type(c_ptr) :: none(0)
+      real(wp) :: nothing(0, 1)
+      integer :: i
+
+      results = ieee_value(1.0_wp, ieee_quiet_nan)
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call build(handle, none, nothing, trouble)
+      case = handle%case
+      if (.not. allocated(trouble)) call read_data(case, trouble)
+      if (.not. allocated(trouble)) &
+         call compare(case, handle%sweep%problem%impact, comparison, trouble)
+      if (.not. allocated(trouble)) then
+         do i = 1, size(compared_names)
+            if (.not. comparison%separated) exit
+            associate (compared => comparison%compared(i))
+               results(:, i) = [compared%best, compared%value(attempt_first), &
+                  compared%direct%limit, real(compared%digits, wp)]
+               if (.not. comparison%two_methods) results(2, i) = ieee_value(1.0_wp, ieee_quiet_nan)
+            end associate
+         end do
+         if (allocated(comparison%objection)) call raise(trouble, error_numerical, &
+            handle%case%source//': '//comparison%objection)
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_verify
+
+   !> Build what the impacts of a case have in common, unless it is there already
+   subroutine build(handle, addresses, values, error)
+      !> The case
+      type(handle_t), intent(inout) :: handle
+      !> Addresses that have values of their own
+      type(c_ptr), intent(in) :: addresses(:)
+      !> The values, a column for each point
+      real(wp), intent(in) :: values(:, :)
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(case_t) :: case
+      type(address_t), allocatable :: own(:)
+      type(address_t) :: address
+      type(entry_t) :: entry
+      character(len=:), allocatable :: list, message
+      integer :: i, item
+
+      list = ''
+      do i = 1, size(addresses)
+         list = list//fortran(addresses(i))//new_line('a')
+      end do
+      if (allocated(handle%built_for)) then
+         if (handle%built_for == list) return
+         deallocate (handle%built_for)
+      end if
+      case = handle%case
+      allocate (own, source=swept_addresses(case))
+      do i = 1, size(addresses)
+         call resolve(case, fortran(addresses(i)), address, message)
+         if (any(own == address) .and. .not. allocated(message)) cycle
+         ! the &sweep group that a file would have; its values come later
+         call case%add(find_group('sweep'), 0, item)
+         entry%given = .true.
+         entry%text = fortran(addresses(i))
+         entry%origin = shortened(entry%text)
+         call case%set(case%address('sweep', 'parameter', item), entry)
+         call case%set(case%address('sweep', 'values', item), values(i, :1), given=.true.)
+      end do
+      call check(case, .false., error)
+      if (.not. allocated(error)) call new_sweep(handle%sweep, case, error)
+      if (allocated(error)) return
+      do i = 1, size(handle%sweep%grid%axes)
+         if (column_of(handle%sweep%grid%axes(i)%address, handle%case, addresses) > 0) cycle
+         call raise(error, error_input, case%location('sweep', 'parameter', i) &
+            //": the case varies '"//handle%sweep%grid%axes(i)%name &
+            //"', expected values for it among those of the points")
+         return
+      end do
+      handle%sweep%grid%is_list = size(addresses) > 0
+      call move_alloc(list, handle%built_for)
+   end subroutine build
+
+   !> Check a case and read its data files
+   subroutine check(case, all_materials, error)
+      !> The case
+      type(case_t), intent(inout) :: case
+      !> Whether materials are read that are in no body
+      logical, intent(in) :: all_materials
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      call validate(case, error)
+      if (.not. allocated(error)) call refuse_unread(case, all_materials, error)
+      if (.not. allocated(error)) call read_data(case, error)
+   end subroutine check
+
+   !> Give the points their values
+   subroutine give_values(sweep, case, addresses, values)
+      !> The sweep
+      type(sweep_t), intent(inout) :: sweep
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Addresses that have values of their own
+      type(c_ptr), intent(in) :: addresses(:)
+      !> The values, a column for each point
+      real(wp), intent(in) :: values(:, :)
+
+      integer :: i
+
+      do i = 1, size(sweep%grid%axes)
+         associate (axis => sweep%grid%axes(i))
+            axis%values = values(column_of(axis%address, case, addresses), :)
+         end associate
+      end do
+   end subroutine give_values
+
+   !> Which of some addresses, as texts, an address is
+   function column_of(address, case, addresses) result(column)
+      !> The address
+      type(address_t), intent(in) :: address
+      !> The case
+      type(case_t), intent(in) :: case
+      !> The texts
+      type(c_ptr), intent(in) :: addresses(:)
+      !> The number, 0 if it is none of them
+      integer :: column
+
+      type(address_t) :: other
+      character(len=:), allocatable :: message
+
+      do column = size(addresses), 1, -1
+         call resolve(case, fortran(addresses(column)), other, message)
+         if (other == address) return
+      end do
+   end function column_of
+
+   !> A material of a case
+   subroutine find_body(self, name, material, error)
+      !> The case
+      type(c_ptr), intent(in) :: self
+      !> Name of the material
+      type(c_ptr), intent(in) :: name
+      !> The material
+      class(material_t), allocatable, intent(out) :: material
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(handle_t), pointer :: handle
+      type(case_t) :: case
+      integer :: item
+
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      case = handle%case
+      item = case%find_material(fortran(name))
+      if (item == 0) then
+         call raise(error, error_usage, "there is no material '"//shortened(fortran(name)) &
+            //"'; "//suggestion(canonical_name(fortran(name)), material_names(case)))
+      else
+         call check(case, .true., error)
+      end if
+      if (.not. allocated(error)) call material_of_case(case, item, material, error)
+!$omp end critical (vcor_c_api)
+   end subroutine find_body
+
+   !> Code of an error, which goes to the caller with its message
+   function told(trouble, error) result(code)
+      !> The error, unallocated for success
+      type(error_t), allocatable, intent(in) :: trouble
+      !> `vcor_error`, or null
+      type(c_ptr), intent(in) :: error
+      !> 0 or its code
+      integer(c_int) :: code
+
+      type(c_error_t), pointer :: to
+
+      code = 0
+      if (allocated(trouble)) code = int(trouble%code, c_int)
+      if (.not. c_associated(error)) return
+      call put_remark(error, '')
+      if (.not. allocated(trouble)) return
+      call put_remark(error, trouble%message)
+      call c_f_pointer(error, to)
+      to%code = code
+   end function told
+
+   !> Tell the caller something that is no error
+   subroutine put_remark(error, message)
+      !> `vcor_error`, or null
+      type(c_ptr), intent(in) :: error
+      !> The remark
+      character(len=*), intent(in) :: message
+
+      type(c_error_t), pointer :: to
+
+      if (.not. c_associated(error)) return
+      call c_f_pointer(error, to)
+      to%code = 0
+      call put_text(message, to%message)
+   end subroutine put_remark
+
+   !> Name, unit and meaning of a column
+   pure subroutine put_column(column, name, unit, meaning)
+      !> The column, the rest of it empty
+      type(c_column_t), intent(out) :: column
+      !> Name
+      character(len=*), intent(in) :: name
+      !> Unit
+      character(len=*), intent(in) :: unit
+      !> What it is
+      character(len=*), intent(in) :: meaning
+
+      call put_text(trim(name), column%name)
+      call put_text('', column%symbol)
+      call put_text(trim(unit), column%unit)
+      call put_text(trim(meaning), column%meaning)
+      call put_text('', column%labels)
+      column%first = 0
+   end subroutine put_column
+
+   !> A text into room of C, cut if it does not fit
+   pure subroutine put_text(text, room)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The room
+      character(kind=c_char), intent(inout) :: room(:)
+
+      integer :: i, n
+
+      n = min(len(text), size(room) - 1)
+      do i = 1, n
+         room(i) = text(i:i)
+      end do
+      room(n + 1) = c_null_char
+   end subroutine put_text
+
+   !> A text of C
+   function fortran(text) result(copy)
+      !> The text
+      type(c_ptr), intent(in) :: text
+      !> The same
+      character(len=:), allocatable :: copy
+
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, n
+
+      n = 0
+      if (c_associated(text)) n = int(strlen(text))
+      allocate (character(len=n) :: copy)
+      if (n == 0) return
+      call c_f_pointer(text, letters, [n])
+      do i = 1, n
+         copy(i:i) = letters(i)
+      end do
+   end function fortran
+
+   !> A text for C, released by free()
+   function c_text(text) result(copy)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The same; null without memory
+      type(c_ptr) :: copy
+
+      character(kind=c_char), pointer :: letters(:)
+
+      copy = malloc(int(len(text) + 1, c_size_t))
+      if (.not. c_associated(copy)) return
+      call c_f_pointer(copy, letters, [len(text) + 1])
+      call put_text(text, letters)
+   end function c_text
+
+   !> Numbers for C, released by free()
+   function c_numbers(numbers) result(copy)
+      !> The numbers
+      real(wp), intent(in) :: numbers(:)
+      !> The same; null without memory
+      type(c_ptr) :: copy
+
+      real(c_double), pointer :: room(:)
+
+      copy = malloc(int(max(1, size(numbers)), c_size_t)*storage_size(numbers)/8)
+      if (.not. c_associated(copy)) return
+      call c_f_pointer(copy, room, [size(numbers)])
+      room = numbers
+   end function c_numbers
+
+end module vcor_c_api
