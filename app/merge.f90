@@ -108,9 +108,10 @@ contains
             numbers(i) = part%number
          end associate
       end do
-      if (size(numbers) < first%part%parts) call raise(error, error_file, 'missing: ' &
+      if (size(numbers) < first%part%parts) call raise(error, error_file, 'missing: shard' &
+         //trim(merge('s', ' ', first%part%parts - size(numbers) > 1))//' ' &
          //missing(numbers, first%part%parts)//' of '//integer_text(first%part%parts) &
-         //' shards; expected all of them')
+         //'; expected all of them')
    end subroutine identify
 
    !> Shards that are missing

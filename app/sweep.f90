@@ -10,7 +10,7 @@ module vcor_app_sweep
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, inexact, shard_report, sweep_report
-   use vcor_app_watch, only : clock, watch_t
+   use vcor_app_watch, only : watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : trajectory_t
    use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint, read_points, read_results
@@ -22,7 +22,7 @@ module vcor_app_sweep
    use vcor_io_table, only : table_t
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
-   use vcor_sweep_points, only : solve_points
+   use vcor_sweep_points, only : clock, solve_points
    use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending
    use vcor_sweep_summary, only : new_summary, summary_t
    implicit none

@@ -1,7 +1,6 @@
 !> Watch over a sweep: what is finished goes to a file, the terminal shows how far it is, and a
 !> signal ends it
 module vcor_app_watch
-   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_signals, only : caught_signal
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_t
@@ -10,12 +9,12 @@ module vcor_app_watch
    use vcor_io_identity, only : identity_t
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
-   use vcor_sweep_points, only : monitor_t
+   use vcor_sweep_points, only : clock, monitor_t
    use vcor_sweep_summary, only : summary_t
    implicit none
    private
 
-   public :: watch_t, clock
+   public :: watch_t
 
    !> Time after which a sweep gets a file [s]: what is shorter is solved anew as quickly
    real(wp), parameter :: time_without_file = 0.25_wp
@@ -159,16 +158,5 @@ contains
          call write_terminal(achar(13)//repeat(' ', width)//achar(13))
       self%shown = 0.0_wp
    end subroutine clear
-
-   !> Time by the clock on the wall
-   function clock() result(time)
-      !> Time since some moment, > 0 [s]
-      real(wp) :: time
-
-      integer(int64) :: count, rate
-
-      call system_clock(count, rate)
-      time = real(count, wp)/real(rate, wp)
-   end function clock
 
 end module vcor_app_watch

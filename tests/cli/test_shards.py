@@ -80,7 +80,8 @@ def test_shard_of_what(vcor):
 def test_refused(vcor):
     vcor.write(GOOD)
     one, two, three = shards(vcor, 3)
-    vcor.refuses("merge", one, three, code=FILE, says=["missing: 2 of 3 shards"])
+    vcor.refuses("merge", one, three, code=FILE, says=["missing: shard 2 of 3;"])
+    vcor.refuses("merge", two, code=FILE, says=["missing: shards 1, 3 of 3;"])
     vcor.refuses("merge", one, two, three, two, code=FILE, says=["shard 2 of 3", "once"])
     vcor.refuses("merge", one, two, "out/none.h5", code=FILE, says="out/none.h5")
     vcor.refuses("merge", one, "case.nml", code=FILE, says=["case.nml", "HDF5"])

@@ -5,8 +5,8 @@ program test_figure
    use vcor_error, only : error_file, error_input, error_t
    use vcor_figure_label, only : is_geometric, number_text, parameter_label, quantity_label, &
       suit_unit, with_unit
-   use vcor_io_table, only : add_column, add_dimension, add_fact, column_t, integer_column, &
-      new_table, real_column, table_t, text_column, text_value
+   use vcor_io_table, only : add_column, add_dimension, add_fact, column_of, &
+      integer_column, new_table, real_column, table_t, text_column, text_value
    use vcor_io_figure, only : add_curve, add_note, figure_t, line_ghost, line_solid, new_figure, &
       note_right, note_top, plain
    use vcor_io_file, only : write_file
@@ -324,23 +324,24 @@ contains
       type(dataset_t) :: set
       type(error_t), allocatable :: error
       character(len=:), allocatable :: path
-      type(column_t) :: column
       integer :: i
 
       call new_table(summary, 'summary', 'Stoß', '&case'//new_line('a')//'/')
-      call add_dimension(summary, 'impact.velocity', [1.0_wp, 2.0_wp], 'm/s', 'velocity')
-      call add_dimension(summary, 'sphere.radius', [0.1_wp, 0.2_wp, 0.3_wp], 'm', 'radius')
-      call add_column(summary, 'cor', [(0.1_wp*real(i, wp), i=1, 6)], '1', 'restitution')
-      call add_column(summary, 'steps', [(10*i, i=1, 6)], '1', 'steps')
-      call add_column(summary, 'status', [character(len=9) :: 'separated', 'sticks', 'α', '', 'x', &
-         'y'], '', 'status')
+      call add_dimension(summary, column_of('impact.velocity', [1.0_wp, 2.0_wp], 'm/s', 'velocity'))
+      call add_dimension(summary, column_of('sphere.radius', [0.1_wp, 0.2_wp, 0.3_wp], 'm', &
+         'radius'))
+      call add_column(summary, column_of('cor', [(0.1_wp*real(i, wp), i=1, 6)], '1', 'restitution'))
+      call add_column(summary, column_of('steps', [(10*i, i=1, 6)], '1', 'steps'))
+      call add_column(summary, column_of('status', [character(len=9) :: 'separated', 'sticks', &
+         'α', '', 'x', &
+         'y'], '', 'status'))
       call new_table(history, 'history', 'Stoß', '')
-      call add_dimension(history, 'time', [0.0_wp, 1.0_wp], 's', 'time')
-      call add_column(history, 'force', [3.0_wp, 4.0_wp], 'N', 'force')
+      call add_dimension(history, column_of('time', [0.0_wp, 1.0_wp], 's', 'time'))
+      call add_column(history, column_of('force', [3.0_wp, 4.0_wp], 'N', 'force'))
       call new_table(more, 'more', 'Stoß', '')
       call add_fact(more, 'contact_time', 1.5e-3_wp, 's', 'contact time')
-      call add_dimension(more, 'time', [0.0_wp], 's', 'time')
-      call add_column(more, 'force', [3.0_wp], 'N', 'force')
+      call add_dimension(more, column_of('time', [0.0_wp], 's', 'time'))
+      call add_column(more, column_of('force', [3.0_wp], 'N', 'force'))
       path = join_path(folder, 'round trip é.h5')
       call write_hdf5(path, summary, error, more=[history, more])
       call check(.not. allocated(error), 'the file is written')
@@ -389,12 +390,12 @@ contains
       call check(allocated(error), 'no such dataset')
       call check_contains(error%message, 'summary/none', 'which is named')
 
-      call read_column(reader, 'summary/cor', real_column, 6, column, error)
-      call check_relative(column%reals, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'a column')
-      call read_column(reader, 'summary/cor', real_column, 5, column, error)
+      call read_column(reader, 'summary/cor', real_column, 6, set, error)
+      call check_relative(set%column%reals, [(0.1_wp*real(i, wp), i=1, 6)], rounding, 'a column')
+      call read_column(reader, 'summary/cor', real_column, 5, set, error)
       call check(allocated(error), 'a column of another length')
       call check_contains(error%message, "found 6 values in 'summary/cor', expected 5", 'lengths')
-      call read_column(reader, 'summary/status', integer_column, 6, column, error)
+      call read_column(reader, 'summary/status', integer_column, 6, set, error)
       call check(allocated(error), 'text is no numbers')
       call check_contains(error%message, "'summary/status' cannot be read as numbers", 'text')
       call close_hdf5(reader)

@@ -5,8 +5,8 @@ program test_output
    use, intrinsic :: iso_c_binding, only : c_associated
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_internal, error_t
-   use vcor_io_table, only : add_column, add_dimension, check_table, coordinate_row, new_table, &
-      row_count, table_t, text_value
+   use vcor_io_table, only : add_column, add_dimension, check_table, column_of, coordinate_row, &
+      new_table, row_count, table_t, text_value
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : commit, create_file, discard, output_file_t, put, write_file, &
       write_stdout
@@ -354,9 +354,10 @@ contains
       call new_table(table, "summary", "title  ", "case")
       call add_dimension(table, "row", 4)
       do i = 1, 100
-         call add_column(table, "column "//integer_text(i), real([i, i, i, i], wp), "m", "column")
+         call add_column(table, column_of("column "//integer_text(i), real([i, i, i, i], wp), "m", &
+            & "column"))
       end do
-      call add_column(table, "text", ["a   ", "    ", " bc ", "def "], "", "text")
+      call add_column(table, column_of("text", ["a   ", "    ", " bc ", "def "], "", "text"))
       call check_table(table, error)
       call check(.not. allocated(error), "table is sound")
       call check_text(table%title, "title", "title is trimmed")
@@ -370,8 +371,8 @@ contains
       call check_text(text_value(table%columns(101), 3), " bc", "text with a blank before it")
 
       call new_table(table, "summary", "grid", "case")
-      call add_dimension(table, "a", [1, 2], "1", "a")
-      call add_dimension(table, "b", [1.0_wp, 2.0_wp, 3.0_wp], "1", "b")
+      call add_dimension(table, column_of("a", [1, 2], "1", "a"))
+      call add_dimension(table, column_of("b", [1.0_wp, 2.0_wp, 3.0_wp], "1", "b"))
       call check(row_count(table) == 6, "rows of a grid")
       call check(all([(coordinate_row(table, 1, i), i = 1, 6)] == [1, 1, 1, 2, 2, 2]), "slow")
       call check(all([(coordinate_row(table, 2, i), i = 1, 6)] == [1, 2, 3, 1, 2, 3]), "fast")
@@ -382,28 +383,28 @@ contains
       type(table_t) :: table, unborn
 
       table = small_table()
-      call add_column(table, "long", [1, 2, 3], "1", "too long")
+      call add_column(table, column_of("long", [1, 2, 3], "1", "too long"))
       call check_fault(table, "'long' has another length", "length")
       table = small_table()
-      call add_column(table, "cor", [1, 2], "1", "twice")
+      call add_column(table, column_of("cor", [1, 2], "1", "twice"))
       call check_fault(table, "two columns of a table are called 'cor'", "name twice")
-      call add_column(table, "long", [1, 2, 3], "1", "too long")
+      call add_column(table, column_of("long", [1, 2, 3], "1", "too long"))
       call check_fault(table, "two columns of a table are called 'cor'", "the first fault counts")
       table = small_table()
-      call add_column(table, "impact", [1, 2], "1", "a dimension")
+      call add_column(table, column_of("impact", [1, 2], "1", "a dimension"))
       call check_fault(table, "'impact'", "name of a dimension")
       table = small_table()
-      call add_column(table, " ", [1, 2], "1", "nothing")
+      call add_column(table, column_of(" ", [1, 2], "1", "nothing"))
       call check_fault(table, "no name", "no name")
       table = small_table()
-      call add_column(table, "a"//lf, [1, 2], "1", "nothing")
+      call add_column(table, column_of("a"//lf, [1, 2], "1", "nothing"))
       call check_fault(table, "not a single line", "name of two lines")
       table = small_table()
       call add_dimension(table, "late", 1)
       call check_fault(table, "'late' comes after the first column", "late dimension")
       call new_table(table, "summary", "", "")
       call check_fault(table, "no dimension", "nothing")
-      call add_column(table, "cor", [1, 2], "1", "early")
+      call add_column(table, column_of("cor", [1, 2], "1", "early"))
       call check_fault(table, "'cor' comes before the first dimension", "early column")
       call add_dimension(unborn, "row", 1)
       call check_fault(unborn, "not begun", "table that was not begun")
@@ -435,8 +436,8 @@ contains
 
       call new_table(table, "summary", "none", "")
       call add_dimension(table, "impact", 0)
-      call add_column(table, "cor", [real(wp) ::], "1", "cor")
-      call add_column(table, "status", [character(len=3) ::], "", "status")
+      call add_column(table, column_of("cor", [real(wp) ::], "1", "cor"))
+      call add_column(table, column_of("status", [character(len=3) ::], "", "status"))
       call write_csv(path, table, error)
       call check(.not. allocated(error), "table without rows can be written")
       call check_contains(content(path), lf//"cor,status"//lf, "table without rows has its names")
@@ -458,14 +459,14 @@ contains
 
       path = join_path(folder, "comments.csv")
       call new_table(table, "summary", "two"//lf//"lines", "a"//cr//lf//lf//"b"//cr//"c"//lf//lf)
-      call add_dimension(table, "time", [0.0_wp], "s", "time")
+      call add_dimension(table, column_of("time", [0.0_wp], "s", "time"))
       call write_csv(path, table, error)
       call check_contains(content(path), "# title: two"//lf//"# lines"//lf, "title of two lines")
       call check_contains(content(path), &
          & lf//"# case:"//lf//"# a"//lf//"# "//lf//"# b"//lf//"# c"//lf//"# "//lf//"time"//lf, &
          & "lines end with line feed, carriage return or both")
       call new_table(table, "summary", "long", repeat("x", 200000))
-      call add_dimension(table, "time", [0.0_wp], "s", "time")
+      call add_dimension(table, column_of("time", [0.0_wp], "s", "time"))
       call write_csv(path, table, error)
       call check_contains(content(path), "# "//repeat("x", 200000)//lf//"time"//lf, "long line")
    end subroutine test_csv_comments
@@ -478,9 +479,9 @@ contains
 
       path = join_path(folder, "grid.csv")
       call new_table(table, "summary", "grid", "")
-      call add_dimension(table, "material", ["a ", "bc"], "", "material")
-      call add_dimension(table, "k", [7, 8], "1", "number")
-      call add_column(table, "n", [1, 2, 3, 4], "1", "count")
+      call add_dimension(table, column_of("material", ["a ", "bc"], "", "material"))
+      call add_dimension(table, column_of("k", [7, 8], "1", "number"))
+      call add_column(table, column_of("n", [1, 2, 3, 4], "1", "count"))
       call write_csv(path, table, error)
       call check(.not. allocated(error), "grid can be written as csv")
       call check_contains(content(path), "material,k,n"//lf//"a,7,1"//lf//"a,8,2"//lf// &
@@ -496,8 +497,8 @@ contains
 
       path = join_path(folder, "small.h5")
       call new_table(history, "history", "small", "case")
-      call add_dimension(history, "time", [0.0_wp, 1.0e-6_wp, 2.0e-6_wp], "s", "time")
-      call add_column(history, "force", [0.0_wp, 1.0_wp, 0.5_wp], "N", "force")
+      call add_dimension(history, column_of("time", [0.0_wp, 1.0e-6_wp, 2.0e-6_wp], "s", "time"))
+      call add_column(history, column_of("force", [0.0_wp, 1.0_wp, 0.5_wp], "N", "force"))
       call write_hdf5(path, small_table(), error, more=[history])
       call check(.not. allocated(error), "tables can be written as hdf5")
       first = content(path)
@@ -512,18 +513,18 @@ contains
 
       call new_table(table, "summary", "none", "")
       call add_dimension(table, "impact", 0)
-      call add_column(table, "status", [character(len=3) ::], "", "status")
+      call add_column(table, column_of("status", [character(len=3) ::], "", "status"))
       call write_hdf5(path, table, error=error)
       call check(.not. allocated(error), "hdf5 of a table without rows")
 
       ! Names that HDF5 would take for its own
       call new_table(table, "summary", "names", "")
       call add_dimension(table, "impact", 1)
-      call add_column(table, "a/b.c", [1], "1", "slash")
+      call add_column(table, column_of("a/b.c", [1], "1", "slash"))
       call write_hdf5(path, table, error=error)
       call check(.not. allocated(error), "name with a slash")
       first = content(path)
-      call add_column(table, "a_b.c", [1], "1", "no slash")
+      call add_column(table, column_of("a_b.c", [1], "1", "no slash"))
       call write_hdf5(path, table, error=error)
       call check_failed(error, "HDF5 cannot create 'a_b.c'", "names that differ in a slash only")
       call check(content(path) == first, "a failure of HDF5 leaves the old file")
@@ -540,10 +541,10 @@ contains
 
       call new_table(table, "summary", "small", "&case"//lf//"  title = 'small'"//lf//"/"//lf)
       call add_dimension(table, "impact", 2)
-      call add_column(table, "cor", [0.5_wp, ieee_value(1.0_wp, ieee_quiet_nan)], "1", &
-         & "coefficient of restitution")
-      call add_column(table, """rubber, soft"".beta", [-3, 0], "s-1", "rate")
-      call add_column(table, "status", ["a, ""b""", "      "], "", "how it ended")
+      call add_column(table, column_of("cor", [0.5_wp, ieee_value(1.0_wp, ieee_quiet_nan)], "1", &
+         & "coefficient of restitution"))
+      call add_column(table, column_of("""rubber, soft"".beta", [-3, 0], "s-1", "rate"))
+      call add_column(table, column_of("status", ["a, ""b""", "      "], "", "how it ended"))
    end function small_table
 
    !> A table with many rows
@@ -558,8 +559,8 @@ contains
       words = "word"
       call new_table(table, "summary", "large", "")
       call add_dimension(table, "impact", rows)
-      call add_column(table, "cor", [(1.0_wp/i, i = 1, rows)], "1", "cor")
-      call add_column(table, "status", words, "", "status")
+      call add_column(table, column_of("cor", [(1.0_wp/i, i = 1, rows)], "1", "cor"))
+      call add_column(table, column_of("status", words, "", "status"))
    end subroutine large_table
 
    !> Check that there is an error about a file, on one line

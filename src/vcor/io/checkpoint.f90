@@ -23,19 +23,21 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : make_scratch, move_file, remember, remove_file, remove_scratch
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, find_place, open_hdf5, read_column, &
+      reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
       c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
-   use vcor_io_results, only : unit_of
-   use vcor_io_table, only : add_column, add_dimension, column_t, integer_column, &
-      move_in_column, new_table, real_column, table_t, text_column, text_value
+   use vcor_io_results, only : axis_column, quantity_column
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
+      move_column, new_table, real_column, table_t, text_column, text_value
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
    use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t
-   use vcor_sweep_summary, only : summary_t
-   use vcor_text, only : integer_text
+   use vcor_sweep_summary, only : summary_t, values_t
+   use vcor_text, only : shortened
+   use vcor_words, only : join_words
    implicit none
    private
 
@@ -126,13 +128,16 @@ contains
       !> Outcomes; they move
       type(summary_t), intent(inout) :: summary
 
+      type(column_t) :: column
+      type(values_t) :: status
       integer, allocatable :: points(:), places(:)
       real(wp), allocatable :: values(:)
       integer :: i, j
 
       call new_table(table, 'summary', identity%title, identity%case_text)
       points = [(identity%part%point(i), i=1, identity%part%count())]
-      call add_dimension(table, 'point', points, '1', 'number of the point in the sweep')
+      call add_dimension(table, column_of('point', points, '1', &
+         'number of the point in the sweep'))
       allocate (values(size(points)))
       do j = 1, size(grid%axes)
          associate (axis => grid%axes(j))
@@ -140,23 +145,18 @@ contains
                places = grid%places(points(i))
                values(i) = axis%values(places(j))
             end do
-            call add_column(table, axis%name, values, unit_of(axis%unit), axis%meaning)
+            call add_column(table, axis_column(axis, values))
          end associate
       end do
-      call add_column(table, 'check', checks_of(summary, 1, size(points)), '1', &
-         'CRC-32 of the numbers of the summary in this row and of its number; 0: pending')
+      call add_column(table, column_of('check', checks_of(summary, 1, size(points)), '1', &
+         'CRC-32 of the numbers of the summary in this row and of its number; 0: pending'))
       do i = 1, size(summary%values)
-         associate (quantity => summary%quantities(i), values => summary%values(i))
-            if (allocated(values%reals)) then
-               call move_in_column(table, trim(quantity%name), values%reals, trim(quantity%unit), &
-                  trim(quantity%meaning))
-            else
-               call move_in_column(table, trim(quantity%name), values%integers, '1', &
-                  meaning_of(quantity))
-            end if
-         end associate
+         call quantity_column(column, summary%quantities(i), summary%values(i), as_numbers=.true.)
+         call move_column(table, column)
       end do
-      call move_in_column(table, 'status', summary%status, '1', meaning_of(summary%quantities(i)))
+      call move_alloc(summary%status, status%integers)
+      call quantity_column(column, summary%quantities(i), status, as_numbers=.true.)
+      call move_column(table, column)
    end subroutine fill_table
 
    !> Outcomes out of their table
@@ -175,25 +175,6 @@ contains
       end do
       call move_alloc(table%columns(before + i)%integers, summary%status)
    end subroutine empty_table
-
-   !> What a column of numbers is, and the texts that they stand for
-   function meaning_of(quantity) result(text)
-      !> The column
-      type(quantity_t), intent(in) :: quantity
-      !> One line
-      character(len=:), allocatable :: text
-
-      character(len=label_length), allocatable :: labels(:)
-      integer :: i
-
-      text = trim(quantity%meaning)
-      if (quantity%labels == '') return
-      allocate (labels, source=labels_of(quantity))
-      do i = 1, size(labels)
-         text = text//merge(': ', ', ', i == 1)//integer_text(quantity%first + i - 1)//' ' &
-            //trim(labels(i))
-      end do
-   end function meaning_of
 
    !> Give a file its name
    subroutine name_file(self, path, error)
@@ -282,11 +263,11 @@ contains
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, n
-         call find_place(reader, dataset(quantities(i)%name), self%offsets(i), error)
+         call find_place(reader, path_of(quantities(i)%name), self%offsets(i), error)
          if (allocated(error)) exit
       end do
       if (.not. allocated(error)) &
-         call find_place(reader, dataset('check'), self%offsets(n + 1), error)
+         call find_place(reader, path_of('check'), self%offsets(n + 1), error)
       call close_hdf5(reader)
       if (allocated(error)) then
          error%code = error_file
@@ -481,16 +462,17 @@ contains
       integer, intent(inout), optional :: checks(:)
 
       type(reader_t) :: reader
-      type(column_t) :: column
+      type(dataset_t) :: dataset
       integer :: i
 
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, size(summary%values)
          if (allocated(summary%values(i)%reals)) then
-            call read_column(reader, dataset(summary%quantities(i)%name), real_column, &
-               size(summary%status), column, error)
-            if (.not. allocated(error)) call move_alloc(column%reals, summary%values(i)%reals)
+            call read_column(reader, path_of(summary%quantities(i)%name), real_column, &
+               size(summary%status), dataset, error)
+            if (.not. allocated(error)) call move_alloc(dataset%column%reals, &
+               summary%values(i)%reals)
          else
             call read_wholes(reader, summary%quantities(i), .not. present(checks), &
                summary%values(i)%integers, error)
@@ -500,8 +482,8 @@ contains
       if (.not. allocated(error)) call read_wholes(reader, &
          summary%quantities(size(summary%quantities)), .not. present(checks), summary%status, error)
       if (present(checks) .and. .not. allocated(error)) then
-         call read_column(reader, dataset('check'), integer_column, size(checks), column, error)
-         if (.not. allocated(error)) checks = column%integers
+         call read_column(reader, path_of('check'), integer_column, size(checks), dataset, error)
+         if (.not. allocated(error)) checks = dataset%column%integers
       end if
       call close_hdf5(reader)
       if (allocated(error)) error%code = error_file
@@ -520,33 +502,40 @@ contains
       !> Set if they cannot be read
       type(error_t), allocatable, intent(out) :: error
 
-      type(column_t) :: column
+      type(dataset_t) :: dataset
       character(len=label_length), allocatable :: labels(:)
-      integer :: i
+      logical :: has_texts
+      integer :: i, k
 
-      if (quantity%labels == '' .or. .not. as_texts) then
-         call read_column(reader, dataset(quantity%name), integer_column, size(numbers), column, &
-            error)
-         if (.not. allocated(error)) numbers = column%integers
-         return
-      end if
-      call read_column(reader, dataset(quantity%name), text_column, size(numbers), column, error)
+      has_texts = as_texts .and. quantity%labels /= ''
+      call read_column(reader, path_of(quantity%name), merge(text_column, integer_column, &
+         has_texts), size(numbers), dataset, error)
       if (allocated(error)) return
+      numbers = dataset%column%integers
+      if (.not. has_texts) return
       allocate (labels, source=labels_of(quantity))
       do i = 1, size(numbers)
-         numbers(i) = quantity%first - 1 + max(1, findloc(labels, text_value(column, i), dim=1))
+         do k = size(labels), 1, -1
+            if (labels(k) == text_value(dataset%column, i)) exit
+         end do
+         numbers(i) = quantity%first - 1 + k
+         if (k > 0) cycle
+         call raise(error, error_file, reader%path//": found '" &
+            //shortened(text_value(dataset%column, i))//"' in 'summary/"//trim(quantity%name) &
+            //"', expected one of "//join_words(trim(adjustl(quantity%labels))))
+         return
       end do
    end subroutine read_wholes
 
    !> Path of the dataset of a column
-   pure function dataset(name) result(path)
+   pure function path_of(name) result(path)
       !> Name of the column
       character(len=*), intent(in) :: name
       !> Its path in the file
       character(len=:), allocatable :: path
 
       path = 'summary/'//trim(name)
-   end function dataset
+   end function path_of
 
    !> Check sums of points: CRC-32 of their numbers as the file has them, in the order of columns,
    !> and of their places, so that two points that have changed places are found

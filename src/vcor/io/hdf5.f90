@@ -320,9 +320,7 @@ contains
       integer, parameter :: longest_stored = 50000
 
       is_uniform = column%kind == text_column .and. column%length > longest_stored
-      ! the texts are the same if they are what they are one text further
-      if (is_uniform) is_uniform = column%texts(column%width + 1:) &
-         == column%texts(:len(column%texts) - column%width)
+      if (is_uniform) is_uniform = all(column%integers == column%integers(1))
    end function is_uniform
 
    !> Make the first text of a column the fill value
@@ -355,36 +353,18 @@ contains
       !> Negative on failure
       integer, intent(out) :: status
 
-      ! equal texts in a row share one copy
-      character(len=column%width+1, kind=c_char), allocatable, target :: copies(:)
+      character(len=column%width+1, kind=c_char), allocatable, target :: texts(:)
       type(c_ptr), allocatable, target :: places(:)
-      integer :: i, last
+      integer :: i
 
-      last = count([(begins(i), i=1, column%length)])
-      allocate (copies(last), places(column%length))
-      last = 0
+      allocate (texts(maxval(column%integers)), places(column%length))
+      do i = 1, size(texts)
+         texts(i) = trim(column%texts((i - 1)*column%width + 1:i*column%width))//c_null_char
+      end do
       do i = 1, column%length
-         if (begins(i)) then
-            last = last + 1
-            copies(last) = text_value(column, i)//c_null_char
-         end if
-         places(i) = c_loc(copies(last))
+         places(i) = c_loc(texts(column%integers(i)))
       end do
       call h5dwrite_f(dataset, type_id, c_loc(places), status)
-
-   contains
-
-      !> Whether a text is another one than that before it
-      pure function begins(i)
-         !> Its number, from 1
-         integer, intent(in) :: i
-         !> Whether it is
-         logical :: begins
-
-         begins = i == 1
-         if (.not. begins) begins = column%texts((i - 1)*column%width + 1:i*column%width) &
-            /= column%texts((i - 2)*column%width + 1:(i - 1)*column%width)
-      end function begins
    end subroutine write_texts
 
    !> Keep where a dataset of numbers is, as no part of the seal

@@ -4,7 +4,7 @@
 !>     text = text_attribute(reader, '/', 'title')
 !>     call list_members(reader, 'summary', members, error)
 !>     call read_dataset(reader, 'summary/cor', dataset, error)
-!>     call read_column(reader, 'summary/cor', real_column, n, cor, error)
+!>     call read_column(reader, 'summary/cor', real_column, n, dataset, error)
 !>     call close_hdf5(reader)
 !>
 !> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
@@ -27,7 +27,7 @@ module vcor_io_hdf5_reader
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
-   use vcor_io_table, only : column_t, integer_column, move_column, real_column, text_column
+   use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable, shortened
    implicit none
@@ -275,7 +275,7 @@ contains
 
       type(c_ptr) :: place
       integer(hid_t) :: set, space, type_id
-      integer :: class, ignored, status
+      integer :: class, i, ignored, status
 
       call open_dataset(reader, path, set, space, dataset%lengths, error)
       if (allocated(error)) return
@@ -299,6 +299,7 @@ contains
             if (column%length > 0) call h5dread_f(set, h5t_native_integer, place, status)
          else if (class == h5t_string_f) then
             column%kind = text_column
+            column%integers = [(i, i=1, column%length)]
             call read_texts(set, .false., space, type_id, column, status)
          else
             status = -1
@@ -312,7 +313,7 @@ contains
    end subroutine read_dataset
 
    !> Read a column of a table, of which it is known what it has
-   subroutine read_column(reader, path, kind, length, column, error)
+   subroutine read_column(reader, path, kind, length, dataset, error)
       !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the dataset
@@ -321,12 +322,10 @@ contains
       integer, intent(in) :: kind
       !> Number of its values
       integer, intent(in) :: length
-      !> The column
-      type(column_t), intent(out) :: column
+      !> The dataset
+      type(dataset_t), intent(out) :: dataset
       !> Set if there is none, or it has other values, or it cannot be read
       type(error_t), allocatable, intent(out) :: error
-
-      type(dataset_t) :: dataset
 
       call read_dataset(reader, path, dataset, error)
       if (allocated(error)) return
@@ -337,8 +336,6 @@ contains
       else if (dataset%column%kind /= kind) then
          call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
             //"' cannot be read as "//trim(merge('text   ', 'numbers', kind == text_column)))
-      else
-         call move_column(dataset%column, column)
       end if
    end subroutine read_column
 

@@ -9,7 +9,7 @@
 !> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
 !> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_moduli_tables
-   use vcor_io_table, only : add_column, add_dimension, add_fact, new_table, table_t
+   use vcor_io_table, only : add_column, add_dimension, add_fact, column_of, new_table, table_t
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    implicit none
@@ -51,22 +51,26 @@ contains
       call add_summary(summary, moduli%materials)
 
       call begin(relaxation, 'relaxation', soft)
-      call add_dimension(relaxation, 'time', moduli%times, 's', 'time since the strain step')
-      call add_column(relaxation, 'relaxation_modulus', &
-         [(moduli%materials(soft(i))%relaxation, i=1, size(soft))], 'Pa', 'relaxation modulus E(t)')
-      call add_column(relaxation, 'in_window', spread_out(moduli%times <= moduli%contact_time), &
-         '1', window_meaning)
+      call add_dimension(relaxation, column_of('time', moduli%times, 's', &
+         'time since the strain step'))
+      call add_column(relaxation, column_of('relaxation_modulus', &
+         [(moduli%materials(soft(i))%relaxation, i=1, size(soft))], 'Pa', &
+         'relaxation modulus E(t)'))
+      call add_column(relaxation, column_of('in_window', &
+         spread_out(moduli%times <= moduli%contact_time), &
+         '1', window_meaning))
 
       storage = [(moduli%materials(soft(i))%storage, i=1, size(soft))]
       loss = [(moduli%materials(soft(i))%loss, i=1, size(soft))]
       call begin(dynamic, 'dynamic', soft)
-      call add_dimension(dynamic, 'frequency', moduli%frequencies, 'rad/s', 'angular frequency')
-      call add_column(dynamic, 'storage_modulus', storage, 'Pa', "storage modulus E'")
-      call add_column(dynamic, 'loss_modulus', loss, 'Pa', "loss modulus E''")
-      call add_column(dynamic, 'loss_tangent', loss_tangent(storage, loss), '1', &
-         "loss tangent E''/E'")
-      call add_column(dynamic, 'in_window', &
-         spread_out(moduli%frequencies >= moduli%min_frequency), '1', window_meaning)
+      call add_dimension(dynamic, column_of('frequency', moduli%frequencies, 'rad/s', &
+         'angular frequency'))
+      call add_column(dynamic, column_of('storage_modulus', storage, 'Pa', "storage modulus E'"))
+      call add_column(dynamic, column_of('loss_modulus', loss, 'Pa', "loss modulus E''"))
+      call add_column(dynamic, column_of('loss_tangent', loss_tangent(storage, loss), '1', &
+         "loss tangent E''/E'"))
+      call add_column(dynamic, column_of('in_window', &
+         spread_out(moduli%frequencies >= moduli%min_frequency), '1', window_meaning))
 
    contains
 
@@ -110,7 +114,7 @@ contains
          do k = 1, size(items)
             names(k) = moduli%materials(items(k))%name
          end do
-         call add_dimension(table, 'material', names, '', 'name of the material')
+         call add_dimension(table, column_of('material', names, '', 'name of the material'))
       end subroutine add_names
 
       !> Whether points are in the window, for each of the materials
@@ -142,20 +146,25 @@ contains
          models(i) = materials(i)%model
       end do
       tangent = loss_tangent(materials%storage_at_min, materials%loss_at_min)
-      call add_column(table, 'model', models, '', 'model of the relaxation modulus')
-      call add_column(table, 'density', materials%density, 'kg/m3', 'density, 0 where not given')
-      call add_column(table, 'poisson_ratio', materials%poisson_ratio, '1', "Poisson's ratio")
-      call add_column(table, 'glassy_modulus', materials%glassy, 'Pa', 'modulus at t = 0')
-      call add_column(table, 'rubbery_modulus', materials%rubbery, 'Pa', 'modulus after long times')
-      call add_column(table, 'viscosity', materials%viscosity, 'Pa s', &
-         'dashpot in parallel, which the relaxation modulus leaves out')
-      call add_column(table, 'relaxation_modulus', materials%at_contact_time, 'Pa', &
-         'relaxation modulus at contact_time')
-      call add_column(table, 'storage_modulus', materials%storage_at_min, 'Pa', &
-         'storage modulus at min_frequency')
-      call add_column(table, 'loss_modulus', materials%loss_at_min, 'Pa', &
-         'loss modulus at min_frequency')
-      call add_column(table, 'loss_tangent', tangent, '1', 'loss tangent at min_frequency')
+      call add_column(table, column_of('model', models, '', 'model of the relaxation modulus'))
+      call add_column(table, column_of('density', materials%density, 'kg/m3', &
+         'density, 0 where not given'))
+      call add_column(table, column_of('poisson_ratio', materials%poisson_ratio, '1', &
+         "Poisson's ratio"))
+      call add_column(table, column_of('glassy_modulus', materials%glassy, 'Pa', &
+         'modulus at t = 0'))
+      call add_column(table, column_of('rubbery_modulus', materials%rubbery, 'Pa', &
+         'modulus after long times'))
+      call add_column(table, column_of('viscosity', materials%viscosity, 'Pa s', &
+         'dashpot in parallel, which the relaxation modulus leaves out'))
+      call add_column(table, column_of('relaxation_modulus', materials%at_contact_time, 'Pa', &
+         'relaxation modulus at contact_time'))
+      call add_column(table, column_of('storage_modulus', materials%storage_at_min, 'Pa', &
+         'storage modulus at min_frequency'))
+      call add_column(table, column_of('loss_modulus', materials%loss_at_min, 'Pa', &
+         'loss modulus at min_frequency'))
+      call add_column(table, column_of('loss_tangent', tangent, '1', &
+         'loss tangent at min_frequency'))
    end subroutine add_summary
 
 end module vcor_io_moduli_tables

@@ -7,7 +7,8 @@
 !> table. Here a number M 2^e is multiplied by a power of ten, 5^k 2^k, in integers of 27 bits, so
 !> that the 17 digits are the integer part of a shifted product. 5^k is cut off after 81 bits, which
 !> is good for 1e-6 of the last digit: only if the rest is that close to one half, where rounding
-!> turns, the compiler's formatted write decides. Integers, since the compiler may contract the
+!> turns, the compiler's formatted write decides, as it does for numbers of 1e17 and more and for
+!> subnormal ones, which results hardly have. Integers, since the compiler may contract the
 !> products and sums of real numbers, and a scheme of two reals per number is lost then.
 module vcor_io_number
    use, intrinsic :: iso_fortran_env, only : int64
@@ -23,8 +24,8 @@ module vcor_io_number
    !> Longest text of an integer [characters]
    integer, parameter :: longest_integer = 11
 
-   !> Smallest and largest power of ten that brings a number to 17 digits before the point
-   integer, parameter :: first_power = 16 - 309, last_power = 16 + 325
+   !> Largest power of ten that brings a number to 17 digits before the point
+   integer, parameter :: last_power = 16 + 309
    !> 10^17: one digit too many
    integer(int64), parameter :: too_large = 10_int64**17
    !> Bits of the fraction and bias of the exponent, IEEE 754 binary64
@@ -41,11 +42,10 @@ module vcor_io_number
    !> Powers of ten for the conversion; made by `new_decimal`
    type :: decimal_t
       private
-      !> 5^k = 2^exponent sum_i limb(i) 2^(27 i), the highest bit set; k from `first_power` to
-      !> `last_power`
-      integer(int64) :: limb(0:top, first_power:last_power)
+      !> 5^k = 2^exponent sum_i limb(i) 2^(27 i), the highest bit set; k up to `last_power`
+      integer(int64) :: limb(0:top, 0:last_power)
       !> Power of two
-      integer :: exponent(first_power:last_power)
+      integer :: exponent(0:last_power)
       !> Two digits of the numbers 0 to 99
       character(len=2) :: pairs(0:99)
    end type decimal_t
@@ -56,7 +56,7 @@ contains
    pure subroutine new_decimal(decimal)
       !> Ready for `put_real`
       type(decimal_t), intent(out) :: decimal
-      ! Two limbs more, for the errors of some 300 products and quotients
+      ! Two limbs more, for the errors of some 300 products
       integer(int64) :: limb(0:top+2)
       integer :: exponent, k
 
@@ -65,15 +65,6 @@ contains
       exponent = 1 - limb_bits*(top + 1)
       do k = 0, last_power
          if (k > 0) call times_five(limb, exponent)
-         decimal%limb(:, k) = limb(2:)
-         decimal%exponent(k) = exponent
-      end do
-
-      limb = 0_int64
-      limb(top+2) = 2_int64**(limb_bits - 1)
-      exponent = 1 - limb_bits*(top + 1)
-      do k = -1, first_power, -1
-         call over_five(limb, exponent)
          decimal%limb(:, k) = limb(2:)
          decimal%exponent(k) = exponent
       end do
@@ -93,8 +84,10 @@ contains
       character(len=*), intent(inout) :: buffer
       !> Last character in use, before and after
       integer, intent(inout) :: last
+      ! Exponent of 2^56 = 7.2e16: powers of ten below one would be needed beyond
+      integer, parameter :: largest_exponent = 55
       integer(int64) :: bits, digits, field, fraction
-      integer :: exponent, power, zeros
+      integer :: exponent, power
 
       ! All from the bits: an ordered comparison with NaN traps in a debug build
       bits = transfer(x, 0_int64)
@@ -111,18 +104,13 @@ contains
       end if
 
       exponent = int(field) - bias
-      if (field == 0_int64) then
-         if (fraction == 0_int64) then
-            call put_digits(decimal, 0_int64, 0, buffer, last)
-            return
-         end if
-         ! A subnormal number has no leading one: move its first one there
-         zeros = leadz(fraction) - (63 - fraction_bits)
-         fraction = ibits(ishft(fraction, zeros), 0, fraction_bits)
-         exponent = 1 - bias - zeros
+      digits = -1_int64
+      if (field == 0_int64 .and. fraction == 0_int64) then
+         digits = 0_int64
+         power = 0
+      else if (field > 0_int64 .and. exponent <= largest_exponent) then
+         call find_digits(decimal, ibset(fraction, fraction_bits), exponent, digits, power)
       end if
-
-      call find_digits(decimal, ibset(fraction, fraction_bits), exponent, digits, power)
       if (digits < 0_int64) call ask_compiler(x, digits, power)
       call put_digits(decimal, digits, power, buffer, last)
    end subroutine put_real
@@ -313,32 +301,5 @@ contains
       limb(i) = ior(ishft(limb(i), -shift), ishft(carry, limb_bits - shift))
       exponent = exponent + shift
    end subroutine times_five
-
-   !> Divide by five
-   pure subroutine over_five(limb, exponent)
-      !> Limbs from the lowest to the highest, whose highest bit is set before and after
-      integer(int64), intent(inout) :: limb(0:)
-      !> Power of two that goes with them
-      integer, intent(inout) :: exponent
-      integer(int64) :: below, rest, sum
-      integer :: i, shift
-
-      rest = 0_int64
-      do i = ubound(limb, 1), 0, -1
-         sum = ishft(rest, limb_bits) + limb(i)
-         limb(i) = sum/5_int64
-         rest = sum - 5_int64*limb(i)
-      end do
-      ! Two or three bits are free now; the bits that come in at the right are those of rest/5
-      shift = 2
-      if (.not. btest(limb(ubound(limb, 1)), limb_bits - 3)) shift = 3
-      below = ishft(rest, shift)/5_int64
-      do i = ubound(limb, 1), 1, -1
-         limb(i) = ibits(ishft(limb(i), shift), 0, limb_bits)
-         limb(i) = ior(limb(i), ishft(limb(i-1), shift - limb_bits))
-      end do
-      limb(0) = ior(ibits(ishft(limb(0), shift), 0, limb_bits), below)
-      exponent = exponent - shift
-   end subroutine over_five
 
 end module vcor_io_number

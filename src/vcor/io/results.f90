@@ -4,15 +4,17 @@ module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
    use vcor_io_csv, only : write_csv
    use vcor_io_hdf5, only : remark_t, write_hdf5
-   use vcor_io_table, only : add_column, add_dimension, move_in_column, new_table, table_t
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, move_column, &
+      new_table, table_t
    use vcor_kinds, only : wp
-   use vcor_case_grid, only : grid_t
+   use vcor_case_grid, only : axis_t, grid_t
    use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t
    use vcor_sweep_summary, only : summary_t, values_t
+   use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: summary_table, history_table, write_summary, unit_of
+   public :: summary_table, history_table, write_summary, axis_column, quantity_column
 
 contains
 
@@ -30,69 +32,76 @@ contains
       !> Their outcomes; they move to the table, so that there are not two of a million
       type(summary_t), intent(inout) :: summary
 
+      type(column_t) :: column
+      type(values_t) :: status
       integer :: i
 
       call new_table(table, 'summary', title, case_text)
       do i = 1, size(grid%axes)
-         associate (axis => grid%axes(i))
-            call add_dimension(table, axis%name, axis%values, unit_of(axis%unit), axis%meaning)
-         end associate
+         call add_dimension(table, axis_column(grid%axes(i), grid%axes(i)%values))
       end do
       if (size(grid%axes) == 0) call add_dimension(table, 'impact', 1)
       do i = 1, size(summary%values)
-         call move_in_quantity(table, summary%quantities(i), summary%values(i))
+         call quantity_column(column, summary%quantities(i), summary%values(i))
+         call move_column(table, column)
       end do
-      associate (status => summary%quantities(i))
-         call add_labels(table, status, summary%status)
-      end associate
+      status%integers = summary%status
+      call quantity_column(column, summary%quantities(i), status)
+      call move_column(table, column)
    end subroutine summary_table
 
-   !> Move the values of a quantity to a column
-   subroutine move_in_quantity(table, quantity, values)
-      !> The table
-      type(table_t), intent(inout) :: table
-      !> The quantity
+   !> A column of what is swept
+   pure function axis_column(axis, values) result(column)
+      !> The parameter
+      type(axis_t), intent(in) :: axis
+      !> Its values, in the unit of the parameter
+      real(wp), intent(in) :: values(:)
+      !> The column
+      type(column_t) :: column
+
+      column = column_of(axis%name, values, axis%unit, axis%meaning)
+      if (axis%unit == '') column%unit = '1'
+   end function axis_column
+
+   !> A column of a summary
+   subroutine quantity_column(column, quantity, values, as_numbers)
+      !> The column
+      type(column_t), intent(out) :: column
+      !> What it is
       type(quantity_t), intent(in) :: quantity
-      !> Its values; not allocated afterwards but for texts
+      !> Its values, which move to the column
       type(values_t), intent(inout) :: values
-
-      if (allocated(values%reals)) then
-         call move_in_column(table, trim(quantity%name), values%reals, trim(quantity%unit), &
-            trim(quantity%meaning))
-      else if (quantity%labels == '') then
-         call move_in_column(table, trim(quantity%name), values%integers, trim(quantity%unit), &
-            trim(quantity%meaning))
-      else
-         call add_labels(table, quantity, values%integers)
-      end if
-   end subroutine move_in_quantity
-
-   !> Add a column of the texts that numbers stand for
-   subroutine add_labels(table, quantity, numbers)
-      !> The table
-      type(table_t), intent(inout) :: table
-      !> The quantity
-      type(quantity_t), intent(in) :: quantity
-      !> Its numbers
-      integer, intent(in) :: numbers(:)
+      !> Whether texts stay the numbers that stand for them; absent: false
+      logical, intent(in), optional :: as_numbers
 
       character(len=label_length), allocatable :: labels(:)
+      character(len=:), allocatable :: meaning
+      logical :: is_text
+      integer :: i
 
-      allocate (labels, source=labels_of(quantity))
-      call add_column(table, trim(quantity%name), labels(numbers - quantity%first + 1), '', &
-         trim(quantity%meaning))
-   end subroutine add_labels
-
-   !> Unit as tables have it
-   pure function unit_of(unit) result(name)
-      !> Unit of a key; blank for a pure number
-      character(len=*), intent(in) :: unit
-      !> Unit, 1 for a pure number
-      character(len=:), allocatable :: name
-
-      name = unit
-      if (name == '') name = '1'
-   end function unit_of
+      meaning = trim(quantity%meaning)
+      is_text = quantity%labels /= ''
+      if (is_text) allocate (labels, source=labels_of(quantity))
+      if (present(as_numbers) .and. is_text) then
+         is_text = .not. as_numbers
+         do i = 1, merge(size(labels), 0, as_numbers)
+            meaning = meaning//merge(': ', ', ', i == 1)//integer_text(quantity%first + i - 1) &
+               //' '//trim(labels(i))
+         end do
+      end if
+      if (is_text) then
+         column = column_of(quantity%name, labels, '', meaning)
+      else if (allocated(values%reals)) then
+         column = column_of(quantity%name, [real(wp) ::], quantity%unit, meaning)
+      else
+         column = column_of(quantity%name, [integer ::], '1', meaning)
+      end if
+      call move_alloc(values%reals, column%reals)
+      call move_alloc(values%integers, column%integers)
+      if (is_text) column%integers = column%integers - quantity%first + 1
+      if (allocated(column%reals)) column%length = size(column%reals)
+      if (allocated(column%integers)) column%length = size(column%integers)
+   end subroutine quantity_column
 
    !> History: a row per time
    subroutine history_table(table, title, case_text, trajectory)
@@ -111,13 +120,15 @@ contains
       call new_table(table, 'history', title, case_text)
       call trajectory%sample(history_steps, state)
       associate (time => history_quantities(col_time))
-         call add_dimension(table, trim(time%name), state(col_time, :), trim(time%unit), &
-            trim(time%meaning))
+         call add_dimension(table, column_of(time%name, state(col_time, :), time%unit, &
+            time%meaning))
       end associate
       do j = 1, size(history_quantities)
          if (j == col_time) cycle
-         call add_column(table, trim(history_quantities(j)%name), state(j, :), &
-            trim(history_quantities(j)%unit), trim(history_quantities(j)%meaning))
+         associate (quantity => history_quantities(j))
+            call add_column(table, column_of(quantity%name, state(j, :), quantity%unit, &
+               quantity%meaning))
+         end associate
       end do
    end subroutine history_table
 

@@ -2,7 +2,7 @@
 !>
 !>     call new_table(summary, 'summary', title, case_text)
 !>     call add_dimension(summary, 'impact', rows)
-!>     call add_column(summary, 'cor', cor, '1', 'coefficient of restitution')
+!>     call add_column(summary, column_of('cor', cor, '1', 'coefficient of restitution'))
 !>
 !> All dimensions come before the first column. The rows of a column run through the dimensions with
 !> the last one the fastest, as in nested loops; its length is the product of their lengths.
@@ -22,8 +22,8 @@ module vcor_io_table
    private
 
    public :: table_t, column_t, fact_t, real_column, integer_column, text_column
-   public :: new_table, add_fact, add_dimension, add_column, move_in_column
-   public :: check_table, row_count, coordinate_row, place_in_table, text_value, move_column
+   public :: new_table, add_fact, add_dimension, add_column, move_column, column_of
+   public :: check_table, row_count, coordinate_row, place_in_table, text_value
 
    !> What the values of a column are
    integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
@@ -36,14 +36,14 @@ module vcor_io_table
       character(len=:), allocatable :: unit
       !> What it is, one line
       character(len=:), allocatable :: long_name
-      !> `real_column`, `integer_column` or `text_column`: which of the following is allocated
+      !> `real_column`, `integer_column` or `text_column`
       integer :: kind = real_column
-      !> Shape (length)
+      !> Numbers, allocated in a real column only, shape (length)
       real(wp), allocatable :: reals(:)
-      !> Shape (length)
+      !> Whole numbers, or the number of the text of each row, from 1, shape (length)
       integer, allocatable :: integers(:)
-      !> All values one after the other, each `width` characters, padded with blanks: a million
-      !> texts need no memory of their own
+      !> Texts of the rows, those that differ: one after the other, each `width` characters, padded
+      !> with blanks
       character(len=:), allocatable :: texts
       !> Characters per text
       integer :: width = 0
@@ -85,26 +85,18 @@ module vcor_io_table
       character(len=:), allocatable :: fault
    end type table_t
 
-   !> Add a dimension: its name and length, or its name, coordinates, unit and meaning
+   !> A column: its name, values, unit and meaning
+   interface column_of
+      module procedure column_of_reals
+      module procedure column_of_integers
+      module procedure column_of_texts
+   end interface column_of
+
+   !> Add a dimension: its coordinates, or its name and length
    interface add_dimension
+      module procedure add_coordinates
       module procedure add_index_dimension
-      module procedure add_real_dimension
-      module procedure add_integer_dimension
-      module procedure add_text_dimension
    end interface add_dimension
-
-   !> Add a column: its name, values, unit and meaning
-   interface add_column
-      module procedure add_real_column
-      module procedure add_integer_column
-      module procedure add_text_column
-   end interface add_column
-
-   !> Add a column whose values move to the table, so that there are not two of a million
-   interface move_in_column
-      module procedure move_in_real_column
-      module procedure move_in_integer_column
-   end interface move_in_column
 
 contains
 
@@ -192,7 +184,9 @@ contains
       !> The value, without blanks at its end
       character(len=:), allocatable :: text
 
-      text = trim(column%texts((row - 1)*column%width + 1:row*column%width))
+      associate (last => column%integers(row)*column%width)
+         text = trim(column%texts(last - column%width + 1:last))
+      end associate
    end function text_value
 
    !> Add a number that holds for a table as a whole
@@ -211,6 +205,70 @@ contains
       table%facts = [table%facts, fact_t(name, value, unit, long_name)]
    end subroutine add_fact
 
+   !> A column of real numbers
+   pure function column_of_reals(name, values, unit, long_name) result(column)
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (length); NaN and infinity are allowed
+      real(wp), intent(in) :: values(:)
+      !> The column
+      type(column_t) :: column
+
+      call describe(column, name, unit, long_name)
+      column%kind = real_column
+      column%reals = values
+      column%length = size(values)
+   end function column_of_reals
+
+   !> A column of whole numbers
+   pure function column_of_integers(name, values, unit, long_name) result(column)
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (length)
+      integer, intent(in) :: values(:)
+      !> The column
+      type(column_t) :: column
+
+      call describe(column, name, unit, long_name)
+      column%kind = integer_column
+      column%integers = values
+      column%length = size(values)
+   end function column_of_integers
+
+   !> A column of text
+   pure function column_of_texts(name, values, unit, long_name) result(column)
+      !> Name, unit (empty) and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+      !> Values, shape (length); blanks at their ends do not count
+      character(len=*), intent(in) :: values(:)
+      !> The column
+      type(column_t) :: column
+
+      integer :: i
+
+      call describe(column, name, unit, long_name)
+      column%kind = text_column
+      column%integers = [(i, i=1, size(values))]
+      column%length = size(values)
+      if (size(values) > 0) column%width = maxval(len_trim(values))
+      allocate (character(len=column%width*size(values)) :: column%texts)
+      do i = 1, size(values)
+         column%texts((i - 1)*column%width + 1:i*column%width) = values(i)
+      end do
+   end function column_of_texts
+
+   !> Say what a column is
+   pure subroutine describe(column, name, unit, long_name)
+      !> The column
+      type(column_t), intent(inout) :: column
+      !> Name, unit and meaning
+      character(len=*), intent(in) :: name, unit, long_name
+
+      column%name = trim(name)
+      column%unit = trim(unit)
+      column%long_name = trim(long_name)
+   end subroutine describe
+
    !> Add a dimension with the coordinates 1, 2, 3 ...
    pure subroutine add_index_dimension(table, name, length)
       !> Table to add to
@@ -223,246 +281,92 @@ contains
       type(column_t) :: coordinates
       integer :: i
 
-      coordinates%integers = [(i, i=1, length)]
+      coordinates = column_of(name, [(i, i=1, length)], '1', 'number of the '//name)
       coordinates%is_index = .true.
-      call take_dimension(table, coordinates, name, '1', 'number of the '//name)
+      call add_coordinates(table, coordinates)
    end subroutine add_index_dimension
 
-   !> Add a dimension with real coordinates
-   pure subroutine add_real_dimension(table, name, values, unit, long_name)
+   !> Add a dimension with coordinates
+   pure subroutine add_coordinates(table, coordinates)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the dimension
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Coordinates, shape (length)
-      real(wp), intent(in) :: values(:)
+      !> Coordinates
+      type(column_t), intent(in) :: coordinates
 
-      type(column_t) :: coordinates
-
-      coordinates%reals = values
-      call take_dimension(table, coordinates, name, unit, long_name)
-   end subroutine add_real_dimension
-
-   !> Add a dimension with whole numbers as coordinates
-   pure subroutine add_integer_dimension(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the dimension
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Coordinates, shape (length)
-      integer, intent(in) :: values(:)
-
-      type(column_t) :: coordinates
-
-      coordinates%integers = values
-      call take_dimension(table, coordinates, name, unit, long_name)
-   end subroutine add_integer_dimension
-
-   !> Add a dimension with names as coordinates
-   pure subroutine add_text_dimension(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit (empty) and meaning of the dimension
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Coordinates, shape (length); blanks at their ends do not count
-      character(len=*), intent(in) :: values(:)
-
-      type(column_t) :: coordinates
-
-      call join_texts(coordinates, values)
-      call take_dimension(table, coordinates, name, unit, long_name)
-   end subroutine add_text_dimension
-
-   !> Add a column of real numbers
-   pure subroutine add_real_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the column
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (rows); NaN and infinity are allowed
-      real(wp), intent(in) :: values(:)
-
-      type(column_t) :: column
-
-      column%reals = values
-      call take_column(table, column, name, unit, long_name)
-   end subroutine add_real_column
-
-   !> Add a column of whole numbers
-   pure subroutine add_integer_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the column
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (rows)
-      integer, intent(in) :: values(:)
-
-      type(column_t) :: column
-
-      column%integers = values
-      call take_column(table, column, name, unit, long_name)
-   end subroutine add_integer_column
-
-   !> Add a column of text
-   pure subroutine add_text_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit (empty) and meaning of the column
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (rows); blanks at their ends do not count
-      character(len=*), intent(in) :: values(:)
-
-      type(column_t) :: column
-
-      call join_texts(column, values)
-      call take_column(table, column, name, unit, long_name)
-   end subroutine add_text_column
-
-   !> Add a column of real numbers, which move
-   pure subroutine move_in_real_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the column
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (rows); unallocated afterwards
-      real(wp), allocatable, intent(inout) :: values(:)
-
-      type(column_t) :: column
-
-      call move_alloc(values, column%reals)
-      call take_column(table, column, name, unit, long_name)
-   end subroutine move_in_real_column
-
-   !> Add a column of whole numbers, which move
-   pure subroutine move_in_integer_column(table, name, values, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Name, unit and meaning of the column
-      character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (rows); unallocated afterwards
-      integer, allocatable, intent(inout) :: values(:)
-
-      type(column_t) :: column
-
-      call move_alloc(values, column%integers)
-      call take_column(table, column, name, unit, long_name)
-   end subroutine move_in_integer_column
-
-   !> Set the values of a text column
-   pure subroutine join_texts(column, values)
-      !> Column to set
-      type(column_t), intent(inout) :: column
-      !> Values, shape (length)
-      character(len=*), intent(in) :: values(:)
-
-      integer :: i
-
-      column%width = 0
-      if (size(values) > 0) column%width = maxval(len_trim(values))
-      column%length = size(values)
-      allocate (character(len=column%width*size(values)) :: column%texts)
-      do i = 1, size(values)
-         column%texts((i - 1)*column%width + 1:i*column%width) = values(i)
-      end do
-   end subroutine join_texts
-
-   !> Put a dimension at the end of a table, or keep the fault of it
-   pure subroutine take_dimension(table, coordinates, name, unit, long_name)
-      !> Table to add to
-      type(table_t), intent(inout) :: table
-      !> Coordinates, which move
-      type(column_t), intent(inout) :: coordinates
-      !> Name, unit and meaning
-      character(len=*), intent(in) :: name, unit, long_name
-
-      call describe(table, coordinates, name, unit, long_name)
+      call look_for_fault(table, coordinates)
       if (allocated(table%fault)) return
       if (size(table%columns) > 0) then
-         table%fault = "dimension '"//name//"' comes after the first column of its table"
+         table%fault = "dimension '"//coordinates%name//"' comes after the first column of its " &
+            //'table'
       else
-         call append(table%dimensions, coordinates)
+         table%dimensions = [table%dimensions, coordinates]
       end if
-   end subroutine take_dimension
+   end subroutine add_coordinates
 
-   !> Put a column at the end of a table, or keep the fault of it
-   pure subroutine take_column(table, column, name, unit, long_name)
+   !> Add a column
+   pure subroutine add_column(table, column)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Column, whose values move
-      type(column_t), intent(inout) :: column
-      !> Name, unit and meaning
-      character(len=*), intent(in) :: name, unit, long_name
+      !> The column
+      type(column_t), intent(in) :: column
 
-      call describe(table, column, name, unit, long_name)
+      type(column_t) :: copy
+
+      copy = column
+      call move_column(table, copy)
+   end subroutine add_column
+
+   !> Move a column to a table: there are not two of a million values then
+   pure subroutine move_column(table, column)
+      !> Table to add to
+      type(table_t), intent(inout) :: table
+      !> The column; without values afterwards
+      type(column_t), intent(inout) :: column
+
+      type(column_t), allocatable :: columns(:)
+      integer :: i
+
+      call look_for_fault(table, column)
       if (allocated(table%fault)) return
       if (size(table%dimensions) == 0) then
-         table%fault = "column '"//name//"' comes before the first dimension of its table"
+         table%fault = "column '"//column%name//"' comes before the first dimension of its table"
       else if (column%length /= row_count(table)) then
-         table%fault = "column '"//name//"' has another length than its table"
-      else
-         call append(table%columns, column)
+         table%fault = "column '"//column%name//"' has another length than its table"
       end if
-   end subroutine take_column
+      if (allocated(table%fault)) return
+      allocate (columns(size(table%columns) + 1))
+      do i = 1, size(table%columns)
+         call move_values(table%columns(i), columns(i))
+      end do
+      call move_values(column, columns(i))
+      call move_alloc(columns, table%columns)
+   end subroutine move_column
 
-   !> Describe a column whose values are set; keep a fault if its name is empty, not on one line or
-   !> taken
-   pure subroutine describe(table, column, name, unit, long_name)
+   !> Keep a fault if the name of a column is empty, not on one line or taken
+   pure subroutine look_for_fault(table, column)
       !> Table that it is for
       type(table_t), intent(inout) :: table
       !> Column with its values
-      type(column_t), intent(inout) :: column
-      !> Name, unit and meaning
-      character(len=*), intent(in) :: name, unit, long_name
-
-      column%name = trim(name)
-      column%unit = trim(unit)
-      column%long_name = trim(long_name)
-      if (allocated(column%reals)) then
-         column%kind = real_column
-         column%length = size(column%reals)
-      else if (allocated(column%integers)) then
-         column%kind = integer_column
-         column%length = size(column%integers)
-      else
-         column%kind = text_column
-      end if
+      type(column_t), intent(in) :: column
 
       if (allocated(table%fault)) return
       if (.not. allocated(table%columns)) then
-         table%fault = "'"//name//"' is added to a table that was not begun"
-      else if (name == '') then
+         table%fault = "'"//column%name//"' is added to a table that was not begun"
+      else if (column%name == '') then
          table%fault = 'a column of a table has no name'
-      else if (has_control(name)) then
+      else if (has_control(column%name)) then
          table%fault = 'the name of a column of a table is not a single line of text'
-      else if (place_in_table(table, name) > 0) then
-         table%fault = "two columns of a table are called '"//name//"'"
+      else if (place_in_table(table, column%name) > 0) then
+         table%fault = "two columns of a table are called '"//column%name//"'"
       end if
-   end subroutine describe
+   end subroutine look_for_fault
 
-   !> Move a column to the end of a list; the values of all of them stay where they are in memory
-   pure subroutine append(list, column)
-      !> Columns
-      type(column_t), allocatable, intent(inout) :: list(:)
-      !> Column to move
-      type(column_t), intent(inout) :: column
-
-      type(column_t), allocatable :: longer(:)
-      integer :: i
-
-      allocate (longer(size(list) + 1))
-      do i = 1, size(list)
-         call move_column(list(i), longer(i))
-      end do
-      call move_column(column, longer(size(longer)))
-      call move_alloc(longer, list)
-   end subroutine append
-
-   !> Move a column without a copy of its values
-   pure subroutine move_column(from, to)
+   !> Move what a column holds
+   pure subroutine move_values(from, to)
       !> Column without values afterwards
       type(column_t), intent(inout) :: from
-      !> Where it goes
-      type(column_t), intent(inout) :: to
+      !> Where they go
+      type(column_t), intent(out) :: to
 
       call move_alloc(from%name, to%name)
       call move_alloc(from%unit, to%unit)
@@ -474,6 +378,6 @@ contains
       to%width = from%width
       to%length = from%length
       to%is_index = from%is_index
-   end subroutine move_column
+   end subroutine move_values
 
 end module vcor_io_table

@@ -6,7 +6,7 @@
 !> and threads.
 module vcor_sweep_points
    use, intrinsic :: iso_fortran_env, only : int64
-!$ use omp_lib, only : omp_get_max_threads
+!$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking
@@ -20,7 +20,7 @@ module vcor_sweep_points
    implicit none
    private
 
-   public :: solve_points, monitor_t, default_threads
+   public :: solve_points, monitor_t, default_threads, clock
 
    !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
    !> and threads wait for each other at its end
@@ -98,6 +98,7 @@ contains
       !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
       integer, intent(out), optional :: stopped
 
+      type(worker_t), allocatable :: workers(:)
       integer, allocatable :: pending(:)
       real(wp), allocatable :: numbers(:)
       real(wp) :: start
@@ -112,6 +113,7 @@ contains
          end do
       end if
       pending = of_first(pending)
+      allocate (workers(threads))
       done = 0
       length = fewest*threads*rank_count()
       do
@@ -122,7 +124,7 @@ contains
          if (done == size(pending) .or. any(agreed(2:) /= 0)) exit
          start = clock()
          length = min(agreed(1), size(pending) - done)
-         call solve_round(sweep, part, pending(done + 1:done + length), threads, summary, &
+         call solve_round(sweep, part, pending(done + 1:done + length), workers, summary, &
             failures, error, monitor)
          done = done + length
          length = max(fewest*threads*rank_count(), min(growth*length, &
@@ -157,15 +159,15 @@ contains
    end function stop_code
 
    !> Solve the points of a round: this rank its part of them
-   subroutine solve_round(sweep, part, places, threads, summary, failures, error, monitor)
+   subroutine solve_round(sweep, part, places, workers, summary, failures, error, monitor)
       !> The sweep
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part
       !> Places of the points of the round
       integer, intent(in) :: places(:)
-      !> Threads of this rank
-      integer, intent(in) :: threads
+      !> What the threads of this rank work with, one for each; kept from round to round
+      type(worker_t), intent(inout) :: workers(:)
       !> Outcomes of all places; on the first rank
       type(summary_t), intent(inout) :: summary
       !> What points have no result and why
@@ -182,12 +184,14 @@ contains
       own = new_part(size(places), this_rank() + 1, rank_count())
       columns = size(quantities())
       allocate (rows(columns, own%count()))
-      team = max(1, min(threads, own%count()))
+      team = max(1, min(size(workers), own%count()))
       ! short enough that all threads end at about the same time
       chunk = max(1, min(longest_chunk, own%count()/(8*team)))
 !$omp parallel default(none) num_threads(team) &
-!$omp shared(sweep, part, own, places, chunk, rows, failures, monitor)
-      call work_off(sweep, part, own, places, chunk, rows, failures, monitor)
+!$omp shared(sweep, part, own, places, chunk, workers, rows, failures, monitor) private(k)
+      k = 1
+!$    k = omp_get_thread_num() + 1
+      call work_off(sweep, part, own, places, chunk, workers(k), rows, failures, monitor)
 !$omp end parallel
       numbers = gathered(reshape(rows, [size(rows)]))
       if (this_rank() > 0) return
@@ -206,7 +210,7 @@ contains
    end subroutine solve_round
 
    !> What one thread of a team does
-   subroutine work_off(sweep, part, own, places, chunk, rows, failures, monitor)
+   subroutine work_off(sweep, part, own, places, chunk, worker, rows, failures, monitor)
       !> The sweep
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
@@ -217,6 +221,8 @@ contains
       integer, intent(in) :: places(:)
       !> Points that a thread takes at a time
       integer, intent(in) :: chunk
+      !> What the thread works with
+      type(worker_t), intent(inout) :: worker
       !> Outcomes as numbers, a column for each point of `own`
       real(wp), intent(inout) :: rows(:, :)
       !> What points have no result and why
@@ -224,7 +230,6 @@ contains
       !> Who watches, if anyone
       class(monitor_t), intent(in), optional :: monitor
 
-      type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
       integer :: i, point
@@ -252,7 +257,7 @@ contains
 
    !> Time by the clock on the wall
    function clock() result(time)
-      !> Time since some moment [s]
+      !> Time since some moment, > 0 [s]
       real(wp) :: time
 
       integer(int64) :: count, rate
