@@ -204,6 +204,7 @@ contains
       if (range_text(key) /= "") words = words//", "//range_text(key)
       if (key%required) then
          words = words//", required"
+         if (key%instead /= "") words = words//", or "//trim(key%instead)
       else if (key%default /= "" .and. key%default /= "''") then
          words = words//", default "//trim(key%default)
       end if

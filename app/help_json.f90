@@ -129,6 +129,7 @@ contains
       text = text//", "//member("range", interval_text(key%range))//", " &
          //array_of_words("choices", key%choices)//", "//array_of_words("models", key%models) &
          //", "//flag("required", key%required)
+      if (key%instead /= "") text = text//", "//member("instead", key%instead)
       if (key%default == "''") then
          text = text//", "//member("default", "")
       else if (key%default /= "") then

@@ -90,7 +90,7 @@ def value_of(key):
 
 def default_of(key):
     if key["required"]:
-        return "required"
+        return f"required, or `{key['instead']}`" if "instead" in key else "required"
     if "default" not in key:
         return ""
     return f"`'{key['default']}'`" if key["type"] == "text" else f"`{key['default']}`"

@@ -1,14 +1,16 @@
-!> Mathematical constants
+!> Constants of mathematics, and the standard gravity
 module vcor_constants
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: pi, sqrt_pi
+   public :: pi, sqrt_pi, standard_gravity
 
    !> Ratio of a circle's circumference to its diameter
    real(wp), parameter :: pi = 3.1415926535897932384626433832795_wp
    !> Square root of pi
    real(wp), parameter :: sqrt_pi = 1.7724538509055160272981674833411_wp
+   !> Standard acceleration of gravity [m/s2], exact by definition (CGPM 1901)
+   real(wp), parameter :: standard_gravity = 9.80665_wp
 
 end module vcor_constants

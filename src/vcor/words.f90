@@ -61,7 +61,7 @@ contains
       end do
    end function join_words
 
-   !> What to say about an unknown name: the nearest known one, or all of them
+   !> What to say about an unknown name: the nearest known one, or as many as a line takes
    pure function suggestion(name, known) result(text)
       !> The unknown name
       character(len=*), intent(in) :: name
@@ -70,12 +70,18 @@ contains
       !> `did you mean '...'?` or `known: ...`
       character(len=:), allocatable :: text
 
+      integer, parameter :: line = 300
+      integer :: last
+
       text = nearest_name(name, known)
       if (len(text) > 0) then
          text = "did you mean '"//text//"'?"
-      else
-         text = "known: "//join_words(known)
+         return
       end if
+      last = len_trim(known)
+      if (last > line) last = index(known(:line), " ", back=.true.) - 1
+      text = "known: "//join_words(known(:last))
+      if (last < len_trim(known)) text = text//", ..."
    end function suggestion
 
    !> The known name nearest to a given one

@@ -31,10 +31,27 @@ NAMES = [
     "loss_tangent",
     "cor_error",
     "cor_sphere_error",
+    "resilience",
+    "rebound_height",
+    "contact_radius",
+    "contact_ratio",
+    "thickness_ratio",
+    "plate_wave_number",
+    "needed_extent",
+    "deflection_ratio",
+    "weight_ratio",
+    "mean_pressure",
+    "half_space_loss",
+    "peak_loss_tangent",
+    "validity",
+    "validity_cause",
     "steps",
     "status",
 ]
 ALL = ",".join(NAMES)
+# Those that are whole numbers in the file of a part, and those of them that are texts elsewhere
+WHOLE = {"steps", "status", "validity", "validity_cause"}
+TEXTS = WHOLE - {"steps"}
 
 # Seconds after which a run counts as one that does not end, far beyond what a busy machine takes
 LIMIT = 1000

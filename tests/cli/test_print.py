@@ -6,7 +6,7 @@ import re
 import h5py
 import pytest
 from cases import SLS, case_text, edit
-from program import ALL, NAMES, USAGE
+from program import ALL, NAMES, TEXTS, USAGE, WHOLE
 
 
 @pytest.fixture
@@ -70,17 +70,21 @@ def test_full_precision(vcor, model):
     with h5py.File(vcor.folder / "case.h5") as file:
         for name in NAMES:
             stored = file["summary"][name][0]
-            if name == "status":
+            if name in TEXTS:
                 assert values[name] == row[name] == stored.decode()
             else:
-                assert float(values[name]) == stored == float(row[name]), name
-                assert math.isfinite(stored)
+                numbers = [float(values[name]), stored, float(row[name])]
+                # a sphere that is not dropped has no height of rebound
+                if name == "rebound_height":
+                    assert all(map(math.isnan, numbers))
+                else:
+                    assert numbers[0] == numbers[1] == numbers[2] and math.isfinite(stored), name
 
 
 def test_plain_numbers(sls):
     """Every language reads them: digits, point, e, sign and two digits or more."""
     for name, value in sls.numbers("case.nml").items():
-        if name not in {"steps", "status"}:
+        if name not in WHOLE and value != "nan":
             assert re.fullmatch(r"-?\d\.\d{16}e[+-]\d{2,3}", value), name
 
 

@@ -164,6 +164,7 @@ def test_no_separation(vcor, method):
     assert row.pop("status") == "no_separation"
     assert int(row.pop("steps")) > 0
     assert float(row.pop("initial_energy")) > 1.6
+    assert row.pop("validity") == row.pop("validity_cause") == "none"
     assert set(row.values()) == {"nan"}
     with h5py.File(vcor.folder / "case.h5") as file:
         assert file["summary/status"].asstr()[0] == "no_separation"

@@ -17,6 +17,20 @@ SUMMARY = {
     "loss_tangent": "1",
     "cor_error": "1",
     "cor_sphere_error": "1",
+    "resilience": "1",
+    "rebound_height": "m",
+    "contact_radius": "m",
+    "contact_ratio": "1",
+    "thickness_ratio": "1",
+    "plate_wave_number": "1",
+    "needed_extent": "m",
+    "deflection_ratio": "1",
+    "weight_ratio": "1",
+    "mean_pressure": "Pa",
+    "half_space_loss": "1",
+    "peak_loss_tangent": "1",
+    "validity": "",
+    "validity_cause": "",
     "steps": "1",
     "status": "",
 }
@@ -34,4 +48,4 @@ HISTORY = {
 }
 
 INTEGERS = {"steps"}
-TEXTS = {"status"}
+TEXTS = {"status", "validity", "validity_cause"}

@@ -2,7 +2,7 @@
 program test_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_input, error_t
-   use vcor_impact_outcome, only : evaluate, outcome_t
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : override, read_case_text
@@ -171,10 +171,14 @@ contains
             call override(single, "impact.velocity="//real_text(axes(2)%values(places(2))), error)
          end associate
          call problem_of_case(problem, single, error)
-         call problem%solver%solve(problem%impact, trajectory, error)
-         expected = evaluate(problem%impact, trajectory)
-         call check_close(values_without_status(outcome), values_without_status(expected), exact, &
-            "its outcome is that of the impact by itself")
+         call problem%solve(trajectory, expected, error)
+         associate (one => values_without_status(outcome), &
+                    other => values_without_status(expected))
+            call check(all(ieee_is_nan(one) .eqv. ieee_is_nan(other)), "what there is")
+            call check_close(pack(one, .not. ieee_is_nan(one)), &
+               pack(other, .not. ieee_is_nan(one)), exact, &
+               "its outcome is that of the impact by itself")
+         end associate
       end do
    end subroutine test_points
 
@@ -340,7 +344,8 @@ contains
       real(wp), allocatable :: values(:)
 
       values = values_of(outcome)
-      values = values(:size(values) - 2)
+      ! validity and its cause are texts, the steps are counted in any case
+      values = values(:size(values) - 4)
    end function values_without_status
 
    !> Reasons are told apart by their words, not their numbers

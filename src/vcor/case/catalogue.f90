@@ -54,6 +54,8 @@ module vcor_case_catalogue
       character(len=128) :: models = ""
       !> Whether the key must be given
       logical :: required = .false.
+      !> Key that may be given in its place, and not beside it; blank: none
+      character(len=26) :: instead = ""
    end type key_t
 
    !> One group
@@ -95,7 +97,10 @@ module vcor_case_catalogue
       & key_t("case", "title", text_key, "Title, copied to the results", default="''"), &
       !
       & key_t("impact", "velocity", real_key, "Approach velocity at first contact", "m/s", &
-      &    positive, required=.true.), &
+      &    positive, required=.true., instead="drop_height"), &
+      & key_t("impact", "drop_height", real_key, &
+      &    "Height the sphere falls from, in place of velocity = sqrt(2 g drop_height)", "m", &
+      &    positive), &
       !
       & key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
       & key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
@@ -109,6 +114,9 @@ module vcor_case_catalogue
       &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
       & key_t("plate", "surface_radius", real_key, &
       &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
+      & key_t("plate", "extent", real_key, &
+      &    "Distance to the nearest edge of the plate, for the measure needed_extent", "m", &
+      &    positive), &
       !
       & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
       &    choices="boltzmann receding", default="boltzmann"), &
@@ -120,6 +128,8 @@ module vcor_case_catalogue
       & key_t("material", "model", text_key, "Model of the relaxation modulus", &
       &    choices=models, required=.true.), &
       & key_t("material", density%name, real_key, density%meaning, density%unit, density%range), &
+      & key_t("material", "yield_strength", real_key, &
+      &    "Yield strength, for the validity by mean_pressure", "Pa", positive), &
       & (key_t("material", model_parameters(i)%parameter%name, &
       &    merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
       &    model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &

@@ -110,13 +110,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
       type(entry_t) :: entry
       character(len=:), allocatable :: key, model, message
-      type(address_t) :: address
       integer :: applicable
+      logical :: has_other
 
       key = trim(catalogue(row)%name)
       model = self%model(group, item)
-      address = address_t(group, item, row)
-      entry = self%entry(address)
+      entry = self%entry(address_t(group, item, row))
       applicable = row_for_model(row, model)
       if (applicable == 0) then
          if (entry%given) call fail(self, group, key, item, "key '"//key &
@@ -124,17 +123,36 @@ contains
             & //join_words(keys_of(group, model)), error)
          return
       end if
-      if (entry%present) then
+      has_other = .false.
+      if (catalogue(row)%instead /= "") has_other = is_given(trim(catalogue(row)%instead))
+      if (has_other .and. is_given(key)) then
+         call fail(self, group, trim(catalogue(row)%instead), item, "found both "//key//" and " &
+            & //trim(catalogue(row)%instead)//", expected one of them", error)
+      else if (entry%present) then
          message = range_message(catalogue(applicable), entry)
          if (message /= "") call fail(self, group, key, item, key//": "//message, error)
-      else if (catalogue(applicable)%required .and. .not. any(swept == address)) then
+      else if (catalogue(applicable)%required .and. .not. (is_given(key) .or. has_other)) then
          message = "key '"//key//"' is missing in &"//trim(groups(group)%name)
          if (groups(group)%label /= "" .and. groups(group)%label /= key) &
             & message = message//" "//owner_name(self, group, item)
          if (catalogue(applicable)%models /= "") message = message//" of model '"//model//"'"
-         call fail(self, group, key, item, message//", expected "//wanted(catalogue(applicable)), &
-            & error)
+         message = message//", expected "//wanted(catalogue(applicable))
+         if (catalogue(row)%instead /= "") message = message//", or "//catalogue(row)%instead
+         call fail(self, group, key, item, trim(message), error)
       end if
+
+   contains
+
+      !> Whether a key of the item is given, or varied by a sweep
+      pure function is_given(name)
+         !> Name of the key
+         character(len=*), intent(in) :: name
+         !> Whether it is
+         logical :: is_given
+
+         is_given = self%given(groups(group)%name, name, item) &
+            & .or. any(swept == self%address(groups(group)%name, name, item))
+      end function is_given
    end subroutine check_entry
 
    !> Name of an item, in quotes

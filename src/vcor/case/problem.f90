@@ -7,17 +7,21 @@ module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_case_case, only : address_t, case_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, last_row
-   use vcor_constants, only : pi
+   use vcor_constants, only : pi, standard_gravity
    use vcor_error, only : error_t
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_plate, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
       waves_none, waves_relaxing
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of, &
       set_constants_of
    use vcor_material_parameter, only : density, parameter_t
-   use vcor_solver, only : check_settings, new_solver, solver_settings_t, solver_t
+   use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, &
+      solver_t
    implicit none
    private
 
@@ -43,7 +47,8 @@ module vcor_case_problem
 
    !> Addresses of the numbers that an impact is made from
    type :: numbers_t
-      type(address_t) :: velocity, radius, mass, surface_radius, half_thickness
+      type(address_t) :: velocity, drop_height, radius, mass, surface_radius, half_thickness
+      type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
    end type numbers_t
 
@@ -55,6 +60,8 @@ module vcor_case_problem
       class(solver_t), allocatable :: solver
       !> How the impact is to be solved
       type(solver_settings_t) :: settings
+      !> What its measures of validity know beside it
+      type(surroundings_t) :: around
       !> Material of the sphere
       type(body_t), private :: sphere
       !> Material of the plate
@@ -78,6 +85,8 @@ module vcor_case_problem
    contains
       !> Follow the numbers of the case
       procedure :: update
+      !> Solve and judge the impact
+      procedure :: solve
    end type problem_t
 
 contains
@@ -95,10 +104,12 @@ contains
       integer :: order
 
       self%at%velocity = case%address('impact', 'velocity')
+      self%at%drop_height = case%address('impact', 'drop_height')
       self%at%radius = case%address('sphere', 'radius')
       self%at%mass = case%address('sphere', 'mass')
       self%at%surface_radius = case%address('plate', 'surface_radius')
       self%at%half_thickness = case%address('plate', 'half_thickness')
+      self%at%extent = case%address('plate', 'extent')
       self%at%time_step = case%address('solver', 'time_step')
       self%at%end_time = case%address('solver', 'end_time')
       self%at%accuracy = case%address('solver', 'accuracy')
@@ -138,6 +149,9 @@ contains
       call describe(self%sphere, case, case%find_material(text))
       call case%get('plate', 'material', text)
       call describe(self%plate, case, case%find_material(text))
+      self%at%yield_strength = [ &
+         case%address('material', 'yield_strength', self%sphere%address%item), &
+         case%address('material', 'yield_strength', self%plate%address%item)]
       call self%update(case, error)
       if (allocated(error)) error%message = case%location(self%cause)//': '//error%message
    end subroutine problem_of_case
@@ -235,8 +249,60 @@ contains
          self%contact_is_current = .true.
       end if
       call launch(self, case, error)
-      if (.not. allocated(error)) call update_solver(self, case, error)
+      if (allocated(error)) return
+      call look_around(self, case)
+      call update_solver(self, case, error)
    end subroutine update
+
+   !> Solve the impact, and judge whether the model holds
+   subroutine solve(self, trajectory, outcome, error)
+      !> The problem
+      class(problem_t), intent(in) :: self
+      !> Course of its impact
+      type(trajectory_t), intent(inout) :: trajectory
+      !> Its outcome with the measures of validity
+      type(outcome_t), intent(out) :: outcome
+      !> Error of code `error_numerical` as that of `solve_impact`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      call solve_impact(self%solver, self%impact, trajectory, outcome, error)
+      if (allocated(error) .or. outcome%status /= contact_separated) return
+      if (self%plate%address%item == self%sphere%address%item) then
+         call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
+            self%sphere%material)
+      else
+         call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
+            self%plate%material)
+      end if
+   end subroutine solve
+
+   !> Follow what the measures of validity know beside the impact
+   subroutine look_around(self, case)
+      !> The problem, its materials built
+      type(problem_t), intent(inout) :: self
+      !> The case
+      type(case_t), intent(in) :: case
+
+      real(wp) :: yield_strength(2)
+
+      self%around%radius = case%number(self%at%radius)
+      self%around%is_sphere = case%number(self%at%surface_radius) > 0.0_wp
+      self%around%thickness = 2.0_wp*case%number(self%at%half_thickness)
+      self%around%extent = case%number(self%at%extent)
+      self%around%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
+      yield_strength = [case%number(self%at%yield_strength(1)), &
+         case%number(self%at%yield_strength(2))]
+      if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
+      if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
+      self%around%yield_strength = yield_strength(1)
+      associate (plate => self%plate)
+         if (plate%address%item == self%sphere%address%item) then
+            call self%around%follow(self%sphere%material%poisson_ratio())
+         else
+            call self%around%follow(plate%material%poisson_ratio())
+         end if
+      end associate
+   end subroutine look_around
 
    !> Set the impact's motion
    subroutine launch(self, case, error)
@@ -247,12 +313,15 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: mass, radius
+      real(wp) :: velocity, mass, radius
 
+      velocity = case%number(self%at%velocity)
+      if (ieee_is_nan(velocity)) &
+         velocity = sqrt(2.0_wp*standard_gravity*case%number(self%at%drop_height))
       radius = case%number(self%at%radius)
       mass = case%number(self%at%mass)
       if (ieee_is_nan(mass)) mass = 4.0_wp/3.0_wp*pi*radius**3*self%sphere%material%density()
-      call self%impact%launch(case%number(self%at%velocity), mass, radius, &
+      call self%impact%launch(velocity, mass, radius, &
          case%number(self%at%surface_radius), error)
       if (allocated(error)) self%cause = self%at%radius
    end subroutine launch

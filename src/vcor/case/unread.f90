@@ -1,5 +1,6 @@
-!> What an impact does not read: neither its solution nor a quantity of its output depends on it.
-!> Whoever sets or sweeps it is told so, since the same numbers again would be taken for an answer
+!> What an impact does not read: neither its solution nor a quantity of its output depends on it,
+!> other than a measure of validity of something that does not move. Whoever sets or sweeps it is
+!> told so, since the same numbers again would be taken for an answer
 !>
 !> What is read stands here by name, so a key that nobody has thought of is refused.
 module vcor_case_unread
@@ -109,7 +110,8 @@ contains
       associate (group => address%group, item => address%item)
          reason = ''
          select case (group_and_key(address))
-         case ('case.title', 'impact.velocity', 'sphere.radius', 'sphere.material', 'sphere.mass', &
+         case ('case.title', 'impact.velocity', 'impact.drop_height', &
+            'sphere.radius', 'sphere.material', 'sphere.mass', &
             'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
             'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
             'solver.continue_after_separation')
@@ -120,7 +122,7 @@ contains
             continue
          case ('sweep.spacing')
             if (case%given('sweep', 'values', item)) reason = 'it is for start, stop and count'
-         case ('plate.half_thickness')
+         case ('plate.half_thickness', 'plate.extent')
             reason = why_plate_rests(case)
          case ('plate.waves')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
@@ -142,6 +144,8 @@ contains
          case ('material.density')
             reason = why_material_is_unread(case, item)
             if (reason == '') reason = why_weightless(case, item)
+         case ('material.yield_strength')
+            reason = why_material_is_unread(case, item)
          case ('material.poisson_ratio')
             reason = why_material_is_unread(case, item)
             if (reason == '' .and. case%model(group, item) == 'rigid') &

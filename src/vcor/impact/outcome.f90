@@ -10,13 +10,14 @@ module vcor_impact_outcome
    implicit none
    private
 
-   public :: outcome_t, evaluate
+   public :: outcome_t, evaluate, none
 
    !> A number that there is not: quiet NaN, which no function may make in a constant
    real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
 
    !> Outcome; of an impact that did not end in separation only `status`, `steps` and
-   !> `initial_energy` are numbers, all else is NaN
+   !> `initial_energy` are numbers, all else is NaN. The measures of validity from `resilience` on
+   !> are set by `assess` of `vcor_impact_validity`; NaN where there is no such thing
    type :: outcome_t
       !> One of the `contact_*` constants of the trajectory
       integer :: status = contact_separated
@@ -62,6 +63,34 @@ module vcor_impact_outcome
       real(wp) :: cor_sphere_error = none
       !> Accuracy of both that was asked for [-]; 0: none was
       real(wp) :: accuracy = 0.0_wp
+      !> cor_sphere^2, rebound resilience [-]
+      real(wp) :: resilience = none
+      !> Height of the rebound of a sphere dropped from a height [m]
+      real(wp) :: rebound_height = none
+      !> Largest radius of the contact [m]
+      real(wp) :: contact_radius = none
+      !> It over the smaller one of Hertz' radius and the sphere's [-]
+      real(wp) :: contact_ratio = none
+      !> It over the thickness of the plate, times the plate's share of the compliance [-]
+      real(wp) :: thickness_ratio = none
+      !> Thickness times the number of the bending wave of frequency pi/t0 [-]
+      real(wp) :: plate_wave_number = none
+      !> Distance of the nearest edge from which this wave is back at t0 [m]
+      real(wp) :: needed_extent = none
+      !> Largest displacement of the plate over its thickness [-]
+      real(wp) :: deflection_ratio = none
+      !> Weight of the sphere over the largest force [-]
+      real(wp) :: weight_ratio = none
+      !> Mean pressure at the time of the largest force [Pa]
+      real(wp) :: mean_pressure = none
+      !> Energy radiated into a half space in place of the plate, over `initial_energy` [-]
+      real(wp) :: half_space_loss = none
+      !> Loss tangent of the contact modulus at pi/t0 [-]
+      real(wp) :: peak_loss_tangent = none
+      !> One of the `level_*` constants of `vcor_impact_validity`
+      integer :: validity = 0
+      !> Place of the measure that decides in its `thresholds`, 0: none
+      integer :: validity_cause = 0
    contains
       !> Whether all numbers are finite
       procedure :: is_finite

@@ -96,6 +96,8 @@ module vcor_impact_trajectory
       procedure :: misses_by_far
       !> State at equal steps of time
       procedure :: sample
+      !> Indentation at a time of the contact
+      procedure :: indentation_at
    end type trajectory_t
 
 contains
@@ -195,8 +197,8 @@ contains
       !> State, shape (columns, 0:)
       real(wp), allocatable, intent(out) :: state(:, :)
 
-      real(wp) :: time, theta, offset, c(0:self%stages)
-      integer :: i, panel, first
+      real(wp) :: time, c(0:self%stages)
+      integer :: i, first
 
       if (self%stages == 0) then
          allocate (state(columns, 0:self%final))
@@ -206,25 +208,69 @@ contains
 
       allocate (state(columns, 0:count))
       state(:, 0) = self%state(:, 0)
-      panel = 1
       first = 0
       do i = 1, count - 1
          time = self%state(col_time, self%final)*(real(i, wp)/real(count, wp))
-         do while (time > self%state(col_time, first + self%stages) &
-                   .and. first + self%stages < self%final)
-            first = first + self%stages
-            panel = panel + 1
-         end do
-         ! the root of the quadratic map in its stable form
-         offset = time - self%state(col_time, first)
-         theta = 2.0_wp*offset/(self%map(1, panel) &
-            + sqrt(max(0.0_wp, self%map(1, panel)**2 + 4.0_wp*self%map(2, panel)*offset)))
-         c = lagrange(self%point, self%barycentric, theta)
+         call find_panel(self, time, first, c)
          state(:, i) = matmul(self%state(:, first:first + self%stages), c)
          state(col_time, i) = time
       end do
       state(:, count) = self%state(:, self%final)
    end subroutine sample
+
+   !> Indentation at a time of the contact, by the polynomial of its panel, or in equal steps by the
+   !> cubic that has indentation and velocity of the nodes beside it
+   pure function indentation_at(self, time) result(indentation)
+      !> The trajectory
+      class(trajectory_t), intent(in) :: self
+      !> Time since first contact [s], up to that of the last node
+      real(wp), intent(in) :: time
+      !> Indentation [m]
+      real(wp) :: indentation
+
+      real(wp) :: c(0:self%stages), step, x
+      integer :: i
+
+      i = 0
+      if (self%stages > 0) then
+         call find_panel(self, time, i, c)
+         indentation = dot_product(self%state(col_indentation, i:i + self%stages), c)
+         return
+      end if
+      i = max(1, count(self%state(col_time, 0:self%last - 1) < time))
+      associate (left => self%state(:, i - 1), right => self%state(:, i))
+         step = right(col_time) - left(col_time)
+         x = (time - left(col_time))/step
+         indentation = (1.0_wp - x)**2*((1.0_wp + 2.0_wp*x)*left(col_indentation) &
+            + x*step*left(col_velocity)) + x**2*((3.0_wp - 2.0_wp*x)*right(col_indentation) &
+            - (1.0_wp - x)*step*right(col_velocity))
+      end associate
+   end function indentation_at
+
+   !> The panel of a time, and the weights of its nodes there
+   pure subroutine find_panel(self, time, first, c)
+      !> The trajectory, of a collocation solution
+      class(trajectory_t), intent(in) :: self
+      !> Time since first contact [s]
+      real(wp), intent(in) :: time
+      !> Node at which a panel begins that is not behind the time; that of the panel
+      integer, intent(inout) :: first
+      !> Weights, shape (0:stages)
+      real(wp), intent(out) :: c(0:)
+
+      real(wp) :: offset, theta
+
+      do while (time > self%state(col_time, first + self%stages) &
+                .and. first + self%stages < self%final)
+         first = first + self%stages
+      end do
+      ! the root of the quadratic map in its stable form
+      associate (map => self%map(:, first/self%stages + 1))
+         offset = time - self%state(col_time, first)
+         theta = 2.0_wp*offset/(map(1) + sqrt(max(0.0_wp, map(1)**2 + 4.0_wp*map(2)*offset)))
+      end associate
+      c = lagrange(self%point, self%barycentric, theta)
+   end subroutine find_panel
 
    !> Lagrange basis polynomials at an argument
    pure function lagrange(point, barycentric, theta) result(c)

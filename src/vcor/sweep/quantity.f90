@@ -5,6 +5,7 @@ module vcor_sweep_quantity
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : columns, contact_lasting, contact_separated, &
       contact_sticking
+   use vcor_impact_validity, only : level_none, levels, thresholds
    use vcor_kinds, only : wp
    implicit none
    private
@@ -137,6 +138,36 @@ contains
       call list%add('cor_error', 'de', '1', 'estimated error of cor', outcome%cor_error)
       call list%add('cor_sphere_error', 'de_a', '1', 'estimated error of cor_sphere', &
          outcome%cor_sphere_error)
+      call list%add('resilience', 'e_a^2', '1', 'rebound resilience, cor_sphere^2', &
+         outcome%resilience)
+      call list%add('rebound_height', 'H_1', 'm', 'height of the rebound from drop_height', &
+         outcome%rebound_height)
+      call list%add('contact_radius', 'a', 'm', 'largest radius of the contact', &
+         outcome%contact_radius)
+      call list%add('contact_ratio', 'a/R', '1', 'contact_radius over the radius', &
+         outcome%contact_ratio)
+      call list%add('thickness_ratio', 'a/2h', '1', &
+         "contact_radius over thickness, plate's share", &
+         outcome%thickness_ratio)
+      call list%add('plate_wave_number', 'kH', '1', 'thickness times wave number at pi/t0', &
+         outcome%plate_wave_number)
+      call list%add('needed_extent', 'pi/k', 'm', 'nearest edge that does not send waves back', &
+         outcome%needed_extent)
+      call list%add('deflection_ratio', 'U/2h', '1', 'largest plate displacement over thickness', &
+         outcome%deflection_ratio)
+      call list%add('weight_ratio', 'mg/F', '1', 'weight of the sphere over max_force', &
+         outcome%weight_ratio)
+      call list%add('mean_pressure', 'p_m', 'Pa', 'mean pressure at the largest force', &
+         outcome%mean_pressure)
+      call list%add('half_space_loss', 'W_1/KE_0', '1', &
+         'share that waves into a half space carry away', outcome%half_space_loss)
+      call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
+         outcome%peak_loss_tangent)
+      call list%add('validity', '', '', 'whether the model holds: the worst of the measures', &
+         outcome%validity, levels, first=level_none)
+      call list%add('validity_cause', '', '', 'measure that decides on validity', &
+         outcome%validity_cause, [character(len=label_length) :: 'none', thresholds%measure], &
+         first=0)
       call list%add('steps', '', '1', 'number of time steps', outcome%steps)
       ! it has to be the last one
       call list%add('status', '', '', 'how the contact ended', outcome%status, &

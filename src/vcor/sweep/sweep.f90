@@ -15,7 +15,6 @@ module vcor_sweep_sweep
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver, only : solve_impact
    use vcor_case_axes, only : new_grid
    use vcor_case_case, only : address_t, case_t
    use vcor_case_grid, only : grid_t
@@ -138,8 +137,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       call build_point(self, point, worker, error)
-      if (.not. allocated(error)) call solve_impact(worker%problem%solver, worker%problem%impact, &
-         worker%trajectory, outcome, error)
+      if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
+         outcome, error)
       if (.not. allocated(error)) return
       outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
          steps=outcome%steps)

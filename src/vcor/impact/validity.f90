@@ -1,0 +1,305 @@
+!> Does the model hold? Measures of what an impact assumes, and what they come to
+!>
+!> Each measure is a column of the summary. Those with a threshold decide whether a contact is one
+!> of Hertz' on a half space, in a plate that is thin and wide, with nothing lost but what is
+!> computed.
+module vcor_impact_validity
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_constants, only : pi, standard_gravity
+   use vcor_impact_outcome, only : none, outcome_t
+   use vcor_impact_problem, only : impact_t
+   use vcor_impact_trajectory, only : col_plate, trajectory_t
+   use vcor_kinds, only : wp
+   use vcor_material_type, only : material_t
+   use vcor_numeric_legendre, only : gauss_nodes
+   implicit none
+   private
+
+   public :: surroundings_t, assess, half_space_resistance
+   public :: threshold_t, thresholds, judged, levels, level_none, level_good, level_caution, &
+      level_outside
+
+   !> Levels of validity: of an impact without result
+   integer, parameter :: level_none = 0
+   !> No measure is beyond a threshold
+   integer, parameter :: level_good = 1
+   !> A measure is beyond its first threshold: per cents
+   integer, parameter :: level_caution = 2
+   !> A measure is beyond its second threshold: the number is that of another problem
+   integer, parameter :: level_outside = 3
+   !> Their names, by level
+   character(len=*), parameter :: levels(level_none:level_outside) = [character(len=7) :: &
+      'none', 'good', 'caution', 'outside']
+
+   !> What one measure comes to
+   type :: threshold_t
+      !> Column of the measure
+      character(len=17) :: measure
+      !> Value from which on it calls for caution
+      real(wp) :: caution
+      !> Value from which on the model does not hold
+      real(wp) :: outside
+   end type threshold_t
+
+   !> All thresholds, of the values that `judged` gives in the same order; the derivations are in
+   !> docs/validity.md
+   type(threshold_t), parameter :: thresholds(*) = [ &
+      ! Hertz' force on a rigid sphere's true shape, Sneddon 1965, doi:10.1016/0020-7225(65)90019-4:
+      ! 1.6 % too high at 0.4, 6.9 % at 0.8, 10 % at 0.95
+      threshold_t('contact_ratio', 0.4_wp, 0.8_wp), &
+      ! force on a layer over that on a half space, Dimitriadis et al. 2002,
+      ! doi:10.1016/S0006-3495(02)75620-8: 1.10 to 1.13 at 0.1, 1.35 to 1.48 at 0.3
+      threshold_t('thickness_ratio', 0.1_wp, 0.3_wp), &
+      ! thin plate against Rayleigh and Lamb's: 7 % of the radiated energy at 0.66, 28 % at 1.32
+      threshold_t('plate_wave_number', 0.7_wp, 1.3_wp), &
+      ! over the extent: the wave is back at t0 where the edge is at needed_extent; its fast
+      ! components, ahead of the dominant one, sooner
+      threshold_t('needed_extent', 0.6_wp, 1.0_wp), &
+      ! membrane stress stiffens a plate by about its square
+      threshold_t('deflection_ratio', 0.3_wp, 1.0_wp), &
+      ! the weight over the force that throws the sphere back
+      threshold_t('weight_ratio', 0.01_wp, 0.1_wp), &
+      ! over the yield strength: first yield, and plasticity all over the contact, Johnson, Contact
+      ! Mechanics (1985), doi:10.1017/CBO9781139171731, sections 6.1 and 6.2
+      threshold_t('mean_pressure', 1.07_wp, 2.8_wp), &
+      ! less what is computed as waves: energy that the impact loses and the model does not
+      threshold_t('half_space_loss', 0.01_wp, 0.1_wp)]
+
+   !> What an impact knows nothing of, but its measures do; what is not known is NaN
+   type :: surroundings_t
+      !> Radius of the sphere [m]
+      real(wp) :: radius = none
+      !> Whether the other body is a sphere, and no half space
+      logical :: is_sphere = .false.
+      !> Thickness of the plate, 2h [m]
+      real(wp) :: thickness = none
+      !> Distance from the contact to the nearest edge of the plate [m]
+      real(wp) :: extent = none
+      !> Yield strength, the smaller one of the two bodies [Pa]
+      real(wp) :: yield_strength = none
+      !> Whether the sphere falls from a height that is given
+      logical :: drops = .false.
+      !> Poisson's ratio of the plate [-]
+      real(wp), private :: poisson_ratio = none
+      !> `half_space_resistance` of it [-]
+      real(wp), private :: resistance = none
+      !> Rule of its integrals, made once, shape (n)
+      real(wp), allocatable, private :: node(:), weight(:)
+   contains
+      !> Follow the plate's Poisson's ratio
+      procedure :: follow
+   end type surroundings_t
+
+contains
+
+   !> Follow the plate's Poisson's ratio: the resistance is found anew where it has changed
+   pure subroutine follow(self, poisson_ratio)
+      !> The surroundings
+      class(surroundings_t), intent(inout) :: self
+      !> Poisson's ratio [-], -1 < nu <= 0.5
+      real(wp), intent(in) :: poisson_ratio
+
+      integer, parameter :: order = 48
+
+      if (allocated(self%node)) then
+         if (.not. abs(poisson_ratio - self%poisson_ratio) > 0.0_wp) return
+      else
+         allocate (self%node(order), self%weight(order))
+         call gauss_nodes(self%node, self%weight)
+      end if
+      self%poisson_ratio = poisson_ratio
+      self%resistance = half_space_resistance(poisson_ratio, self%node, self%weight)
+   end subroutine follow
+
+   !> Measure what an impact assumes, and judge it
+   pure subroutine assess(outcome, impact, trajectory, around, sphere, plate)
+      !> Outcome of a separation, evaluated; its measures are set
+      type(outcome_t), intent(inout) :: outcome
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> What is around it
+      type(surroundings_t), intent(in) :: around
+      !> Material of the sphere
+      class(material_t), intent(in) :: sphere
+      !> Material of the plate
+      class(material_t), intent(in) :: plate
+
+      complex(wp) :: modulus
+      real(wp) :: hertz_radius, frequency
+
+      frequency = pi/outcome%contact_time
+      hertz_radius = (0.75_wp*impact%hertz_factor)**2
+      outcome%resilience = outcome%cor_sphere**2
+      if (around%drops) outcome%rebound_height = &
+         outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*standard_gravity)))
+      outcome%contact_radius = sqrt(hertz_radius*outcome%max_indentation)
+      outcome%contact_ratio = outcome%contact_radius/min(hertz_radius, around%radius)
+      outcome%weight_ratio = impact%mass*standard_gravity/outcome%max_force
+      outcome%mean_pressure = outcome%max_force/(pi*hertz_radius &
+         *trajectory%indentation_at(outcome%time_of_max_force))
+      modulus = impact%modulus%dynamic_modulus(frequency)
+      outcome%peak_loss_tangent = aimag(modulus)/real(modulus, wp)
+      call assess_plate(outcome, impact, trajectory, around, sphere, plate, frequency)
+      call judge(outcome, around)
+   end subroutine assess
+
+   !> Measures of the plate
+   pure subroutine assess_plate(outcome, impact, trajectory, around, sphere, plate, frequency)
+      !> Outcome
+      type(outcome_t), intent(inout) :: outcome
+      !> The impact
+      type(impact_t), intent(in) :: impact
+      !> Its trajectory
+      type(trajectory_t), intent(in) :: trajectory
+      !> What is around it
+      type(surroundings_t), intent(in) :: around
+      !> Material of the sphere
+      class(material_t), intent(in) :: sphere
+      !> Material of the plate
+      class(material_t), intent(in) :: plate
+      !> Frequency of the contact, pi/t0 [rad/s]
+      real(wp), intent(in) :: frequency
+
+      complex(wp) :: modulus
+      real(wp) :: share, stiffness, storage, wave_number, shear_speed
+
+      if (plate%rigid) then
+         if (.not. ieee_is_nan(around%thickness)) outcome%thickness_ratio = 0.0_wp
+         return
+      end if
+      modulus = plate%complex_modulus(cmplx(0.0_wp, frequency, wp))
+      share = 1.0_wp
+      if (.not. sphere%rigid) then
+         stiffness = abs(sphere%complex_modulus(cmplx(0.0_wp, frequency, wp))) &
+            *sphere%plane_strain_factor()
+         share = stiffness/(stiffness + abs(modulus)*plate%plane_strain_factor())
+      end if
+      outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
+      storage = real(modulus, wp)
+      ! a dashpot has no waves
+      if (.not. storage > 0.0_wp) return
+      if (impact%plate%moves()) then
+         outcome%deflection_ratio = maxval(abs(trajectory%state(col_plate, 0:trajectory%last))) &
+            /around%thickness
+         wave_number = sqrt(frequency/around%thickness*sqrt(12.0_wp*plate%density() &
+            /(storage*plate%plane_strain_factor())))
+         outcome%plate_wave_number = wave_number*around%thickness
+         outcome%needed_extent = pi/wave_number
+      end if
+      if (around%is_sphere .or. .not. plate%density() > 0.0_wp) return
+      shear_speed = sqrt(storage/(2.0_wp*(1.0_wp + plate%poisson_ratio())*plate%density()))
+      ! int (dF/dt)^2 dt of a half sine is (pi F)^2/(2 t0)
+      outcome%half_space_loss = around%resistance/(2.0_wp*pi*plate%density()*shear_speed**3) &
+         *outcome%max_force/outcome%initial_energy*outcome%max_force &
+         *pi*frequency/2.0_wp
+   end subroutine assess_plate
+
+   !> The numbers that are held against the thresholds, in their order; NaN: is not judged
+   pure function judged(outcome, around) result(values)
+      !> Outcome, its measures set
+      type(outcome_t), intent(in) :: outcome
+      !> What is around the impact
+      type(surroundings_t), intent(in) :: around
+      !> The numbers [-]
+      real(wp) :: values(size(thresholds))
+
+      values = [outcome%contact_ratio, outcome%thickness_ratio, outcome%plate_wave_number, &
+         outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
+         outcome%mean_pressure/around%yield_strength, &
+         outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy]
+   end function judged
+
+   !> The worst level of all measures, and which one brings it: of several the one that is farthest
+   !> beyond its first threshold
+   pure subroutine judge(outcome, around)
+      !> Outcome, its measures set
+      type(outcome_t), intent(inout) :: outcome
+      !> What is around the impact
+      type(surroundings_t), intent(in) :: around
+
+      real(wp) :: values(size(thresholds)), excess, largest
+      integer :: i, level
+
+      values = judged(outcome, around)
+      outcome%validity = level_good
+      largest = 0.0_wp
+      do i = 1, size(thresholds)
+         if (ieee_is_nan(values(i))) cycle
+         level = level_of(i, values(i))
+         if (level == level_good .or. level < outcome%validity) cycle
+         excess = values(i)/thresholds(i)%caution
+         if (level == outcome%validity .and. excess <= largest) cycle
+         outcome%validity = level
+         outcome%validity_cause = i
+         largest = excess
+      end do
+   end subroutine judge
+
+   !> Level of one measure
+   pure function level_of(measure, value) result(level)
+      !> Its place in `thresholds`
+      integer, intent(in) :: measure
+      !> What is held against its threshold
+      real(wp), intent(in) :: value
+      !> One of the `level_*` constants
+      integer :: level
+
+      level = level_good
+      if (value >= thresholds(measure)%caution) level = level_caution
+      if (value >= thresholds(measure)%outside) level = level_outside
+   end function level_of
+
+   !> Resistance of an elastic half space to a force on a point of its surface: the imaginary part
+   !> of Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2,
+   !> q^2 = x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
+   !>
+   !>     I = -Im int_0^inf x p/R dx
+   !>
+   !> which has the pressure waves in x < a, the shear waves in a < x < 1 and those of Rayleigh at
+   !> the root of R: G. F. Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521,
+   !> doi:10.1098/rspa.1954.0134
+   pure function half_space_resistance(poisson_ratio, node, weight) result(resistance)
+      !> Poisson's ratio [-], -1 < nu <= 0.5
+      real(wp), intent(in) :: poisson_ratio
+      !> Nodes of Gauss' rule on (0, 1): 48 leave 1e-8 at worst, near nu = 0, shape (n)
+      real(wp), intent(in) :: node(:)
+      !> Their weights, shape (n)
+      real(wp), intent(in) :: weight(:)
+      !> I(nu) [-]
+      real(wp) :: resistance
+
+      real(wp), dimension(size(node)) :: sine, x, p, q, part
+      real(wp) :: a2, root, p_root, q_root, slope, correction
+      integer :: iteration
+
+      a2 = 0.5_wp*(1.0_wp - 2.0_wp*poisson_ratio)/(1.0_wp - poisson_ratio)
+      sine = sin(0.5_wp*pi*node)
+      ! x = a sin(phi): no root is left in the integrand
+      x = sqrt(a2)*sine
+      p = sqrt(a2)*cos(0.5_wp*pi*node)
+      q = sqrt(1.0_wp - x**2)
+      part = x*p/((1.0_wp - 2.0_wp*x**2)**2 + 4.0_wp*x**2*p*q)
+      resistance = 0.5_wp*pi*sum(weight*part*p)
+      ! x^2 = a^2 + (1 - a^2) sin(phi)^2, dx = p q/x dphi
+      x = sqrt(a2 + (1.0_wp - a2)*sine**2)
+      p = sqrt(1.0_wp - a2)*sine
+      q = sqrt(1.0_wp - a2)*cos(0.5_wp*pi*node)
+      part = 4.0_wp*x**3*p**2*q/((1.0_wp - 2.0_wp*x**2)**4 + (4.0_wp*x**2*p*q)**2)
+      resistance = resistance + 0.5_wp*pi*sum(weight*part*p*q/x)
+      ! beyond its root R falls and is concave: Newton's method comes down to it
+      root = 1.6_wp
+      do iteration = 1, 20
+         p_root = sqrt(root**2 - a2)
+         q_root = sqrt(root**2 - 1.0_wp)
+         slope = 8.0_wp*root*(2.0_wp*root**2 - 1.0_wp) - 8.0_wp*root*p_root*q_root &
+            - 4.0_wp*root**3*(q_root/p_root + p_root/q_root)
+         correction = ((2.0_wp*root**2 - 1.0_wp)**2 - 4.0_wp*root**2*p_root*q_root)/slope
+         root = root - correction
+         if (abs(correction) <= 4.0_wp*epsilon(root)) exit
+      end do
+      resistance = resistance + pi*root*sqrt(root**2 - a2)/abs(slope)
+   end function half_space_resistance
+
+end module vcor_impact_validity
