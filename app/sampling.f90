@@ -4,7 +4,7 @@ module vcor_app_sampling
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t, prepare
    use vcor_app_window, only : find_window, take_first_point, window_t
-   use vcor_case_problem, only : material_of_case
+   use vcor_case_problem, only : material_of_case, solve_case
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_material
    use vcor_case_address, only : material_names
@@ -18,7 +18,6 @@ module vcor_app_sampling
    use vcor_material, only : material_data_t, material_t
    use vcor_words, only : suggestion
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_case_reliance, only : solve_case
    implicit none
    private
 

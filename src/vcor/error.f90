@@ -37,23 +37,29 @@ module vcor_error
       integer :: code = error_internal
       !> One line: what was found and what is expected
       character(len=:), allocatable :: message
+      !> Names of the arguments that it is about, separated by blanks: the one that is missing, or
+      !> those that contradict each other; unallocated where nobody can say
+      character(len=:), allocatable :: about
    end type error_t
 
 contains
 
    !> Set an error
-   pure subroutine raise(error, code, message)
+   pure subroutine raise(error, code, message, about)
       !> The error, allocated on return
       type(error_t), allocatable, intent(inout) :: error
       !> One of the `error_*` constants
       integer, intent(in) :: code
       !> One line: what was found and what is expected
       character(len=*), intent(in) :: message
+      !> Names of the arguments that it is about
+      character(len=*), intent(in), optional :: about
 
       if (allocated(error)) deallocate(error)
       allocate(error)
       error%code = code
       error%message = message
+      if (present(about)) error%about = about
    end subroutine raise
 
 end module vcor_error

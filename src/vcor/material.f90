@@ -134,23 +134,16 @@ contains
    end subroutine find
 
    !> Set a number by the name of its parameter
-   pure subroutine set(self, name, value, is_taken)
+   pure subroutine set(self, name, value)
       !> The description
       class(material_data_t), intent(inout) :: self
       !> `density`, or a parameter of any model; otherwise `new_material` fails
       character(len=*), intent(in) :: name
       !> Its value, in the unit of the parameter
       real(wp), intent(in) :: value
-      !> Whether it is one of this model: what is not is no failure then
-      logical, intent(out), optional :: is_taken
 
       integer :: place
 
-      if (present(is_taken)) then
-         is_taken = name == density%name .or. &
-            any(model_parameters%model == self%model .and. model_parameters%parameter%name == name)
-         if (.not. is_taken) return
-      end if
       call self%find(name, place)
       if (place > 0) self%value(place)%number = value
    end subroutine set
@@ -270,6 +263,7 @@ contains
       type(cerf_t) :: cerf
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: table
+      real(wp), allocatable :: rates(:)
       real(wp) :: exponent, time
 
       if (allocated(data%unknown)) then
@@ -288,8 +282,10 @@ contains
             data%number('beta'), error)
          call accept(prony)
       case ('prony')
+         rates = data%list('rates')
+         if (size(rates) == 0) rates = 1.0_wp/data%list('times')
          call new_prony(prony, data%number('equilibrium_modulus'), data%list('moduli'), &
-            data%list('rates'), data%number('viscosity'), error)
+            rates, data%number('viscosity'), error)
          call accept(prony)
       case ('power_law')
          call new_power_law(power_law, data%number('equilibrium_modulus'), &

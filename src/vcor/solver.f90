@@ -16,25 +16,6 @@ module vcor_solver
 
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
-   public :: receding_without_second_term, receding_without_papers_scheme, &
-      receding_without_ghost, hereditary_without_papers_scheme
-
-   !> Why the second term of the Volterra series does not go with receding contact
-   character(len=*), parameter :: receding_without_second_term = &
-      "law = 'receding' is exact for a force that is linear in u = s^1.5: the second term of the " &
-      //"Volterra series (volterra_order = 2) has no meaning in it"
-   !> Why the paper's scheme does not go with receding contact
-   character(len=*), parameter :: receding_without_papers_scheme = &
-      "scheme = 'adams_bashforth' sums the force over all the past, law = 'receding' does not: " &
-      //"use method = 'ive', or 'direct' with scheme = 'product'"
-   !> Why receding contact does not go on after the separation
-   character(len=*), parameter :: receding_without_ghost = &
-      "with law = 'receding' nothing is left of the contact at separation: " &
-      //"continue_after_separation has no meaning"
-   !> Why the paper's scheme does not go with the hereditary plate
-   character(len=*), parameter :: hereditary_without_papers_scheme = &
-      "scheme = 'adams_bashforth' differentiates U = alpha(t) I, which waves = 'hereditary' has " &
-      //"not: use method = 'ive', or 'direct' with scheme = 'product'"
 
    !> Solve an impact: by a solver, or by the one that a case without &solver has
    interface solve_impact
@@ -60,27 +41,47 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      logical :: two_terms
+      logical :: two_terms, is_product
 
       two_terms = abs(settings%second_coefficient) > 0.0_wp
+      is_product = settings%scheme == 'product'
       if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
          .and. .not. settings%time_step < settings%end_time) then
-         call raise(error, error_input, 'solver.time_step must be below solver.end_time')
+         call refuse('a computation needs time_step < end_time', 'time_step end_time')
+      else if (settings%method == 'ive' .and. .not. is_product) then
+         call refuse("adams_bashforth is a scheme of method = 'direct'", 'scheme method')
       else if (impact%kernel_viscosity() > 0.0_wp .and. two_terms) then
-         call raise(error, error_input, 'the second term of the Volterra series has no ' &
-            //'meaning with a viscosity, whose kernel is a delta function')
+         call refuse('the second term of the Volterra series has no meaning with a viscosity, ' &
+            //'whose kernel is a delta function', 'volterra_order volterra_coefficient viscosity')
       else if (impact%kernel_viscosity() > 0.0_wp .and. impact%plate%frozen()) then
-         call raise(error, error_input, "waves = 'frozen' is made for the paper's plates, " &
-            //"without a viscosity; use waves = 'relaxing'")
+         call refuse("a frozen plate is made for the paper's contacts, without a viscosity; use " &
+            //"waves = 'relaxing'", 'waves viscosity')
       else if (impact%law%receding .and. two_terms) then
-         call raise(error, error_input, receding_without_second_term)
-      else if (impact%law%receding .and. settings%scheme /= 'product') then
-         call raise(error, error_input, receding_without_papers_scheme)
+         call refuse('receding contact is exact for a force that is linear in u = s^1.5: the ' &
+            //'second term of the Volterra series has no meaning in it', 'law volterra_order')
+      else if (impact%law%receding .and. .not. is_product) then
+         call refuse('adams_bashforth sums the force over all the past, receding contact does ' &
+            //"not; use method = 'ive', or 'direct' with scheme = 'product'", 'law scheme')
       else if (impact%law%receding .and. settings%ghost) then
-         call raise(error, error_input, receding_without_ghost)
-      else if (impact%plate%hereditary() .and. settings%scheme /= 'product') then
-         call raise(error, error_input, hereditary_without_papers_scheme)
+         call refuse('nothing is left of a receding contact at separation: going on has no ' &
+            //'meaning', 'law continue_after_separation')
+      else if (impact%plate%hereditary() .and. .not. is_product) then
+         call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
+            //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
+            'waves scheme')
       end if
+
+   contains
+
+      !> Raise the error
+      subroutine refuse(message, about)
+         !> Why they do not go together
+         character(len=*), intent(in) :: message
+         !> Names of the settings
+         character(len=*), intent(in) :: about
+
+         call raise(error, error_input, message, about)
+      end subroutine refuse
    end subroutine check_settings
 
    !> Solve an impact by the method auto, or as it is to be solved

@@ -378,7 +378,8 @@ def test_both_rigid(vcor):
 
 @pytest.mark.parametrize("value", ["-0.005", "-0.01", "-1e-9"])
 def test_hollow_smaller_than_the_sphere(vcor, value):
-    spoiled(vcor, ("sls", "plate", "surface_radius"), value, ["surface_radius", "-0.01"])
+    says = ["surface_radius = -", "and radius = 0.01", "larger"]
+    spoiled(vcor, ("sls", "plate", "surface_radius"), value, says)
 
 
 def test_time_step_not_below_end_time(vcor):

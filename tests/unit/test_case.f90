@@ -9,6 +9,7 @@ program test_case
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_checks, only : validate
    use vcor_case_printed, only : case_text
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
    use vcor_words, only : edit_distance, nearest_name
    use vcor_text, only : integer_text, is_utf8, printable, quoted, real_text, shortened
@@ -269,9 +270,9 @@ contains
       call accepts_material("model='sls' glassy_modulus=1 alpha=0 beta=0 poisson_ratio=0")
       call accepts_material("model='sls' glassy_modulus=1 alpha=3 beta=3 poisson_ratio=0")
       call refuses_material("model='sls' glassy_modulus=1 alpha=3.5 beta=3 poisson_ratio=0", &
-         & "alpha = 3.5 is larger than beta = 3.0|rubbery modulus|exceeds the glassy one")
+         & "found alpha = 3.5 and beta = 3.0|rubbery modulus|exceeds the glassy one")
       call refuses_material("model='sls' glassy_modulus=1 alpha=3 beta=0 poisson_ratio=0", &
-         & "no rubbery modulus|alpha <= beta")
+         & "found alpha = 3.0 and beta = 0.0|alpha <= beta")
       call refuses(good//lf//"&material name='m' model='elastic' poisson_ratio=0 modulus=1"//lf &
          & //"beta=1 /", "x.nml:8: |key 'beta' does not belong to model 'elastic'|modulus", &
          & "key of another model")
@@ -298,12 +299,12 @@ contains
       call accepts_material(prony//"equilibrium_modulus=1 viscosity=1")
       call refuses_material(prony, "no stiffness|moduli, viscosity > 0 or equilibrium_modulus > 0")
       call refuses_material(prony//"equilibrium_modulus=0 viscosity=0", "no stiffness")
-      call refuses_material(prony//"moduli=1,2 rates=3,4,5", "2 moduli and 3 rates")
-      call refuses_material(prony//"moduli=1,2 times=3", "2 moduli and 1 times")
+      call refuses_material(prony//"moduli=1,2 rates=3,4,5", "3 rates and 2 moduli")
+      call refuses_material(prony//"moduli=1,2 times=3", "1 times and 2 moduli")
       call refuses_material(prony//"moduli=1,2 rates=3,4 times=3,4", "both rates and times")
-      call refuses_material(prony//"moduli=1,2", "moduli without rates or times")
-      call refuses_material(prony//"rates=1,2", "rates without moduli")
-      call refuses_material(prony//"times=1,2 viscosity=1", "times without moduli")
+      call refuses_material(prony//"moduli=1,2", "2 moduli|as many rates as moduli")
+      call refuses_material(prony//"rates=1,2", "2 rates|as many rates as moduli")
+      call refuses_material(prony//"times=1,2 viscosity=1", "2 times|as many rates as moduli")
    end subroutine test_prony
 
    !> Sphere and plate
@@ -316,11 +317,11 @@ contains
       call refuses(impact//sphere//"&plate half_thickness=1 material='wood' /"//lf//steel//rubber, &
          & "x.nml:3: |no material 'wood' for &plate|known: steel, sls_rubber", "unknown material")
       call refuses(impact//"&sphere radius=0.01 material='light' /"//lf//plate//light//rubber, &
-         & "x.nml:4: |'density' is missing|'light' of the sphere|mass", "sphere without density")
+         & "x.nml:4: |'density' is missing|'light'|mass of the sphere", "sphere without density")
       call accepts(impact//"&sphere radius=0.01 material='light' mass=0.1 /"//lf//plate//light &
          & //rubber, "mass makes up for the density")
       call refuses(impact//sphere//"&plate half_thickness=1 material='light' /"//lf//steel//light, &
-         & "x.nml:5: |'density' is missing|'light' of the plate|waves = 'none'", &
+         & "x.nml:5: |'density' is missing|'light'|plate|waves = 'none'", &
          & "plate without density")
       call refuses(impact//sphere//"&plate material='sls_rubber' /"//lf//steel//rubber, &
          & "x.nml:3: |'half_thickness' is missing in &plate|waves = 'none'", &
@@ -334,7 +335,7 @@ contains
          & "nothing deforms")
       call refuses(impact//sphere &
          & //"&plate material='sls rubber' half_thickness=1 surface_radius=-0.01 /"//lf//steel &
-         & //rubber, "x.nml:3: |surface_radius = -0.01|surface_radius < -0.01", &
+         & //rubber, "x.nml:3: |surface_radius = -0.01 and radius = 0.01|larger radius", &
          & "hollow as narrow as the sphere")
       call accepts(impact//sphere &
          & //"&plate material='sls rubber' half_thickness=1 surface_radius=-0.02 /"//lf//steel &
@@ -390,9 +391,9 @@ contains
       call override(case, "case.title=''", error)
       call case%get("case", "title", text)
       call check_text(text, "", "empty text by option")
-      call validate(case, error)
-      call check_error(error, error_input, "--set 'p.1 = x'.moduli: |moduli without rates", &
-         & "contradiction by option")
+      call build(case, error)
+      call check_error(error, error_input, &
+         & "--set 'p.1 = x'.moduli: |3 moduli|as many rates as moduli", "contradiction by option")
 
       call read_case_text(case, impact//sphere//plate//rubber, "x.nml", error)
       call sets_number(case, "material.beta=300", "material", "beta", 1, 300.0_wp)
@@ -686,9 +687,21 @@ contains
 
       call read_case_text(case, text, "x.nml", error)
       call check(.not. allocated(error), what//": is read")
-      call validate(case, error)
+      call build(case, error)
       call check(.not. allocated(error), what)
    end subroutine accepts
+
+   !> Check a case and build its impact
+   subroutine build(case, error)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> What is wrong, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+      type(problem_t) :: problem
+
+      call validate(case, error)
+      if (.not. allocated(error)) call problem_of_case(problem, case, error)
+   end subroutine build
 
    !> Check that a material is valid
    subroutine accepts_material(statements)
@@ -711,7 +724,7 @@ contains
 
       call read_case_text(case, text, "x.nml", error)
       call check(.not. allocated(error), what//": is read")
-      call validate(case, error)
+      call build(case, error)
       call check_error(error, error_input, words, what)
    end subroutine refuses
 

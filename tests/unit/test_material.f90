@@ -383,7 +383,7 @@ contains
       call new_prony(prony, 1.0_wp, none, none, -1.0_wp, error)
       call refused(error, "a negative viscosity", "negative")
       call new_prony(prony, 0.0_wp, none, none, 0.0_wp, error)
-      call refused(error, "a Prony series of nothing", "at least one term")
+      call refused(error, "a Prony series of nothing", "no stiffness")
       call new_cerf(cerf, -1.0_wp, 1.0_wp, 1.0_wp, error)
       call refused(error, "a CERF material below zero", "equilibrium_modulus")
       call new_cerf(cerf, 1.0_wp, 0.0_wp, 1.0_wp, error)

@@ -1,17 +1,19 @@
 !> What can be told to be wrong from a case alone: what is missing, what is out of range, what
-!> contradicts itself
+!> leads nowhere. What numbers may go together is checked by who is built from them
 module vcor_case_checks
    use vcor_error, only : error_input, error_t, raise
+   use vcor_case_address, only : material_names, swept_addresses
    use vcor_case_axes, only : new_grid
-   use vcor_case_consistency, only : check_consistency
-   use vcor_case_grid, only : grid_t
-   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, &
-      & keys_of, last_row, row_for_model, wanted
-   use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
+      last_row, wanted
+   use vcor_case_grid, only : grid_t
+   use vcor_case_problem, only : material_of_case
    use vcor_case_values, only : range_message
-   use vcor_text, only : printable, shortened
-   use vcor_words, only : join_words
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_t
+   use vcor_text, only : canonical_name, printable, quoted, real_text, shortened
+   use vcor_words, only : join_words, suggestion
    implicit none
    private
 
@@ -27,29 +29,108 @@ contains
       type(case_t), intent(in) :: self
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+
       type(grid_t) :: grid
       type(address_t), allocatable :: swept(:)
       integer :: group, item
 
-      allocate(swept, source=swept_addresses(self))
+      allocate (swept, source=swept_addresses(self))
       do group = 1, size(groups)
          if (groups(group)%required .and. self%count(groups(group)%name) == 0) then
-            call raise(error, error_input, printable(self%source)//": there is no &" &
-               & //trim(groups(group)%name)//" group, expected "//described(group))
+            call raise(error, error_input, printable(self%source)//': there is no &' &
+               //trim(groups(group)%name)//' group, expected '//described(group))
             return
          end if
       end do
       do group = 1, size(groups)
-         do item = 1, max(1, self%count(groups(group)%name))
-            if (self%count(groups(group)%name) == 0) exit
+         do item = 1, self%count(groups(group)%name)
             call check_item(self, swept, group, item, error)
             if (allocated(error)) return
          end do
       end do
-      call check_consistency(self, swept, error)
-      if (allocated(error)) return
-      call new_grid(self, grid, error)
+      do item = 1, self%count('material')
+         call check_material(self, swept, item, error)
+         if (allocated(error)) return
+      end do
+      call check_body(self, 'sphere', error)
+      if (.not. allocated(error)) call check_body(self, 'plate', error)
+      if (.not. allocated(error)) call check_stem(self, error)
+      if (.not. allocated(error)) call new_grid(self, grid, error)
    end subroutine validate
+
+   !> Check a material: its name, the band of its data, and that it can be built
+   subroutine check_material(self, swept, item, error)
+      !> The case
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      class(material_t), allocatable :: material
+      character(len=:), allocatable :: name
+      real(wp) :: first, last
+      integer :: group
+
+      call self%get('material', 'name', name, item)
+      if (self%find_material(name) < item) then
+         call fail(self, 'material', 'name', item, "there are two materials of the name '" &
+            //shortened(name)//"', the first at " &
+            //self%location('material', 'name', self%find_material(name)) &
+            //'; expected different names', error)
+         return
+      end if
+      call self%get('material', 'valid_from', first, item)
+      call self%get('material', 'valid_to', last, item)
+      if (self%given('material', 'rates', item) .and. self%given('material', 'times', item)) then
+         call fail(self, 'material', 'times', item, &
+            'found both rates and times, expected one of them', error)
+      else if (self%given('material', 'valid_from', item) &
+               .and. self%given('material', 'valid_to', item)) then
+         if (.not. first < last) call fail(self, 'material', 'valid_to', item, &
+            'found valid_from = '//real_text(first)//' and valid_to = '//real_text(last) &
+            //', expected valid_from < valid_to', error)
+      end if
+      group = find_group('material')
+      ! the points of a table are not there yet, and a sweep gives numbers of its own
+      if (allocated(error) .or. self%model(group, item) == 'table' &
+          .or. any(swept%group == group .and. swept%item == item)) return
+      call material_of_case(self, item, material, error)
+   end subroutine check_material
+
+   !> Check that there is the material of a body
+   subroutine check_body(self, body, error)
+      !> The case
+      type(case_t), intent(in) :: self
+      !> Group of the body
+      character(len=*), intent(in) :: body
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: name
+
+      call self%get(body, 'material', name)
+      if (self%find_material(name) == 0) call fail(self, body, 'material', 1, &
+         "there is no material '"//shortened(name)//"' for &"//body//'; ' &
+         //suggestion(canonical_name(name), material_names(self)), error)
+   end subroutine check_body
+
+   !> Check that the name of the files is no path
+   subroutine check_stem(self, error)
+      !> The case
+      type(case_t), intent(in) :: self
+      !> Error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: stem
+
+      call self%get('output', 'stem', stem)
+      if (index(stem, '/') > 0 .or. stem == '.' .or. stem == '..') &
+         call fail(self, 'output', 'stem', 1, "found stem = '"//shortened(stem) &
+         //"', expected a name without a folder (that is output.directory)", error)
+   end subroutine check_stem
 
    !> A group and the keys it needs, in words
    pure function described(group) result(text)
@@ -57,14 +138,15 @@ contains
       integer, intent(in) :: group
       !> Such as `one with velocity`
       character(len=:), allocatable :: text
+
       integer :: row
 
-      text = ""
+      text = ''
       do row = first_row(group), last_row(group)
-         if (catalogue(row)%required .and. catalogue(row)%models == "") &
-            & text = trim(text//" "//catalogue(row)%name)
+         if (catalogue(row)%required .and. catalogue(row)%models == '') &
+            text = trim(text//' '//catalogue(row)%name)
       end do
-      text = "one with "//join_words(trim(adjustl(text)))
+      text = 'one with '//join_words(trim(adjustl(text)))
    end function described
 
    !> Check each entry of a group by itself
@@ -79,104 +161,85 @@ contains
       integer, intent(in) :: item
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+
       integer :: row
 
-      ! What the meaning of other keys depends on comes first
-      if (groups(group)%selector /= "") then
+      ! what the meaning of other keys depends on comes first
+      if (groups(group)%selector /= '') then
          row = find_key(groups(group)%name, groups(group)%selector)
-         call check_entry(self, swept, group, row, item, error)
-         if (allocated(error)) return
+         call check_entry(self, swept, address_t(group, item, row), error)
       end if
       do row = first_row(group), last_row(group)
-         if (find_key(catalogue(row)%group, catalogue(row)%name) /= row) cycle
-         call check_entry(self, swept, group, row, item, error)
          if (allocated(error)) return
+         if (find_key(groups(group)%name, catalogue(row)%name) /= row) cycle
+         call check_entry(self, swept, address_t(group, item, row), error)
       end do
    end subroutine check_item
 
    !> Check one entry by itself: whether it belongs there, is there, and is within its range
-   subroutine check_entry(self, swept, group, row, item, error)
+   subroutine check_entry(self, swept, address, error)
       !> The case
       type(case_t), intent(in) :: self
       !> Addresses of what a sweep varies
       type(address_t), intent(in) :: swept(:)
-      !> Index of the group
-      integer, intent(in) :: group
-      !> First row of the key
-      integer, intent(in) :: row
-      !> Number of the item
-      integer, intent(in) :: item
+      !> Where the entry stands
+      type(address_t), intent(in) :: address
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      type(entry_t) :: entry
-      character(len=:), allocatable :: key, model, message
-      integer :: applicable
-      logical :: has_other
 
-      key = trim(catalogue(row)%name)
-      model = self%model(group, item)
-      entry = self%entry(address_t(group, item, row))
-      applicable = row_for_model(row, model)
-      if (applicable == 0) then
-         if (entry%given) call fail(self, group, key, item, "key '"//key &
-            & //"' does not belong to model '"//model//"', its keys are: " &
-            & //join_words(keys_of(group, model)), error)
-         return
-      end if
-      has_other = .false.
-      if (catalogue(row)%instead /= "") has_other = is_given(trim(catalogue(row)%instead))
-      if (has_other .and. is_given(key)) then
-         call fail(self, group, trim(catalogue(row)%instead), item, "found both "//key//" and " &
-            & //trim(catalogue(row)%instead)//", expected one of them", error)
-      else if (entry%present) then
-         message = range_message(catalogue(applicable), entry)
-         if (message /= "") call fail(self, group, key, item, key//": "//message, error)
-      else if (catalogue(applicable)%required .and. .not. (is_given(key) .or. has_other)) then
-         message = "key '"//key//"' is missing in &"//trim(groups(group)%name)
-         if (groups(group)%label /= "" .and. groups(group)%label /= key) &
-            & message = message//" "//owner_name(self, group, item)
-         if (catalogue(applicable)%models /= "") message = message//" of model '"//model//"'"
-         message = message//", expected "//wanted(catalogue(applicable))
-         if (catalogue(row)%instead /= "") message = message//", or "//catalogue(row)%instead
-         call fail(self, group, key, item, trim(message), error)
-      end if
+      type(entry_t) :: entry
+      character(len=:), allocatable :: key, other, model, label, message
+      integer :: row
+
+      key = trim(catalogue(address%row)%name)
+      other = trim(catalogue(address%row)%instead)
+      entry = self%entry(address)
+      row = self%row(address)
+      model = self%model(address%group, address%item)
+      message = ''
+      associate (group => groups(address%group))
+         if (row == 0) then
+            if (entry%given) message = "key '"//key//"' does not belong to model '"//model &
+               //"', its keys are: "//join_words(keys_of(address%group, model))
+         else if (is_there(key) .and. is_there(other)) then
+            call fail(self, group%name, other, address%item, 'found both '//key//' and '//other &
+               //', expected one of them', error)
+         else if (entry%present) then
+            message = range_message(catalogue(row), entry)
+            if (message /= '') message = key//': '//message
+         else if (catalogue(row)%required .and. .not. (is_there(key) .or. is_there(other))) then
+            message = "key '"//key//"' is missing in &"//trim(group%name)
+            if (group%label /= '' .and. group%label /= key) then
+               call self%get(group%name, group%label, label, address%item)
+               message = message//' '//quoted(shortened(label))
+            end if
+            if (catalogue(row)%models /= '') message = message//" of model '"//model//"'"
+            message = message//', expected '//wanted(catalogue(row))
+            if (other /= '') message = message//', or '//other
+         end if
+         if (message /= '') call fail(self, group%name, key, address%item, message, error)
+      end associate
 
    contains
 
       !> Whether a key of the item is given, or varied by a sweep
-      pure function is_given(name)
+      pure function is_there(name) result(yes)
          !> Name of the key
          character(len=*), intent(in) :: name
          !> Whether it is
-         logical :: is_given
+         logical :: yes
 
-         is_given = self%given(groups(group)%name, name, item) &
-            & .or. any(swept == self%address(groups(group)%name, name, item))
-      end function is_given
+         yes = self%given(groups(address%group)%name, name, address%item) .or. name /= '' &
+            .and. any(swept == self%address(groups(address%group)%name, name, address%item))
+      end function is_there
    end subroutine check_entry
-
-   !> Name of an item, in quotes
-   pure function owner_name(self, group, item) result(name)
-      !> The case
-      type(case_t), intent(in) :: self
-      !> Index of a group with a label
-      integer, intent(in) :: group
-      !> Number of the item
-      integer, intent(in) :: item
-      !> The name
-      character(len=:), allocatable :: name
-      character(len=:), allocatable :: label
-
-      call self%get(groups(group)%name, groups(group)%label, label, item)
-      name = "'"//shortened(label)//"'"
-   end function owner_name
 
    !> Raise an error about a key
    subroutine fail(self, group, key, item, message, error)
       !> The case
       type(case_t), intent(in) :: self
-      !> Index of the group
-      integer, intent(in) :: group
+      !> Name of the group
+      character(len=*), intent(in) :: group
       !> Name of the key
       character(len=*), intent(in) :: key
       !> Number of the item
@@ -186,7 +249,7 @@ contains
       !> The error
       type(error_t), allocatable, intent(inout) :: error
 
-      call raise(error, error_input, self%location(groups(group)%name, key, item)//": "//message)
+      call raise(error, error_input, self%location(group, key, item)//': '//message)
    end subroutine fail
 
 end module vcor_case_checks

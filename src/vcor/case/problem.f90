@@ -3,16 +3,21 @@
 !> `update` follows the numbers of the case: whatever depends on a number that has changed is made
 !> anew, and nothing else. Threads of a sweep call it, so it calls no function that returns a text
 !> of deferred length, whose length gfortran 12 keeps in static storage.
+!>
+!> What numbers may go together is the rule of who is built from them: material, contact, plate,
+!> impact, solver. Their errors name arguments, `error%about`; here these become keys and lines.
 module vcor_case_problem
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
-   use vcor_case_case, only : address_t, case_t
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, last_row
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_case_case, only : address_t, case_t, entry_t
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
+      last_row, list_key
+   use vcor_case_printed, only : value_text
    use vcor_constants, only : pi, standard_gravity
-   use vcor_error, only : error_t
+   use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
+   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
       waves_none, waves_relaxing
-   use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
@@ -20,12 +25,12 @@ module vcor_case_problem
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of, &
       set_constants_of
    use vcor_material_parameter, only : density, parameter_t
-   use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, &
-      solver_t
+   use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
+   use vcor_text, only : integer_text, quoted
    implicit none
    private
 
-   public :: problem_t, problem_of_case, material_of_case
+   public :: problem_t, problem_of_case, material_of_case, solve_case
 
    !> A material of the case
    type :: body_t
@@ -33,10 +38,8 @@ module vcor_case_problem
       type(address_t) :: address
       !> Number of changes of the item when it was read last, -1: never
       integer :: revision = -1
-      !> Rows of its numbers in the catalogue, shape (n)
+      !> Rows of its numbers and lists in the catalogue, shape (n)
       integer, allocatable :: rows(:)
-      !> The numbers as they were read last, nan where there is none, shape (n)
-      real(wp), allocatable :: numbers(:)
       !> Its description
       type(material_data_t) :: data
       !> The material; allocated once it was built
@@ -80,8 +83,8 @@ module vcor_case_problem
       logical, private :: contact_is_current = .false.
       !> Number of changes of &solver when the solver was built, -1: never
       integer, private :: solver_revision = -1
-      !> What in the case the last error is about
-      type(address_t) :: cause
+      !> Number of the material that the last error is about, 0: none
+      integer, private :: culprit = 0
    contains
       !> Follow the numbers of the case
       procedure :: update
@@ -97,7 +100,8 @@ contains
       type(problem_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Error of code `error_input` that says where its cause stands, unallocated on success
+      !> Error of code `error_input` that says where its cause stands, and is `about` the paths of
+      !> what has a part in it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: text
@@ -153,7 +157,7 @@ contains
          case%address('material', 'yield_strength', self%sphere%address%item), &
          case%address('material', 'yield_strength', self%plate%address%item)]
       call self%update(case, error)
-      if (allocated(error)) error%message = case%location(self%cause)//': '//error%message
+      if (allocated(error)) call explain(case, self%culprit, error)
    end subroutine problem_of_case
 
    !> A material of a case
@@ -168,17 +172,113 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(body_t) :: body
-      type(address_t) :: cause
       logical :: has_changed
 
       call describe(body, case, item)
-      call update_body(body, case, has_changed, cause, error)
+      call update_body(body, case, has_changed, error)
       if (allocated(error)) then
-         error%message = case%location(cause)//': '//error%message
+         call explain(case, item, error)
       else
          call move_alloc(body%material, material)
       end if
    end subroutine material_of_case
+
+   !> Solve the impact of a case
+   subroutine solve_case(case, outcome, error)
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Its outcome
+      type(outcome_t), intent(out) :: outcome
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(problem_t) :: problem
+      type(trajectory_t) :: trajectory
+
+      call problem_of_case(problem, case, error)
+      if (.not. allocated(error)) call problem%solve(trajectory, outcome, error)
+   end subroutine solve_case
+
+   !> Say in terms of the case what is wrong: where it stands and what was found there
+   subroutine explain(case, item, error)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Number of the material that the error is about, 0: none
+      integer, intent(in) :: item
+      !> Error, about names of arguments that are called like their keys; on return about paths
+      type(error_t), intent(inout) :: error
+
+      type(address_t) :: address, cause
+      type(entry_t) :: entry
+      character(len=:), allocatable :: names, paths, place, found, name
+      integer :: first, last
+
+      place = ''
+      if (item > 0) then
+         call case%get('material', 'name', name, item)
+         place = ' in &material '//quoted(name)
+      end if
+      names = ''
+      ! who builds a material and says nothing may mean all of it
+      if (item > 0) names = keys_of(find_group('material'))
+      if (allocated(error%about)) names = error%about
+      paths = ''
+      found = ''
+      first = 1
+      do while (first <= len(names))
+         last = first + index(names(first:)//' ', ' ') - 2
+         address = address_of(case, names(first:last), item)
+         ! what belongs to a material, of whichever body, keeps its name
+         if (address%group == 0) paths = paths//' '//names(first:last)
+         if (address%group > 0) paths = paths//' '//case%path(address)
+         first = last + 2
+         if (address%group == 0) cycle
+         entry = case%entry(address)
+         ! the first that was given, else the first
+         if (cause%group == 0 .or. entry%given .and. found == '') cause = address
+         associate (key => catalogue(address%row))
+            if (key%value_kind == list_key .and. entry%given) then
+               found = found//' and '//integer_text(size(entry%list))//' '//trim(key%name)
+            else if (key%value_kind /= list_key .and. entry%present) then
+               found = found//' and '//trim(key%name)//' = '//value_text(key, entry)
+            end if
+         end associate
+      end do
+      if (.not. allocated(error%about)) then
+         found = ''
+      else if (found /= '') then
+         found = 'found'//found(len(' and') + 1:)//place//': '
+      else if (cause%group > 0) then
+         if (item == 0) place = ' in &'//trim(groups(cause%group)%name)
+         found = "key '"//trim(catalogue(cause%row)%name)//"' is missing"//place//': '
+      end if
+      error%message = case%location(cause)//': '//found//error%message
+      if (names /= '') error%about = paths
+   end subroutine explain
+
+   !> Address of an argument that is called like its key
+   pure function address_of(case, name, item) result(address)
+      !> The case
+      type(case_t), intent(in) :: case
+      !> Name of the key
+      character(len=*), intent(in) :: name
+      !> Number of the material it belongs to, 0: it belongs to another group
+      integer, intent(in) :: item
+      !> The address, nowhere if there is no such key
+      type(address_t) :: address
+
+      integer :: group
+
+      if (item > 0) then
+         address = case%address('material', name, item)
+         return
+      end if
+      ! from the last: the material of two bodies is that of the plate
+      do group = size(groups), 1, -1
+         if (.not. groups(group)%repeated) address = case%address(groups(group)%name, name)
+         if (address%group > 0) return
+      end do
+   end function address_of
 
    !> Describe a material but for its numbers
    subroutine describe(body, case, item)
@@ -190,29 +290,25 @@ contains
       integer, intent(in) :: item
 
       type(parameter_t), allocatable :: parameters(:)
-      integer :: group, row
+      type(entry_t) :: entry
+      integer :: row
+      logical :: counts
 
-      group = find_group('material')
       body%address = case%address('material', 'name', item)
       call case%get('material', 'name', body%data%name, item)
       call case%get('material', 'model', body%data%model, item)
       allocate (parameters, source=[density, parameters_of(body%data%model)])
-      body%rows = pack([(row, row=first_row(group), last_row(group))], &
-         [(is_number(row), row=first_row(group), last_row(group))])
-      allocate (body%numbers(size(body%rows)), source=ieee_value(1.0_wp, ieee_quiet_nan))
-
-   contains
-
-      !> Whether a row is that of a number of the model
-      pure function is_number(row)
-         !> The row
-         integer, intent(in) :: row
-         !> Whether it is
-         logical :: is_number
-
-         is_number = any(catalogue(row)%name == parameters%name .and. .not. parameters%is_list)
-         if (is_number) is_number = find_key('material', catalogue(row)%name) == row
-      end function is_number
+      allocate (body%rows(0))
+      do row = first_row(body%address%group), last_row(body%address%group)
+         if (find_key('material', catalogue(row)%name) /= row) cycle
+         ! lists are the terms of a Prony series, and the points of a table, which are no parameters
+         counts = any(catalogue(row)%name == parameters%name)
+         if (catalogue(row)%value_kind == list_key) then
+            entry = case%entry(address_t(body%address%group, item, row))
+            counts = size(entry%list) > 0
+         end if
+         if (counts) body%rows = [body%rows, row]
+      end do
    end subroutine describe
 
    !> Follow the numbers of the case
@@ -221,30 +317,25 @@ contains
       class(problem_t), intent(inout) :: self
       !> The case
       type(case_t), intent(in) :: case
-      !> Error of code `error_input`, unallocated on success; `cause` is what it is about
+      !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: half_thickness
       logical :: has_changed(2)
 
-      call update_body(self%sphere, case, has_changed(1), self%cause, error)
+      self%culprit = self%sphere%address%item
+      call update_body(self%sphere, case, has_changed(1), error)
       if (allocated(error)) return
-      has_changed(2) = .false.
-      if (self%plate%address%item /= self%sphere%address%item) &
-         call update_body(self%plate, case, has_changed(2), self%cause, error)
+      self%culprit = self%plate%address%item
+      call update_body(self%plate, case, has_changed(2), error)
       if (allocated(error)) return
+      self%culprit = 0
       half_thickness = number_or_zero(case, self%at%half_thickness)
       if (any(has_changed) .or. abs(half_thickness - self%half_thickness) > 0.0_wp) &
          self%contact_is_current = .false.
       self%half_thickness = half_thickness
       if (.not. self%contact_is_current) then
-         if (self%plate%address%item == self%sphere%address%item) then
-            call build_contact(self%impact, self%sphere, self%sphere, self%pair, half_thickness, &
-               self%waves, case, self%cause, error)
-         else
-            call build_contact(self%impact, self%sphere, self%plate, self%pair, half_thickness, &
-               self%waves, case, self%cause, error)
-         end if
+         call build_contact(self, error)
          if (allocated(error)) return
          self%contact_is_current = .true.
       end if
@@ -267,13 +358,8 @@ contains
 
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return
-      if (self%plate%address%item == self%sphere%address%item) then
-         call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
-            self%sphere%material)
-      else
-         call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
-            self%plate%material)
-      end if
+      call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
+         self%plate%material)
    end subroutine solve
 
    !> Follow what the measures of validity know beside the impact
@@ -295,14 +381,24 @@ contains
       if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
       if (.not. any(ieee_is_nan(yield_strength))) yield_strength(1) = minval(yield_strength)
       self%around%yield_strength = yield_strength(1)
-      associate (plate => self%plate)
-         if (plate%address%item == self%sphere%address%item) then
-            call self%around%follow(self%sphere%material%poisson_ratio())
-         else
-            call self%around%follow(plate%material%poisson_ratio())
-         end if
-      end associate
+      call self%around%follow(self%plate%material%poisson_ratio())
    end subroutine look_around
+
+   !> Build what the sphere meets: modulus and plate of the impact
+   subroutine build_contact(self, error)
+      !> The problem, its materials built
+      type(problem_t), intent(inout) :: self
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      call new_contact_modulus(self%impact%modulus, self%sphere%material, self%plate%material, &
+         self%sphere%data%deforms_as(self%plate%data), error, self%pair)
+      if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate%material, &
+         self%half_thickness, self%waves, error)
+      if (.not. allocated(error)) return
+      if (.not. allocated(error%about)) return
+      if (error%about == 'density') self%culprit = self%plate%address%item
+   end subroutine build_contact
 
    !> Set the impact's motion
    subroutine launch(self, case, error)
@@ -320,10 +416,16 @@ contains
          velocity = sqrt(2.0_wp*standard_gravity*case%number(self%at%drop_height))
       radius = case%number(self%at%radius)
       mass = case%number(self%at%mass)
-      if (ieee_is_nan(mass)) mass = 4.0_wp/3.0_wp*pi*radius**3*self%sphere%material%density()
-      call self%impact%launch(velocity, mass, radius, &
-         case%number(self%at%surface_radius), error)
-      if (allocated(error)) self%cause = self%at%radius
+      if (ieee_is_nan(mass)) then
+         mass = 4.0_wp/3.0_wp*pi*radius**3*self%sphere%material%density()
+         if (.not. self%sphere%material%density() > 0.0_wp) then
+            call raise(error, error_input, 'the mass of the sphere follows from it; or give ' &
+               //'mass in &sphere', about='density')
+            self%culprit = self%sphere%address%item
+            return
+         end if
+      end if
+      call self%impact%launch(velocity, mass, radius, case%number(self%at%surface_radius), error)
    end subroutine launch
 
    !> Follow the numbers of the solver
@@ -351,9 +453,6 @@ contains
          call new_solver(self%solver, self%settings, error)
          if (.not. allocated(error)) self%solver_revision = revision
       end if
-      if (.not. allocated(error)) return
-      self%cause = case%address('solver', 'scheme')
-      if (self%settings%scheme == 'product') self%cause = case%address('solver', 'method')
    end subroutine update_solver
 
    !> Number at an address, 0 if there is none
@@ -369,72 +468,46 @@ contains
       if (ieee_is_nan(number)) number = 0.0_wp
    end function number_or_zero
 
-   !> Build what the sphere meets: modulus and plate of an impact
-   subroutine build_contact(impact, sphere, plate, pair, half_thickness, waves, case, cause, error)
-      !> The impact, its modulus and plate built
-      type(impact_t), intent(inout) :: impact
-      !> Material of the sphere
-      type(body_t), intent(in) :: sphere
-      !> Material of the plate
-      type(body_t), intent(in) :: plate
-      !> One of the `pair_*` constants
-      integer, intent(in) :: pair
-      !> Half thickness of the plate [m]; 0: not known
-      real(wp), intent(in) :: half_thickness
-      !> One of the `waves_*` constants
-      integer, intent(in) :: waves
-      !> The case
-      type(case_t), intent(in) :: case
-      !> What in the case the error is about
-      type(address_t), intent(inout) :: cause
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      call new_contact_modulus(impact%modulus, sphere%material, plate%material, &
-         sphere%data%deforms_as(plate%data), error, pair)
-      if (allocated(error)) then
-         cause = case%address('plate', 'material')
-         return
-      end if
-      call new_plate(impact%plate, plate%material, half_thickness, waves, error)
-      if (allocated(error)) cause = case%address('plate', 'waves')
-   end subroutine build_contact
-
    !> Follow the numbers of a material: it is built anew if its modulus has changed
-   subroutine update_body(body, case, has_changed, cause, error)
+   subroutine update_body(body, case, has_changed, error)
       !> The material, described
       type(body_t), intent(inout) :: body
       !> The case
       type(case_t), intent(in) :: case
       !> Whether the material is another one than before
       logical, intent(out) :: has_changed
-      !> What in the case the error is about
-      type(address_t), intent(inout) :: cause
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      type(address_t) :: address
+      real(wp), allocatable :: list(:)
       real(wp) :: number
       integer :: i, revision
 
-      revision = case%revision(body%address%group, body%address%item)
+      address = body%address
+      revision = case%revision(address%group, address%item)
       has_changed = body%revision /= revision .or. .not. body%is_current
       if (.not. has_changed) return
       do i = 1, size(body%rows)
-         number = case%number(address_t(body%address%group, body%address%item, body%rows(i)))
-         if (ieee_is_nan(number)) cycle
-         if (.not. ieee_is_nan(body%numbers(i))) then
-            if (.not. abs(number - body%numbers(i)) > 0.0_wp) cycle
-         end if
-         body%numbers(i) = number
-         associate (name => catalogue(body%rows(i))%name)
-            call body%data%set(name, number)
-            ! points of data need not be fitted anew for another density
-            if (name /= 'density' .and. name /= 'poisson_ratio') body%is_current = .false.
+         associate (key => catalogue(body%rows(i)))
+            if (key%value_kind == list_key) then
+               call case%get('material', key%name, list, address%item)
+               if (is_same(list, body%data%list(key%name))) cycle
+               call body%data%set_list(key%name, list)
+            else
+               address%row = body%rows(i)
+               number = case%number(address)
+               if (ieee_is_nan(number)) cycle
+               if (body%revision >= 0 &
+                   .and. .not. abs(number - body%data%number(key%name)) > 0.0_wp) cycle
+               call body%data%set(key%name, number)
+               ! points of data need not be fitted anew for another density
+               if (key%name == 'density' .or. key%name == 'poisson_ratio') cycle
+            end if
+            body%is_current = .false.
          end associate
       end do
-      call update_lists(body, case)
       body%revision = revision
-      cause = body%address
       if (body%is_current) then
          call set_constants_of(body%material, body%data, error)
       else
@@ -442,37 +515,6 @@ contains
       end if
       body%is_current = .not. allocated(error)
    end subroutine update_body
-
-   !> Follow the lists of a material, that is the terms of a Prony series and the points of a table
-   subroutine update_lists(body, case)
-      !> The material; not current if a list has changed
-      type(body_t), intent(inout) :: body
-      !> The case
-      type(case_t), intent(in) :: case
-
-      real(wp), allocatable :: moduli(:), rates(:)
-      character(len=5) :: key
-
-      ! the points of a table are read once
-      if (body%data%model == 'table') then
-         if (body%is_current) return
-      else if (body%data%model /= 'prony') then
-         return
-      end if
-      key = 'rates'
-      if (body%data%model == 'table' .or. case%given('material', 'times', body%address%item)) &
-         key = 'times'
-      call case%get('material', 'moduli', moduli, body%address%item)
-      call case%get('material', key, rates, body%address%item)
-      if (body%data%model == 'prony' .and. key == 'times') then
-         key = 'rates'
-         rates = 1.0_wp/rates
-      end if
-      if (.not. (is_same(moduli, body%data%list('moduli')) &
-          .and. is_same(rates, body%data%list(key)))) body%is_current = .false.
-      call body%data%set_list('moduli', moduli)
-      call body%data%set_list(key, rates)
-   end subroutine update_lists
 
    !> Whether two lists are the same
    pure function is_same(one, other) result(same)

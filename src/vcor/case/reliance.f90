@@ -9,18 +9,17 @@ module vcor_case_reliance
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : sampled_times, time_range_t
    use vcor_material_type, only : material_t
-   use vcor_solver, only : solve_impact
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_points, put_solver
-   use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
+   use vcor_case_problem, only : material_of_case, solve_case
    implicit none
    private
 
-   public :: reliance_t, find_reliance, solve_case
+   public :: reliance_t, find_reliance
 
    !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
    real(wp), parameter :: little = 1.0e-4_wp
@@ -96,22 +95,5 @@ contains
       reliance%leans = .not. reliance%solved .or. (reliance%ends(1) .and. first > contact_time)
       if (.not. reliance%leans) reliance%leans = abs(held%cor - free%cor) > little
    end subroutine find_reliance
-
-   !> Solve the impact of a case
-   subroutine solve_case(case, outcome, error)
-      !> The case
-      type(case_t), intent(in) :: case
-      !> Its outcome
-      type(outcome_t), intent(out) :: outcome
-      !> Unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(problem_t) :: problem
-      type(trajectory_t) :: trajectory
-
-      call problem_of_case(problem, case, error)
-      if (.not. allocated(error)) &
-         call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
-   end subroutine solve_case
 
 end module vcor_case_reliance

@@ -100,7 +100,7 @@ contains
       if (present(pair)) series = pair == pair_series
       if (sphere%rigid .and. plate%rigid) then
          call raise(error, error_input, &
-            'sphere and plate are both rigid: one of them must be able to deform')
+            'sphere and plate are both rigid, expected one that deforms', about='material')
       else if (sphere%rigid) then
          allocate (self%first, source=plate)
          self%first_factor = plate%plane_strain_factor()
@@ -123,7 +123,7 @@ contains
       else if (max(sphere%viscosity, plate%viscosity) > 0.0_wp) then
          call raise(error, error_input, 'a material with a viscosity has no meaning in Eq. (1) ' &
             //'beside another deformable material: make one body rigid or both of one material, ' &
-            //"or use contact.pair = 'series'")
+            //"or use contact.pair = 'series'", about='pair viscosity')
       else
          allocate (self%first, source=sphere)
          allocate (self%second, source=plate)

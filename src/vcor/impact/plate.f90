@@ -92,16 +92,19 @@ contains
 
       if (waves == waves_none .or. material%rigid) return
       if (.not. half_thickness > 0.0_wp) then
-         call raise(error, error_input, 'a plate with waves needs a positive half_thickness')
+         call raise(error, error_input, 'a plate with waves needs half_thickness > 0 [m]; use ' &
+            //"waves = 'none' for a half space", about='half_thickness')
       else if (.not. material%density() > 0.0_wp) then
-         call raise(error, error_input, 'a plate with waves needs the density of its material')
+         call raise(error, error_input, 'a plate with waves needs the density of its ' &
+            //"material; use waves = 'none' for a half space", about='density')
       else if (max(half_thickness, material%density()) > largest &
                .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
          call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
-            //'that can be computed')
+            //'that can be computed', about='half_thickness density')
       else if (.not. material%glassy() > 0.0_wp .and. waves /= waves_hereditary) then
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
-            //'a dashpot: its modulus is 0 and its deflection infinite')
+            //'a dashpot: its modulus is 0 and its deflection infinite', &
+            about='waves equilibrium_modulus')
       end if
       if (allocated(error)) return
 

@@ -121,14 +121,17 @@ contains
 
       ! the mass of a tiny sphere may be nothing
       if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. radius > 0.0_wp)) then
-         call raise(error, error_input, 'velocity, mass and radius of the sphere must be positive')
+         call raise(error, error_input, 'velocity, mass and radius of the sphere must be ' &
+            //'positive', about='velocity mass radius')
       else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
          call raise(error, error_input, &
-            'a concave surface must have a larger radius than the sphere, or Hertz does not apply')
+            'a concave surface must have a larger radius than the sphere, or Hertz does not ' &
+            //'apply', about='surface_radius radius')
       else if (max(velocity, mass, radius) > largest &
                .or. min(velocity, mass, radius) < 1.0_wp/largest) then
          call raise(error, error_input, &
-            'velocity, mass or radius of the sphere are beyond all that can be computed')
+            'velocity, mass or radius of the sphere are beyond all that can be computed', &
+            about='velocity mass radius')
       end if
       if (allocated(error)) return
 

@@ -83,7 +83,7 @@ contains
          if (parameters(i)%unit /= '') unit = ' ['//trim(parameters(i)%unit)//']'
          call raise(error, error_input, what//', '//trim(parameters(i)%name)//': found ' &
             //real_text(values(i))//', expected a number ' &
-            //interval_text(parameters(i)%range)//unit)
+            //interval_text(parameters(i)%range)//unit, about=trim(parameters(i)%name))
          return
       end do
    end subroutine check_values

@@ -77,14 +77,16 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (size(moduli) /= size(rates)) then
-         call raise(error, error_input, 'a Prony series needs as many rates as moduli')
+         call raise(error, error_input, 'a Prony series needs as many rates as moduli, or as ' &
+            //'many times', about='rates times moduli')
       else if (.not. (all(moduli > 0.0_wp) .and. all(rates > 0.0_wp))) then
          call raise(error, error_input, 'the moduli and rates of a Prony series must be positive')
       else if (.not. (equilibrium >= 0.0_wp .and. viscosity >= 0.0_wp)) then
          call raise(error, error_input, &
             'equilibrium modulus and viscosity of a Prony series must not be negative')
       else if (.not. equilibrium + sum(moduli) + viscosity > 0.0_wp) then
-         call raise(error, error_input, 'a Prony series needs at least one term')
+         call raise(error, error_input, 'no stiffness, expected moduli, viscosity > 0 or ' &
+            //'equilibrium_modulus > 0', about='moduli viscosity equilibrium_modulus')
       end if
       if (allocated(error)) return
 
@@ -115,7 +117,7 @@ contains
       if (allocated(error)) return
       if (.not. beta >= alpha) then
          call raise(error, error_input, 'a standard linear solid needs 0 <= alpha <= beta, ' &
-            //'or its rubbery modulus exceeds the glassy one')
+            //'or its rubbery modulus exceeds the glassy one', about='alpha beta')
       end if
       if (allocated(error)) return
 

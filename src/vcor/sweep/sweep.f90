@@ -16,12 +16,13 @@ module vcor_sweep_sweep
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_case_axes, only : new_grid
-   use vcor_case_case, only : address_t, case_t
-   use vcor_case_grid, only : grid_t
+   use vcor_case_case, only : case_t
+   use vcor_case_grid, only : axis_t, grid_t
    use vcor_interval, only : contains_number, interval_t
-   use vcor_case_catalogue, only : catalogue, groups, wanted
+   use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid
+   use vcor_words, only : contains_word
    implicit none
    private
 
@@ -100,26 +101,26 @@ contains
       call problem_of_case(self%problem, self%case, error)
       if (.not. allocated(error)) return
       ! what varies may be sound at other points
-      if (n > 0 .and. .not. stands(self%problem%cause)) deallocate (error)
+      do i = 1, n
+         if (.not. has_part(self%grid%axes(i))) cycle
+         deallocate (error)
+         return
+      end do
 
    contains
 
-      !> Whether an error is the same at all points
-      pure function stands(cause)
-         !> What it is about
-         type(address_t), intent(in) :: cause
-         !> Whether it is
-         logical :: stands
+      !> Whether a parameter has a part in the error: by its path, or by its name in any material
+      pure function has_part(axis)
+         !> The parameter
+         type(axis_t), intent(in) :: axis
+         !> Whether it has
+         logical :: has_part
 
-         integer :: k
-
-         stands = groups(cause%group)%name == 'material'
-         do k = 1, n
-            associate (varied => self%grid%axes(k)%address)
-               if (varied%group == cause%group .and. varied%item == cause%item) stands = .false.
-            end associate
-         end do
-      end function stands
+         has_part = .not. allocated(error%about)
+         if (.not. has_part) has_part = &
+            contains_word(error%about, axis%name(:index(axis%name//'(', '(') - 1)) &
+            .or. contains_word(error%about, catalogue(axis%address%row)%name)
+      end function has_part
    end subroutine new_sweep
 
    !> Solve one point

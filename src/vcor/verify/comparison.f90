@@ -7,7 +7,6 @@
 !> share the equation of motion and nothing else, so what they agree on is its solution.
 module vcor_verify_comparison
    use vcor_case_case, only : case_t
-   use vcor_case_checks, only : validate
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
@@ -222,7 +221,7 @@ contains
       type(case_t), intent(in) :: case
       !> Its row, outcome or failure to be set
       type(model_t), intent(inout) :: model
-      !> Whether it is still a valid case
+      !> Whether it still describes an impact
       logical, intent(out) :: valid
 
       type(case_t) :: other
@@ -237,11 +236,9 @@ contains
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
-      call validate(other, error)
+      call problem_of_case(problem, other, error)
       valid = .not. allocated(error)
-      if (valid) call problem_of_case(problem, other, error)
-      if (.not. allocated(error)) call solve_impact(problem%solver, problem%impact, trajectory, &
-         model%outcome, error)
+      if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
       if (allocated(error)) model%failure = error%message
    end subroutine solve_model
 
