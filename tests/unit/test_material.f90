@@ -156,7 +156,8 @@ contains
       call check_close(terms%error, 0.0_wp, 0.0_wp, "a Prony series is a sum of exponentials")
       call check(.not. material%elastic(), "it is not elastic")
       call check_close(terms%rates, rates, 0.0_wp, "with its own rates")
-      double = terms%scaled(2.0_wp)
+      double = terms
+      call double%scale(2.0_wp)
       call check_relative(double%moduli, 2.0_wp*moduli, 0.0_wp, &
          "twice the sum has twice the moduli")
       call check_relative(double%equilibrium, 2.0_wp*equilibrium, 0.0_wp, "and equilibrium modulus")
@@ -178,7 +179,7 @@ contains
          rounding, "the loss modulus is viscosity times frequency")
       call material%exponentials(1.0_wp, 1.0e-8_wp, terms)
       call check_close(terms%error, 0.0_wp, 0.0_wp, "it is a sum of exponentials")
-      terms = terms%scaled(3.0_wp)
+      call terms%scale(3.0_wp)
       call check_relative(terms%viscosity, 1200.0_wp, rounding, "a scaled sum has a scaled dashpot")
    end subroutine test_dashpot
 

@@ -356,8 +356,8 @@ contains
          call expand_pair(self, window, accuracy, terms, is_found)
          if (.not. is_found) call fit_values(terms)
       else
-         call self%first%exponentials(window, accuracy, one)
-         terms = one%scaled(self%first_factor)
+         call self%first%exponentials(window, accuracy, terms)
+         call terms%scale(self%first_factor)
          ! a spectrum with peaks that no rule resolves
          if (self%series .and. .not. self%first%discrete .and. &
              terms%error > max(poor, far*accuracy)) then
@@ -409,11 +409,11 @@ contains
       if (self%first%elastic() .and. self%second%discrete) then
          elastic = self%first_factor*self%first%glassy()
          call self%second%exponentials(window, accuracy, other)
-         other = other%scaled(self%second_factor)
+         call other%scale(self%second_factor)
       else if (self%second%elastic() .and. self%first%discrete) then
          elastic = self%second_factor*self%second%glassy()
          call self%first%exponentials(window, accuracy, other)
-         other = other%scaled(self%first_factor)
+         call other%scale(self%first_factor)
       else
          return
       end if

@@ -136,7 +136,8 @@ contains
       end if
    end subroutine secants
 
-   !> Solve s + c u(s) + d u(s)^2 = r by Newton's method
+   !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz:
+   !> no iteration waits for a root
    pure subroutine solve(self, c, d, r, guess, s, secant)
       !> Contact law
       class(contact_law_t), intent(in) :: self
@@ -153,25 +154,28 @@ contains
       !> u/s there [m^0.5]
       real(wp), intent(out) :: secant
 
-      real(wp) :: e, correction
+      real(wp) :: e, y, u, correction
       integer :: iteration
 
       s = 0.0_wp
       secant = self%secant(s)
       if (.not. abs(r) > 0.0_wp) return
-      ! for |s|: with d = 0 the root lies below |r|, and from above Newton's method descends to it
+      ! with d = 0 the root lies below sqrt(|r|), and from above Newton's method descends to it
       e = sign(d, r)
-      s = abs(r)
-      if (abs(guess) > 0.0_wp) s = min(s, abs(guess))
+      y = sqrt(abs(r))
+      if (abs(guess) > 0.0_wp) y = min(y, sqrt(abs(guess)))
       do iteration = 1, 60
-         secant = self%secant(s)
-         correction = (s*(1.0_wp + secant*(c + e*s*secant)) - abs(r)) &
-            /(1.0_wp + self%exponent*secant*(c + 2.0_wp*e*s*secant))
-         s = s - correction
-         ! what is left is (n - 1)/2 of its square
-         if (abs(correction) <= 1.0e-8_wp*s) exit
+         secant = y
+         if (abs(self%exponent - hertz) > 0.0_wp) secant = y**(2.0_wp*self%exponent - 2.0_wp)
+         s = y*y
+         u = s*secant
+         correction = ((s - abs(r)) + u*(c + e*u)) &
+            /(2.0_wp*(y + self%exponent*secant*y*(c + 2.0_wp*e*u)))
+         y = y - correction
+         ! what is left is about its square
+         if (abs(correction) <= 1.0e-9_wp*y) exit
       end do
-      s = sign(s, r)
+      s = sign(y*y, r)
       secant = self%secant(s)
    end subroutine solve
 

@@ -204,10 +204,8 @@ contains
       !> The sum, in [N/m^1.5], its `error` told
       type(exponential_sum_t), intent(out) :: terms
 
-      type(exponential_sum_t) :: modulus
-
-      call self%modulus%exponentials(window, accuracy, modulus)
-      terms = modulus%scaled(self%hertz_factor)
+      call self%modulus%exponentials(window, accuracy, terms)
+      call terms%scale(self%hertz_factor)
    end subroutine kernel_exponentials
 
    !> Viscosity of the kernel's dashpot

@@ -21,30 +21,25 @@ module vcor_material_exponential_sum
       !> Largest relative error against the modulus that it stands for [-]; 0: it is that modulus
       real(wp) :: error = 0.0_wp
    contains
-      !> The same sum times a factor
-      procedure :: scaled
+      !> Multiply it by a factor
+      procedure :: scale
       !> Its integral from 0 to t, dashpot included
       procedure :: integral
    end type exponential_sum_t
 
 contains
 
-   !> The sum times a factor
-   pure function scaled(self, factor) result(product)
+   !> Multiply the sum by a factor
+   pure subroutine scale(self, factor)
       !> The sum
-      class(exponential_sum_t), intent(in) :: self
+      class(exponential_sum_t), intent(inout) :: self
       !> Factor, > 0
       real(wp), intent(in) :: factor
-      !> factor * self
-      type(exponential_sum_t) :: product
 
-      product%equilibrium = factor*self%equilibrium
-      allocate (product%moduli(size(self%moduli)), product%rates(size(self%rates)))
-      product%moduli(:) = factor*self%moduli
-      product%rates(:) = self%rates
-      product%viscosity = factor*self%viscosity
-      product%error = self%error
-   end function scaled
+      self%equilibrium = factor*self%equilibrium
+      self%moduli(:) = factor*self%moduli
+      self%viscosity = factor*self%viscosity
+   end subroutine scale
 
    !> Integral from 0 to t, dashpot included
    pure function integral(self, t) result(value)

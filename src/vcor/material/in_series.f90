@@ -66,8 +66,10 @@ contains
       if (first%discrete .and. second%discrete) then
          call first%exponentials(1.0_wp, 1.0_wp, a)
          call second%exponentials(1.0_wp, 1.0_wp, b)
+         call a%scale(first_factor)
+         call b%scale(second_factor)
          allocate (prony)
-         call combine(a%scaled(first_factor), b%scaled(second_factor), prony, error)
+         call combine(a, b, prony, error)
          if (allocated(error)) return
          if (.not. max(a%error, b%error) > 0.0_wp) then
             call move_alloc(prony, self)

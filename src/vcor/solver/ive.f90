@@ -101,8 +101,6 @@ contains
                   //"plate remembers: use another plate.waves, or method = 'direct'")
                return
             end if
-         else if (.not. allocated(modes%plate%rates)) then
-            allocate (modes%plate%moduli(0), modes%plate%rates(0))
          end if
          ! a sum that is the kernel itself holds for ever, ghost lines beyond the end included
          if (.not. (modes%contact%error > 0.0_wp .or. impact%plate%hereditary())) &

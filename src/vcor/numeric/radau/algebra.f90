@@ -19,7 +19,7 @@ module vcor_numeric_radau_algebra
    private
 
    public :: width, pairs
-   public :: invert, apply, constant, times, ratio
+   public :: invert, apply, apply_product, constant, times, ratio
 
    !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
    !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
@@ -112,6 +112,22 @@ contains
          c(pairs + i) = a(i)*b(pairs + i) + a(pairs + i)*b(i)
       end do
    end function times
+
+   !> Product of a matrix and the products of numbers of pairs
+   pure function apply_product(matrix, square, a, b) result(y)
+      !> Matrix, from numbers of pairs
+      real(wp), intent(in) :: matrix(width, width)
+      !> j^2
+      real(wp), intent(in) :: square(pairs)
+      !> Factors
+      real(wp), intent(in) :: a(width)
+      !> Factors
+      real(wp), intent(in) :: b(width)
+      !> matrix (a b)
+      real(wp) :: y(width)
+
+      y = apply(matrix, times(square, a, b))
+   end function apply_product
 
    !> Quotients
    pure function ratio(square, a, b) result(c)

@@ -5,8 +5,7 @@ module vcor_solver_ive_collocator
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
    use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
-   use vcor_solver_ive_tuning, only : companion_tolerance, least_tolerance, most_steps, &
-      newton_tolerance
+   use vcor_solver_ive_tuning, only : least_tolerance, most_steps, near_tolerance, newton_tolerance
    implicit none
    private
 
@@ -32,8 +31,10 @@ module vcor_solver_ive_collocator
       real(wp) :: second_coefficient = 0.0_wp
       !> Error that Newton's method may leave in the indentation, over its largest value
       real(wp) :: tolerance = 0.0_wp
-      !> The same for the companion, whose difference to the solution is wanted to two digits only
-      real(wp) :: coarse_tolerance = 0.0_wp
+      !> The same at the end of a panel that is solved with the Jacobian of another one: a
+      !> companion, whose difference to the solution is wanted to two digits only, or a panel cut to
+      !> an end
+      real(wp) :: near_tolerance = 0.0_wp
    contains
       !> Values of a polynomial at the nodes of `coarse`
       procedure :: coarsened
@@ -54,7 +55,7 @@ contains
       integer :: i, j
 
       self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
-      self%coarse_tolerance = max(least_tolerance, companion_tolerance*accuracy)
+      self%near_tolerance = max(least_tolerance, near_tolerance*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
       if (allocated(error)) return
       call new_collocation(self%coarse, fewer_stages, most_steps, error)

@@ -145,7 +145,8 @@ contains
          self%velocity = impact%velocity
          self%start%alpha = impact%plate%alpha(0.0_wp)
          allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
-         allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
+         if (impact%plate%hereditary()) &
+            allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
          self%coarse_start = self%start
 
          relaxes = any(contact%rates*self%time_scale > fast)

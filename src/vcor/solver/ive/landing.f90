@@ -88,8 +88,7 @@ contains
 
       associate (collocator => problem%collocator)
          call guess(problem, longer, step, start, panel)
-         call solve_near(problem, collocator%rule, step, start, collocator%tolerance, inverse, &
-            panel)
+         call solve_near(problem, collocator%rule, step, start, inverse, panel)
          if (panel%converged) return
          call guess(problem, longer, step, start, panel)
          call solve(problem, collocator%rule, step, start, panel, inverse)

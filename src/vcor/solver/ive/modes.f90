@@ -86,7 +86,6 @@ contains
       real(wp) :: a, d, lag(pairs)
       integer :: m, k
 
-      if (size(p) == 0) return
       lambda = scale*map%eigenvalue
       from_x = at_end(apply(map%left, x))
       from_p = at_end(map%left_one)

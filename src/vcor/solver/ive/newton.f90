@@ -150,7 +150,7 @@ contains
 
    !> Solve the equations of a panel with the Jacobian of one next to it, of another length, or with
    !> that of the panel whose companion it is. No matrix is formed, so this costs half of a solution
-   subroutine solve_near(problem, rule, step, start, tolerance, inverse, panel)
+   subroutine solve_near(problem, rule, step, start, inverse, panel)
       !> The problem
       type(panel_problem_t), intent(in) :: problem
       !> Collocation rule
@@ -159,8 +159,6 @@ contains
       type(step_t), intent(in) :: step
       !> State at the start
       type(start_t), intent(in) :: start
-      !> Wanted error at the end of the panel over the largest value
-      real(wp), intent(in) :: tolerance
       !> Inverse of the Jacobian of a panel of the full number of stages
       real(wp), intent(in) :: inverse(width, width)
       !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged
@@ -195,7 +193,7 @@ contains
             if (.not. contraction <= slowest_contraction) return
             rest = abs(change(rule%stages))
             if (equations%closes) rest = size
-            panel%converged = rest*contraction <= tolerance*unit
+            panel%converged = rest*contraction <= problem%collocator%near_tolerance*unit
             if (panel%converged) exit
          end if
          last = max(size, tiny(1.0_wp))
@@ -216,9 +214,9 @@ contains
       end if
    end subroutine solve_near
 
-   !> Improve a guess at a panel by two functional iterations: s from the forces of the guess, and
-   !> again. The error of an interpolated guess oscillates from stage to stage, and two integrals
-   !> leave little of it
+   !> Improve the motion and the forces of a guessed panel by two functional iterations: s from the
+   !> forces of the guess, and again. The error of an interpolated guess oscillates from stage to
+   !> stage, and two integrals leave little of it
    subroutine improve(problem, step, start, tolerance, panel)
       !> The problem, its contact growing
       type(panel_problem_t), intent(in) :: problem
@@ -233,7 +231,7 @@ contains
       type(panel_t), intent(inout) :: panel
 
       type(equations_t) :: equations
-      real(wp) :: guessed(width), inverse(width, width)
+      real(wp) :: guessed(width), numbers(width), inverse(width, width)
       integer :: iteration
 
       guessed = panel%indentation(1:)
@@ -248,7 +246,7 @@ contains
             <= tolerance*largest(equations%x)
       end if
       if (panel%converged) then
-         call problem%integrate(equations, panel)
+         call problem%find_forces(equations, panel, numbers)
       else
          panel%indentation(1:) = guessed
          call solve(problem, problem%collocator%rule, step, start, panel, inverse)
@@ -274,8 +272,7 @@ contains
 
       associate (collocator => problem%collocator)
          call start_from_panel()
-         call solve_near(problem, collocator%coarse, step, start, collocator%coarse_tolerance, &
-            inverse, companion)
+         call solve_near(problem, collocator%coarse, step, start, inverse, companion)
          if (companion%converged) return
          call start_from_panel()
          call solve(problem, collocator%coarse, step, start, companion, own_inverse)
@@ -286,8 +283,10 @@ contains
       !> Guess the companion
       subroutine start_from_panel()
 
-         companion%indentation(1:) = problem%collocator%coarsened(panel%indentation)
-         companion%t1(1:) = problem%collocator%coarsened(panel%t1)
+         associate (collocator => problem%collocator)
+            companion%indentation(1:) = collocator%coarsened(panel%indentation)
+            if (associated(problem%approach)) companion%t1(1:) = collocator%coarsened(panel%t1)
+         end associate
       end subroutine start_from_panel
    end subroutine accompany
 

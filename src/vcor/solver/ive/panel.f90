@@ -34,36 +34,38 @@ module vcor_solver_ive_panel
       !> What has not relaxed of u [m^1.5], or of the indentation while the contact recedes [m],
       !> shape (modes)
       real(wp), allocatable :: lag(:)
-      !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate)
+      !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate); not
+      !> allocated for others
       real(wp), allocatable :: p(:)
    end type start_t
 
-   !> Solution on a panel; index 0 is its start
+   !> Solution on a panel; index 0 is its start. What it does not have, be it the condition of a
+   !> growing contact, is not set
    type :: panel_t
       !> Number of stages
       integer :: stages = 0
       !> Time in the panel: start + map(1) theta + map(2) theta^2 [s]
-      real(wp) :: map(2) = 0.0_wp
+      real(wp) :: map(2)
       !> Times of the stages [s]
-      real(wp) :: time(0:width) = 0.0_wp
+      real(wp) :: time(0:width)
       !> Indentation [m]
-      real(wp) :: indentation(0:width) = 0.0_wp
+      real(wp) :: indentation(0:width)
       !> Force [N]
-      real(wp) :: force(0:width) = 0.0_wp
+      real(wp) :: force(0:width)
       !> Impulse [N s]
-      real(wp) :: impulse(0:width) = 0.0_wp
+      real(wp) :: impulse(0:width)
       !> Integral of the impulse [N s2]
-      real(wp) :: second_impulse(0:width) = 0.0_wp
+      real(wp) :: second_impulse(0:width)
       !> Plate parameter alpha [m/(N s)]
-      real(wp) :: alpha(0:width) = 0.0_wp
+      real(wp) :: alpha(0:width)
       !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
-      real(wp) :: deflection(0:width) = 0.0_wp
+      real(wp) :: deflection(0:width)
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
-      real(wp) :: drift(0:width) = 0.0_wp
+      real(wp) :: drift(0:width)
       !> Condition N of a receding contact [N/m^0.5]
-      real(wp) :: condition(0:width) = 0.0_wp
+      real(wp) :: condition(0:width)
       !> Its time t1 [s]
-      real(wp) :: t1(0:width) = 0.0_wp
+      real(wp) :: t1(0:width)
       !> Whether Newton's iteration converged
       logical :: converged = .false.
    contains
@@ -102,8 +104,8 @@ contains
       self%impulse(0) = start%impulse
       self%second_impulse(0) = start%second_impulse
       self%alpha(0) = start%alpha
-      self%deflection(0) = start%deflection
-      self%drift(0) = start%drift
+      self%deflection = start%deflection
+      self%drift = start%drift
       self%condition(0) = start%condition
       self%t1(0) = start%t1
    end subroutine begin

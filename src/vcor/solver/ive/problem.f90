@@ -30,7 +30,7 @@
 module vcor_solver_ive_problem
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
-   use vcor_numeric_radau_algebra, only : apply, constant, pairs, ratio, times, width
+   use vcor_numeric_radau_algebra, only : apply, apply_product, constant, pairs, ratio, times, width
    use vcor_numeric_radau_collocation, only : closing, collocation_t, panel_map_t
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
@@ -69,6 +69,8 @@ module vcor_solver_ive_problem
       procedure :: evaluate
       !> Change its unknown
       procedure :: move
+      !> Forces of its solution
+      procedure :: find_forces
       !> Forces of its solution and their integrals
       procedure :: integrate
       !> What collocation does not say at the end of a receding contact
@@ -199,7 +201,7 @@ contains
 
          ! the plate: what settles at once in a hereditary one counts as alpha
          e%frozen = plate%frozen()
-         e%remembers = size(start%p) > 0
+         e%remembers = allocated(start%p)
          e%alpha = 0.0_wp
          e%alpha_rate = 0.0_wp
          if (e%remembers) then
@@ -208,7 +210,8 @@ contains
             call plate%alpha_at(panel%time(1:n), e%alpha(:n))
          end if
          panel%alpha(1:) = e%alpha
-         e%varies = e%frozen .or. maxval(e%alpha(:n)) > minval(e%alpha(:n))
+         ! alpha never falls
+         e%varies = e%frozen .or. e%alpha(n) > e%alpha(1)
          if (e%frozen .or. e%varies .and. e%viscosity > 0.0_wp) &
             e%alpha_rate(:n) = plate%alpha_rate(panel%time(1:n), e%alpha(:n))
 
@@ -218,7 +221,7 @@ contains
          e%gain = velocity*e%elapsed
          if (e%remembers) then
             call resolve(self%modes%plate, start%p, map, e%lambda, e%plate, e%past)
-            e%gain = e%gain - apply(map%right, times(map%square, e%lambda, e%past))
+            e%gain = e%gain - apply_product(map%right, map%square, e%lambda, e%past)
          end if
          e%yield = times(map%square, e%lambda, e%lambda)*e%inverse_mass
          if (e%remembers) e%yield = e%yield &
@@ -267,7 +270,7 @@ contains
       !> Integrals from the start to the stages
       real(wp) :: integral(width)
 
-      integral = apply(e%map%right, times(e%map%square, e%lambda, apply(e%map%left, x)))
+      integral = apply_product(e%map%right, e%map%square, e%lambda, apply(e%map%left, x))
    end function integral
 
    !> What forces in the panel take of the indentation: R F. A frozen plate has
@@ -282,13 +285,13 @@ contains
 
       real(wp) :: force(width)
 
-      lost = apply(e%map%right, times(e%map%square, e%yield, numbers))
+      lost = apply_product(e%map%right, e%map%square, e%yield, numbers)
       if (.not. e%varies) return
       if (e%frozen) then
          force = apply(e%map%right, numbers)
          lost = lost + integral(e, e%alpha*force - integral(e, e%alpha_rate*force))
       else
-         lost = lost + e%alpha*apply(e%map%right, times(e%map%square, e%lambda, numbers))
+         lost = lost + e%alpha*apply_product(e%map%right, e%map%square, e%lambda, numbers)
       end if
    end function lost_indentation
 
@@ -307,7 +310,7 @@ contains
          force = apply(map%right, numbers)
          impulse = times(map%square, e%lambda, numbers)
          lost = e%alpha*force + e%inverse_mass*apply(map%right, impulse)
-         if (e%remembers) lost = lost + apply(map%right, times(map%square, e%plate, impulse))
+         if (e%remembers) lost = lost + apply_product(map%right, map%square, e%plate, impulse)
          if (e%frozen) then
             lost = lost - integral(e, e%alpha_rate*force)
          else if (e%varies) then
@@ -334,12 +337,12 @@ contains
       associate (map => e%map)
          numbers = apply(map%left, f)
          if (e%simple .or. .not. e%varies) then
-            product = apply(map%right, times(map%square, e%whole, numbers))
+            product = apply_product(map%right, map%square, e%whole, numbers)
             if (e%varies) product = product &
-               + e%alpha*apply(map%right, times(map%square, e%impulsive, numbers))
+               + e%alpha*apply_product(map%right, map%square, e%impulsive, numbers)
          else if (e%rebounds) then
-            product = apply(map%right, times(map%square, e%stiffness, &
-               apply(map%left, lost_indentation(e, numbers))))
+            product = apply_product(map%right, map%square, e%stiffness, &
+               apply(map%left, lost_indentation(e, numbers)))
          else
             product = lost_indentation(e, times(map%square, e%stiffness, numbers))
          end if
@@ -425,9 +428,36 @@ contains
       end if
    end subroutine move
 
+   !> Forces of a solution; while the contact recedes they are part of it
+   pure subroutine find_forces(self, e, panel, numbers)
+      !> The problem
+      class(panel_problem_t), intent(in) :: self
+      !> Equations of the panel
+      type(equations_t), intent(inout) :: e
+      !> The panel
+      type(panel_t), intent(inout) :: panel
+      !> Numbers of the forces [N]
+      real(wp), intent(out) :: numbers(width)
+
+      real(wp) :: force(width), second(width, width)
+
+      if (e%rebounds) then
+         numbers = apply(e%map%left, panel%force(1:))
+         return
+      end if
+      call self%evaluate(e, panel)
+      numbers = times(e%map%square, e%stiffness, apply(e%map%left, e%f)) + e%memory
+      panel%force(1:) = apply(e%map%right, numbers)
+      if (allocated(e%lag)) then
+         call self%second_term(e, force, second)
+         panel%force(1:) = panel%force(1:) + force
+         numbers = numbers + apply(e%map%left, force)
+      end if
+   end subroutine find_forces
+
    !> Forces of a solution and their integrals I = I_n + H F, J = J_n + H I_n + H^2 F, and the
    !> motion that they make where it is not the solution itself
-   subroutine integrate(self, e, panel)
+   pure subroutine integrate(self, e, panel)
       !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel
@@ -435,27 +465,16 @@ contains
       !> The panel
       type(panel_t), intent(inout) :: panel
 
-      real(wp), dimension(width) :: numbers, impulse, rate, force
-      real(wp) :: second(width, width)
+      real(wp), dimension(width) :: numbers, impulse, rate
 
       associate (map => e%map)
-         if (e%rebounds) then
-            numbers = apply(map%left, panel%force(1:))
-            panel%indentation(1:) = panel%indentation(0) + e%gain - lost_indentation(e, numbers)
-         else
-            call self%evaluate(e, panel)
-            numbers = times(map%square, e%stiffness, apply(map%left, e%f)) + e%memory
-            panel%force(1:) = apply(map%right, numbers)
-            if (allocated(e%lag)) then
-               call self%second_term(e, force, second)
-               panel%force(1:) = panel%force(1:) + force
-               numbers = numbers + apply(map%left, force)
-            end if
-         end if
+         call self%find_forces(e, panel, numbers)
+         if (e%rebounds) panel%indentation(1:) = panel%indentation(0) + e%gain &
+            - lost_indentation(e, numbers)
          impulse = times(map%square, e%lambda, numbers)
          panel%impulse(1:) = panel%impulse(0) + apply(map%right, impulse)
          panel%second_impulse(1:) = panel%second_impulse(0) + panel%impulse(0)*e%elapsed &
-            + apply(map%right, times(map%square, e%lambda, impulse))
+            + apply_product(map%right, map%square, e%lambda, impulse)
          if (e%frozen) then
             panel%drift(1:) = panel%drift(0) + integral(e, e%alpha_rate*panel%force(1:))
             panel%deflection(1:) = panel%deflection(0) &
@@ -464,7 +483,7 @@ contains
             rate = times(map%square, e%plate, impulse) + e%past
             panel%drift(1:) = -apply(map%right, rate)
             panel%deflection(1:) = panel%deflection(0) &
-               + apply(map%right, times(map%square, e%lambda, rate))
+               + apply_product(map%right, map%square, e%lambda, rate)
          end if
       end associate
    end subroutine integrate
@@ -527,8 +546,8 @@ contains
          if (.not. associated(self%approach)) &
             gained = law%u(panel%indentation(1:)) - law%u(start%indentation)
          call advance_lags(map, step%map_scale(), self%modes%contact, gained, start%lag)
-         gained = panel%impulse(1:) - start%impulse
-         call advance_lags(map, step%map_scale(), self%modes%plate, gained, start%p)
+         if (allocated(start%p)) call advance_lags(map, step%map_scale(), self%modes%plate, &
+            panel%impulse(1:) - start%impulse, start%p)
          call move_to_end(panel, start)
       end associate
    end subroutine advance
@@ -549,7 +568,7 @@ contains
       start%t1 = start%time
       self%largest_condition = start%condition
       self%noise = rounding_of_condition
-      self%tolerance = self%collocator%coarse_tolerance
+      self%tolerance = self%collocator%near_tolerance
    end subroutine turn_round
 
    !> Set up the second term of the Volterra series, for which the matrices of the modes are formed
@@ -569,7 +588,7 @@ contains
       do k = 1, size(rates)
          settled = ratio(e%map%square, constant(1.0_wp), constant(1.0_wp) + rates(k)*e%lambda)
          do j = 1, width
-            e%lag(:, j, k) = apply(e%map%right, times(e%map%square, settled, e%map%left(:, j)))
+            e%lag(:, j, k) = apply_product(e%map%right, e%map%square, settled, e%map%left(:, j))
          end do
       end do
    end subroutine set_up_second_term

@@ -14,7 +14,6 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_course, only : course_t, share
    use vcor_solver_ive_newton, only : accompany, close_contact, solve
-   use vcor_solver_ive_panel, only : panel_t
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
@@ -114,7 +113,7 @@ contains
 
       self%approach => approach
       call self%problem%turn_round(approach, self%start)
-      self%previous = panel_t()
+      self%previous%stages = 0
       self%refused = huge(1.0_wp)
       associate (contact => self%problem%modes%contact, time => approach%end)
          continuous = contact%error > 0.0_wp

@@ -39,10 +39,10 @@ module vcor_solver_ive_tuning
 
    ! Newton's method
 
-   !> What it may leave of an error over the accuracy: of a panel, of a companion or the condition
-   !> of a rebound
+   !> What it may leave of an error over the accuracy: of a panel; of one that is solved with the
+   !> Jacobian of another, and of the condition of a rebound
    real(wp), parameter :: newton_tolerance = 1.0e-5_wp ! tested
-   real(wp), parameter :: companion_tolerance = 3.0e-3_wp ! tested
+   real(wp), parameter :: near_tolerance = 3.0e-3_wp ! tested
    !> The least of them: rounding
    real(wp), parameter :: least_tolerance = 1.0e-14_wp ! guard
    !> Correction over the solution after which the Jacobian is kept: it contracts tenfold then
