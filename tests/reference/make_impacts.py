@@ -1,5 +1,5 @@
-"""Reference impacts of every plate, contact law, pair and material: practical.txt, random.txt and
-designed.txt, which tests/unit/test_impacts.f90 reads.
+"""Reference impacts of every plate, contact law, pair and material: practical.txt, random.txt,
+designed.txt and found.txt, which tests/unit/test_impacts.f90 reads.
 
 A set is a text file of impacts, each with two remarks and the case as vcor reads it:
 
@@ -12,10 +12,12 @@ practical.txt   230 random practical impacts, made by a solver that shares nothi
                 with the one here; --check solves them again
 random.txt      random practical impacts, made here: --random COUNT
 designed.txt    every plate with every law and pair, every model, tables: --designed
+found.txt       impacts of other random sets (--random COUNT --seed SEED) that a version of vcor
+                missed, or whose error it stated too small
 
 The solver is impact_solver.py.
 
-Usage:  make_impacts.py [--check SET.txt] [--random COUNT] [--designed] [--output DIR]
+Usage:  make_impacts.py [--check SET.txt] [--random COUNT [--seed SEED]] [--designed] [--output DIR]
 """
 
 import argparse
@@ -362,13 +364,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", type=pathlib.Path, help="solve the impacts of a set again")
     parser.add_argument("--random", type=int, default=0, help="number of random impacts to make")
+    parser.add_argument("--seed", type=int, default=7, help="another seed, another set")
     parser.add_argument("--designed", action="store_true", help="make the designed set")
     parser.add_argument("--output", default=HERE, type=pathlib.Path)
     options = parser.parse_args()
     if options.check:
         check(options.check)
     if options.random:
-        random_set(options.random, 7, options.output / "random.txt")
+        random_set(options.random, options.seed, options.output / "random.txt")
     if options.designed:
         designed_set(options.output / "designed.txt")
 

@@ -17,7 +17,7 @@ module vcor_solver_ive_contact
    use vcor_kinds, only : wp
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
-   use vcor_solver_ive_course, only : course_t, share, share_of_difference
+   use vcor_solver_ive_course, only : course_t, share
    use vcor_solver_ive_landing, only : end_at_zero, first_without_force, land_on_largest, &
       land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
@@ -27,12 +27,12 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, first_growth_fast, &
-      first_growth_slow, first_longest, first_receding, first_receding_growth, first_short, &
-      first_slow, first_three, force_share, frozen_first, inner_allowed, inner_felt, levels_base, &
-      levels_error, most_ahead, most_steps, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, share_of_growth, &
-      tolerable, usual_accuracy, usually_better
+   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, few_panels, &
+      first_growth_fast, first_growth_slow, first_longest, first_receding, &
+      first_receding_growth, first_short, first_slow, first_three, force_share, frozen_first, &
+      harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, most_steps, &
+      next_to_branch, panel_share, peak_share, rounding_of_force, rounding_per_panel, &
+      shallow_end, shallow_factor, solution_share, tolerable, usual_accuracy, usually_better
    implicit none
    private
 
@@ -53,7 +53,7 @@ module vcor_solver_ive_contact
       real(wp) :: doubt = 0.0_wp
       !> Largest force so far [N]
       real(wp) :: largest_force = 0.0_wp
-      !> What the panel adds to the error of the impulse, and the most that one has added [-]
+      !> What the panel adds to the error of the motion, and the most that one has added [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
       !> What a rebound feels of the difference of the two solutions inside the panel, and the most
       !> that it has felt [-]
@@ -245,8 +245,8 @@ contains
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact, &
                  collocator => self%problem%collocator)
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
-         self%growth = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity)
-         self%excess = self%motion_error()/(panel_share*self%accuracy)
+         self%growth = self%motion_error()
+         self%excess = self%growth/(panel_share*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          force_error = max(0.0_wp, min(self%growth_of(panel%force, coarse%force), self%doubt) &
             - rounding_of_force*self%largest_force)
@@ -398,15 +398,13 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: left, sphere_error, cor_error
+      real(wp) :: part, sphere_error, cor_error
 
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact)
-         left = share_of_difference(trajectory%steps)
-         sphere_error = self%largest_inner &
-            + left*abs(panel%impulse(n) - coarse%impulse(n - 1))/(impact%mass*impact%velocity)
-         cor_error = sphere_error &
-            + left*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
+         part = error_over_difference(self, trajectory%steps)
+         sphere_error = self%largest_inner + impulse_error(self, part)/(impact%mass*impact%velocity)
+         cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
       end associate
       call self%problem%advance(self%problem%collocator%rule, self%step, self%panel, self%start)
       call follow_rebound(self%course_t, approach, trajectory, error)
@@ -427,16 +425,14 @@ contains
       !> Error of that of the sphere alone [-]
       real(wp), intent(out) :: cor_sphere_error
 
-      real(wp) :: impulse_error, time_error, alpha_rate, fall, moved, plate, least, part
+      real(wp) :: impulse, time, alpha_rate, fall, moved, plate, least, part
 
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact, rule => self%problem%collocator%rule)
-         impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
-         ! what this panel adds may cancel what the companion owes to the panels before
-         if (self%branches) impulse_error = max(impulse_error, abs((panel%impulse(n) &
-            - panel%impulse(0)) - (coarse%impulse(n - 1) - coarse%impulse(0))))
+         part = error_over_difference(self, panels)
+         impulse = impulse_error(self, part)
          fall = slope_at_end(rule, panel, panel%force)
-         time_error = abs((panel%force(n) - coarse%force(n - 1))/fall)
+         time = part*abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
          ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
          ! of the velocity of the plate
@@ -445,18 +441,50 @@ contains
             - panel%indentation(n)
          least = rounding_per_panel*real(panels, wp) &
             + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
-         ! where alpha' of a frozen plate is infinite at first contact, neither solution is better
-         part = merge(1.0_wp, share_of_difference(panels), &
-            self%branches .or. impact%plate%frozen())/impact%velocity
-         cor_sphere_error = least + part*impulse_error/impact%mass
+         cor_sphere_error = least + impulse/(impact%mass*impact%velocity)
          cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
-            *(moved/panel%time(n))**2 + part*(impulse_error*alpha_rate &
-            + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            *(moved/panel%time(n))**2 + (impulse*alpha_rate &
+            + time*(alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
-            + abs(panel%drift(n) - coarse%drift(n - 1)))
+            + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
       end associate
-      cor_error = max(share_of_growth*self%largest_growth, cor_error)
-      cor_sphere_error = max(share_of_growth*self%largest_growth, cor_sphere_error)
    end subroutine estimate_errors
+
+   !> Error of the impulse. What the panels add to the difference to the companion may cancel, which
+   !> says nothing about the solution: what one of them has added to that of the motion counts, too
+   pure function impulse_error(self, part) result(error)
+      !> The contact, its panel accepted
+      type(contact_t), intent(in) :: self
+      !> Error of the solution over its difference to the companion
+      real(wp), intent(in) :: part
+      !> Error [N s]
+      real(wp) :: error
+
+      associate (n => self%panel%stages, impact => self%problem%impact)
+         error = max(part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)), &
+            min(solution_share*self%largest_growth, harmless*self%accuracy) &
+            *impact%mass*impact%velocity)
+         ! next to a branch point the panel before the end is no better
+         if (self%branches) error = max(error, self%growth*impact%mass*impact%velocity)
+      end associate
+   end function impulse_error
+
+   !> Error of the solution over its difference to the companion. The difference is the error of the
+   !> companion: that of the solution is less, where the solution is smooth by orders, where it is
+   !> not by a factor of some size. With few panels it is anybody's guess; next to the branch point
+   !> of u and where alpha' of a frozen plate is infinite at first contact neither is better
+   pure function error_over_difference(self, panels) result(part)
+      !> The contact
+      type(contact_t), intent(in) :: self
+      !> Number of panels
+      integer, intent(in) :: panels
+      !> Part
+      real(wp) :: part
+
+      associate (problem => self%problem)
+         part = merge(1.0_wp, solution_share, panels <= few_panels .or. self%branches &
+            .or. problem%impact%plate%frozen() .and. problem%modes%contact%error > 0.0_wp)
+      end associate
+   end function error_over_difference
 
 end module vcor_solver_ive_contact

@@ -6,12 +6,12 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_ive_tuning, only : best_time, few_panels, longest_growth, solution_share, &
-      time_share, time_share_continuous, time_share_power, time_share_receding, usual_accuracy
+   use vcor_solver_ive_tuning, only : best_time, longest_growth, time_share, &
+      time_share_continuous, time_share_power, time_share_receding, usual_accuracy
    implicit none
    private
 
-   public :: course_t, share, share_of_difference
+   public :: course_t, share
 
    !> Where the course has come to
    type :: course_t
@@ -125,17 +125,5 @@ contains
       if (actual > 0.0_wp) share = immense
       if (actual < immense*allowed) share = actual/allowed
    end function share
-
-   !> Error of the solution over its difference to the companion. The difference is the error of the
-   !> companion: that of the solution is less, where the solution is smooth by orders, where it is
-   !> not by a factor of some size; with few panels it is anybody's guess
-   pure function share_of_difference(panels) result(share)
-      !> Number of panels
-      integer, intent(in) :: panels
-      !> Share
-      real(wp) :: share
-
-      share = merge(1.0_wp, solution_share, panels <= few_panels)
-   end function share_of_difference
 
 end module vcor_solver_ive_course

@@ -141,9 +141,9 @@ module vcor_solver_ive_tuning
    !> Error of the solution over its difference to the companion, but with few panels
    real(wp), parameter :: solution_share = 0.3_wp ! tested
    integer, parameter :: few_panels = 2 ! guard
-   !> What the two differ by at the end of a panel may cancel in the next ones: of the largest
-   !> difference that much is left
-   real(wp), parameter :: share_of_growth = 0.03_wp ! tested
+   !> What one panel adds to the difference may cancel in the next ones: it counts, but only up to
+   !> this share of the accuracy, below which an estimate that is too large misleads nobody
+   real(wp), parameter :: harmless = 0.1_wp ! tested
    !> What rounding may add per panel, mostly through the eigenvectors of the integration matrices
    real(wp), parameter :: rounding_per_panel = 5.0e-13_wp ! tested
 
