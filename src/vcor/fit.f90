@@ -23,7 +23,6 @@ contains
 
    !> Names of the parameters of a model that can be given, separated by blanks
    pure function fixable_parameters(model) result(names)
-      !> Name of the model
       character(len=*), intent(in) :: model
       !> The names
       character(len=:), allocatable :: names
@@ -40,7 +39,6 @@ contains
 
    !> Fit a model to samples
    subroutine fit_material(fit, model, terms, fixed, samples, error)
-      !> The fit
       type(fit_t), intent(out) :: fit
       !> One of `identifiable_models`
       character(len=*), intent(in) :: model
@@ -48,7 +46,6 @@ contains
       integer, intent(in) :: terms
       !> Parameters that have a given value, each one of `fixable_parameters`, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Error of code `error_input` if the data cannot be fitted, of code `error_numerical` if the
       !> fit fails; unallocated on success
@@ -89,7 +86,6 @@ contains
    pure function falls(samples) result(yes)
       !> The samples, two or more
       type(samples_t), intent(in) :: samples
-      !> True if it does
       logical :: yes
 
       real(wp) :: x(size(samples%at))

@@ -34,7 +34,6 @@ contains
 
    !> Fit a model to samples
    subroutine fit_law(fit, model, fixed, samples, error)
-      !> The fit
       type(fit_t), intent(out) :: fit
       !> Name of the model, one of those with parameters
       character(len=*), intent(in) :: model
@@ -79,7 +78,7 @@ contains
       end if
 
       problem%parameters(problem%free)%value = exp(solution)
-      fit%data = described(model, problem%parameters)
+      fit%data = described(problem, problem%parameters%value)
       fit%parameters = problem%parameters
       call new_material(material, fit%data, error)
       if (allocated(error)) return
@@ -100,7 +99,6 @@ contains
       type(law_problem_t), intent(inout) :: problem
       !> Solution
       real(wp), allocatable, intent(inout) :: x(:)
-      !> Residuals
       real(wp), intent(inout) :: r(:)
       !> Whether it is a solution
       logical, intent(inout) :: converged
@@ -274,7 +272,6 @@ contains
    subroutine descend(problem, start, squares, enough)
       !> The problem, which gets the values of a fit that is good enough
       type(law_problem_t), intent(inout) :: problem
-      !> Unknowns
       real(wp), intent(in) :: start(:)
       !> Least sum of squares so far
       real(wp), intent(inout) :: squares

@@ -47,7 +47,6 @@ module vcor_fit_law_problem
    type, extends(least_squares_t) :: law_problem_t
       !> Name of the model
       character(len=:), allocatable :: model
-      !> The samples
       type(samples_t) :: samples
       !> What the model states of its parameters, shape (parameters)
       type(parameter_t), allocatable :: stated(:)
@@ -69,7 +68,6 @@ contains
 
    !> What a model states of the numbers that a fit finds
    pure function stated_parameters(model) result(stated)
-      !> Name of the model
       character(len=*), intent(in) :: model
       !> Its parameters that are fitted, but for lists
       type(parameter_t), allocatable :: stated(:)
@@ -82,13 +80,10 @@ contains
 
    !> Make the problem of a model
    subroutine new_law_problem(self, model, fixed, samples)
-      !> The problem
       type(law_problem_t), intent(out) :: self
-      !> Name of the model
       character(len=*), intent(in) :: model
       !> Parameters that have a given value, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
-      !> The samples
       type(samples_t), intent(in) :: samples
 
       integer :: i
@@ -115,7 +110,6 @@ contains
 
    !> Note which parameters are free, and set their bounds
    subroutine set_free(problem)
-      !> The problem
       type(law_problem_t), intent(inout) :: problem
 
       real(wp) :: shortest, longest, softest, hardest
@@ -131,50 +125,39 @@ contains
       hardest = maxval(problem%samples%modulus)*widest_modulus
       do i = 1, size(problem%free)
          k = problem%free(i)
-         associate (lower => problem%lower(i), upper => problem%upper(i))
-            select case (problem%stated(k)%unit)
-            case ('Pa')
+         associate (lower => problem%lower(i), upper => problem%upper(i), &
+                    power => power_of_time(problem%stated(k)%unit))
+            if (abs(power) > 0.0_wp) then
+               lower = min(power*log(shortest), power*log(longest))
+               upper = max(power*log(shortest), power*log(longest))
+            else if (problem%stated(k)%unit == 'Pa') then
                lower = log(softest)
                upper = log(hardest)
-            case ('Pa s^a')
+            else if (problem%stated(k)%unit == 'Pa s^a') then
                ! C t^-a may have any C where a is any
                lower = log(softest) + min(0.0_wp, log(shortest))
                upper = log(hardest) + max(0.0_wp, log(longest))
-            case ('s')
-               lower = log(shortest)
-               upper = log(longest)
-            case ('1/s')
-               lower = -log(longest)
-               upper = -log(shortest)
-            case ('s^-1/2')
-               lower = -0.5_wp*log(longest)
-               upper = -0.5_wp*log(shortest)
-            case default
+            else
                lower = log(least_exponent)
                upper = log(most_exponent)
-            end select
+            end if
             if (problem%unit(k) > 0.0_wp) lower = log(0.01_wp*nothing*problem%unit(k))
          end associate
       end do
    end subroutine set_free
 
-   !> Value of a time, a rate or the root of a rate, by its unit
-   pure function value_of_time(unit, time) result(value)
-      !> s, 1/s or s^-1/2
+   !> Power of the time that a time, a rate or the root of a rate is, by its unit; 0 for others
+   elemental function power_of_time(unit) result(power)
       character(len=*), intent(in) :: unit
-      !> Time [s]
-      real(wp), intent(in) :: time
-      !> Value, in the unit
-      real(wp) :: value
+      real(wp) :: power
 
-      value = time
-      if (unit /= 's') value = 1.0_wp/time
-      if (unit == 's^-1/2') value = sqrt(value)
-   end function value_of_time
+      power = merge(1.0_wp, 0.0_wp, unit == 's')
+      if (unit == '1/s') power = -1.0_wp
+      if (unit == 's^-1/2') power = -0.5_wp
+   end function power_of_time
 
    !> Make what has come to its bound free again, and the bounds wider
    subroutine release(problem)
-      !> The problem
       type(law_problem_t), intent(inout) :: problem
 
       where (problem%parameters%state == state_bound) problem%parameters%state = state_free
@@ -184,7 +167,6 @@ contains
 
    !> Unknowns of the values of the parameters, within the bounds
    pure function unknowns_of(problem) result(x)
-      !> The problem
       type(law_problem_t), intent(in) :: problem
       !> Logarithms of the free parameters
       real(wp) :: x(size(problem%free))
@@ -193,73 +175,64 @@ contains
       x = max(problem%lower, min(problem%upper, x))
    end function unknowns_of
 
-   !> A model with parameters as the description of a material
-   pure function described(model, parameters) result(data)
-      !> Name of the model
-      character(len=*), intent(in) :: model
-      !> Its parameters
-      type(estimate_t), intent(in) :: parameters(:)
-      !> The description
+   !> The material of given parameters
+   pure function described(problem, values) result(data)
+      class(law_problem_t), intent(in) :: problem
+      !> Values of all parameters
+      real(wp), intent(in) :: values(:)
       type(material_data_t) :: data
 
       integer :: i
 
-      data%name = model
-      data%model = model
-      do i = 1, size(parameters)
-         call data%set(trim(parameters(i)%name), parameters(i)%value)
+      data%name = problem%model
+      data%model = problem%model
+      do i = 1, size(values)
+         call data%set(trim(problem%parameters(i)%name), values(i))
       end do
       ! the rubbery modulus does not exceed the glassy one
-      if (model == 'sls') call data%set('alpha', min(data%number('alpha'), data%number('beta')))
+      if (problem%model == 'sls') &
+         call data%set('alpha', min(data%number('alpha'), data%number('beta')))
    end function described
 
    !> Residuals: logarithms of model over data
    subroutine residuals(self, x, r)
-      !> The problem
       class(law_problem_t), intent(in) :: self
       !> Logarithms of the free parameters
       real(wp), intent(in) :: x(:)
-      !> Residuals
       real(wp), intent(out) :: r(:)
 
-      type(estimate_t) :: parameters(size(self%parameters))
+      real(wp) :: values(size(self%parameters))
 
-      parameters = self%parameters
-      parameters(self%free)%value = exp(x)
-      r = misfit(self%model, parameters, self%samples)
+      values = self%parameters%value
+      values(self%free) = exp(x)
+      r = misfit(self, values)
    end subroutine residuals
 
    !> Logarithms of model over data
-   function misfit(model, parameters, samples) result(r)
-      !> Name of the model
-      character(len=*), intent(in) :: model
-      !> Its parameters
-      type(estimate_t), intent(in) :: parameters(:)
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Logarithms
-      real(wp) :: r(samples%count())
+   function misfit(problem, values) result(r)
+      class(law_problem_t), intent(in) :: problem
+      !> Values of all parameters
+      real(wp), intent(in) :: values(:)
+      real(wp) :: r(problem%samples%count())
 
       !> What stands for a model that is nothing there
       real(wp), parameter :: far_off = 1.0e3_wp
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
 
-      call new_material(material, described(model, parameters), error)
+      call new_material(material, described(problem, values), error)
       if (allocated(error)) then
          r = far_off
       else
-         r = log(max(moduli_of(material, samples), tiny(1.0_wp))/samples%all())
+         r = log(max(moduli_of(material, problem%samples), tiny(1.0_wp))/problem%samples%all())
       end if
    end function misfit
 
    !> Derivatives of the residuals, by central differences
    subroutine jacobian(self, x, j)
-      !> The problem
       class(law_problem_t), intent(in) :: self
       !> Logarithms of the free parameters
       real(wp), intent(in) :: x(:)
-      !> Derivatives
       real(wp), intent(out) :: j(:, :)
 
       real(wp) :: up(size(x)), down(size(x)), r(size(j, 1))
@@ -278,7 +251,6 @@ contains
 
    !> Starts of the iteration: the minima of a scan of all shapes, the lowest ones first
    subroutine find_starts(problem, starts)
-      !> The problem
       type(law_problem_t), intent(in) :: problem
       !> Values of all parameters, shape (parameters, starts)
       real(wp), allocatable, intent(out) :: starts(:, :)
@@ -287,8 +259,7 @@ contains
       logical, allocatable :: lowest(:, :)
       integer :: i, k, place(2)
 
-      allocate (times, source=times_of_scan(problem))
-      allocate (powers, source=powers_of_scan(problem))
+      call get_scan(problem, times, powers)
       allocate (cost(0:size(times) + 1, 0:size(powers) + 1), source=huge(1.0_wp))
       allocate (values(size(problem%parameters), size(times), size(powers)))
       do k = 1, size(powers)
@@ -313,69 +284,55 @@ contains
 
    !> Whether a parameter is the time of the shape, as a time or a rate
    elemental function is_time(parameter) result(yes)
-      !> The parameter
       type(parameter_t), intent(in) :: parameter
-      !> Whether it is
       logical :: yes
 
-      yes = parameter%scale /= linear .and. any(parameter%unit == ['s     ', '1/s   ', 's^-1/2'])
+      yes = parameter%scale /= linear .and. abs(power_of_time(parameter%unit)) > 0.0_wp
    end function is_time
 
    !> Whether the shape of a model is a time and an exponent
    pure function has_two_shapes(problem) result(yes)
-      !> The problem
       type(law_problem_t), intent(in) :: problem
-      !> Whether it is
       logical :: yes
 
       yes = any(is_time(problem%stated)) .and. any(problem%stated%unit == '')
    end function has_two_shapes
 
-   !> Times of the scan; a time that is given, or that the model does not have, is the only one
-   pure function times_of_scan(problem) result(times)
-      !> The problem
+   !> Times and exponents of the scan; one that is given, or that the model does not have, is the
+   !> only one
+   pure subroutine get_scan(problem, times, powers)
       type(law_problem_t), intent(in) :: problem
       !> Times [s]
-      real(wp), allocatable :: times(:)
+      real(wp), allocatable, intent(out) :: times(:)
+      !> Exponents [-]
+      real(wp), allocatable, intent(out) :: powers(:)
 
       real(wp) :: first, last
-      integer :: i, n
+      integer :: i, k, n
 
+      times = [1.0_wp]
+      powers = [1.0_wp]
       first = problem%samples%first_time()/beyond
       last = problem%samples%last_time()*beyond
       n = 1 + ceiling(per_decade*log10(last/first))
-      times = first*(last/first)**([(real(i, wp), i=0, n - 1)]/real(n - 1, wp))
-      if (.not. any(is_time(problem%stated))) times = [1.0_wp]
       do i = 1, size(problem%parameters)
-         associate (parameter => problem%parameters(i))
-            if (parameter%state /= state_fixed .or. .not. is_time(problem%stated(i))) cycle
-            times = [parameter%value]
-            if (parameter%unit /= 's') times = 1.0_wp/times
-            if (parameter%unit == 's^-1/2') times = times**2
+         associate (parameter => problem%parameters(i), is_fixed => problem%parameters(i)%state &
+                    == state_fixed)
+            if (problem%stated(i)%unit == '') then
+               powers = exponents
+               if (is_fixed) powers = [parameter%value]
+            else if (is_time(problem%stated(i))) then
+               times = first*(last/first)**([(real(k, wp), k=0, n - 1)]/real(n - 1, wp))
+               if (is_fixed) times = [parameter%value]
+               if (is_fixed .and. parameter%unit /= 's') times = 1.0_wp/times
+               if (is_fixed .and. parameter%unit == 's^-1/2') times = times**2
+            end if
          end associate
       end do
-   end function times_of_scan
-
-   !> Exponents of the scan; one that is given, or that the model does not have, is the only one
-   pure function powers_of_scan(problem) result(powers)
-      !> The problem
-      type(law_problem_t), intent(in) :: problem
-      !> Exponents
-      real(wp), allocatable :: powers(:)
-
-      integer :: i
-
-      powers = [1.0_wp]
-      do i = 1, size(problem%parameters)
-         if (problem%stated(i)%unit /= '') cycle
-         powers = exponents
-         if (problem%parameters(i)%state == state_fixed) powers = [problem%parameters(i)%value]
-      end do
-   end function powers_of_scan
+   end subroutine get_scan
 
    !> The best moduli for one shape, and what is left then
    subroutine scan_shape(problem, time, power, values, cost)
-      !> The problem
       type(law_problem_t), intent(in) :: problem
       !> Time of the shape [s]
       real(wp), intent(in) :: time
@@ -388,79 +345,56 @@ contains
 
       !> Part of the data that a modulus which is not needed starts from
       real(wp), parameter :: little = 1.0e-3_wp
-      type(estimate_t) :: parameters(size(values))
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
       real(wp) :: a(problem%samples%count(), 2), b(problem%samples%count()), modulus(2)
+      real(wp) :: shape(size(values))
       integer :: i
 
       cost = huge(cost)
+      do i = 1, size(values)
+         associate (stated => problem%stated(i))
+            shape(i) = merge(power, 1.0_wp, stated%unit == '')
+            if (stated%scale == linear) shape(i) = 0.0_wp
+            if (.not. is_time(stated)) cycle
+            shape(i) = time
+            if (stated%unit /= 's') shape(i) = 1.0_wp/time
+            if (stated%unit == 's^-1/2') shape(i) = sqrt(shape(i))
+         end associate
+      end do
       values = 0.0_wp
-      call new_material(material, unit_shape(problem, time, power), error)
+      call new_material(material, described(problem, shape), error)
       if (allocated(error)) return
       a(:, 2) = moduli_of(material, problem%samples)/problem%samples%all()
       a(:, 1) = 0.0_wp
       a(:size(problem%samples%modulus), 1) = 1.0_wp/problem%samples%modulus
       b = 1.0_wp
-      parameters = problem%parameters
-      if (problem%model == 'sls') then
-         call solve_nnls(a, b, modulus)
-      else
-         do i = 1, 2
-            if (parameters(i)%state /= state_fixed) cycle
-            b = b - parameters(i)%value*a(:, i)
-            a(:, i) = 0.0_wp
-         end do
-         call solve_nnls(a, b, modulus)
-      end if
+      ! those of sls are sum and quotient of parameters
+      do i = 1, 2
+         if (problem%model == 'sls' .or. problem%parameters(i)%state /= state_fixed) cycle
+         b = b - problem%parameters(i)%value*a(:, i)
+         a(:, i) = 0.0_wp
+      end do
+      call solve_nnls(a, b, modulus)
       modulus = max(modulus, little*minval(problem%samples%modulus))
 
-      do i = 1, size(parameters)
-         if (parameters(i)%state == state_fixed) cycle
-         select case (parameters(i)%name)
+      values = shape
+      do i = 1, size(values)
+         select case (problem%parameters(i)%name)
          case ('equilibrium_modulus')
-            parameters(i)%value = modulus(1)
+            values(i) = modulus(1)
          case ('relaxing_modulus', 'coefficient')
-            parameters(i)%value = modulus(2)
+            values(i) = modulus(2)
          case ('glassy_modulus')
-            parameters(i)%value = sum(modulus)
+            values(i) = sum(modulus)
          case ('alpha')
-            parameters(i)%value = modulus(1)/sum(modulus)/time
+            values(i) = modulus(1)/sum(modulus)/time
          case default
-            parameters(i)%value = power
-            if (is_time(problem%stated(i))) &
-               parameters(i)%value = value_of_time(problem%stated(i)%unit, time)
+            continue
          end select
       end do
-      values = parameters%value
-      cost = sum(misfit(problem%model, parameters, problem%samples)**2)
+      where (problem%parameters%state == state_fixed) values = problem%parameters%value
+      cost = sum(misfit(problem, values)**2)
    end subroutine scan_shape
-
-   !> The shape of a model, without equilibrium modulus and with a relaxing modulus of 1 Pa
-   pure function unit_shape(problem, time, power) result(data)
-      !> The problem
-      type(law_problem_t), intent(in) :: problem
-      !> Time [s]
-      real(wp), intent(in) :: time
-      !> Exponent
-      real(wp), intent(in) :: power
-      !> Description
-      type(material_data_t) :: data
-
-      integer :: i
-
-      data%name = problem%model
-      data%model = problem%model
-      do i = 1, size(problem%stated)
-         associate (stated => problem%stated(i))
-            if (stated%scale == linear) cycle
-            if (is_time(stated)) then
-               call data%set(trim(stated%name), value_of_time(stated%unit, time))
-            else
-               call data%set(trim(stated%name), merge(power, 1.0_wp, stated%unit == ''))
-            end if
-         end associate
-      end do
-   end function unit_shape
 
 end module vcor_fit_law_problem

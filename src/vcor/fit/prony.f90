@@ -13,11 +13,11 @@ module vcor_fit_prony
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material, only : material_t, new_material
-   use vcor_fit_prony_problem, only : fastest_rate, new_series_problem, refine, series_t, &
-      series_problem_t, slowest_rate, solve_moduli
    use vcor_fit_result, only : estimate_t, fit_t, judge, mark_ends, set_errors, state_bound, &
       state_fixed
    use vcor_fit_samples, only : samples_t
+   use vcor_fit_series, only : fastest_rate, new_series, refine, series_t, set_bounds, &
+      slowest_rate, solve_moduli, unknowns_of
    implicit none
    private
 
@@ -56,14 +56,12 @@ module vcor_fit_prony
 contains
 
    !> Fit a Prony series
-   subroutine fit_prony(fit, terms, fixed, samples, error)
-      !> The fit
+   subroutine fit_prony(fit, terms, given, samples, error)
       type(fit_t), intent(out) :: fit
       !> Number of terms; 0: as many as the data support
       integer, intent(in) :: terms
       !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
-      !> The samples
+      real(wp), intent(in) :: given
       type(samples_t), intent(in) :: samples
       !> Error of code `error_numerical` if there is no solution, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -71,19 +69,19 @@ contains
       type(series_t) :: series, spectrum
       integer :: n
 
-      call find_spectrum(spectrum, samples, fixed)
+      call find_spectrum(spectrum, samples, given)
       if (terms > 0) then
-         call fit_terms(series, terms, spectrum, samples, fixed, last_patience)
+         call fit_terms(series, terms, spectrum, last_patience)
       else
-         call search(series, spectrum, samples, fixed)
-         call shorten(series, spectrum, samples, fixed)
+         call search(series, spectrum)
+         call shorten(series, spectrum)
       end if
       n = size(series%rates)
       do
-         call refine(series, samples, fixed, fine, last_patience)
-         if (terms == 0) call prune(series, samples, fixed)
+         call refine(series, fine, last_patience)
+         if (terms == 0) call prune(series)
          if (series%converged) then
-            call conclude(fit, series, fixed, samples, error)
+            call conclude(fit, series, error)
          else
             call raise(error, error_numerical, 'the fit of a Prony series does not converge: ' &
                //'give another number of terms with --terms')
@@ -92,75 +90,59 @@ contains
          if (.not. allocated(error) .or. terms > 0 .or. n == 1) exit
          n = n - 1
          spectrum = series
-         call fit_terms(series, n, spectrum, samples, fixed, last_patience)
+         call fit_terms(series, n, spectrum, last_patience)
       end do
    end subroutine fit_prony
 
    !> Take terms away as long as the series stays good enough: the search has looked at iterations
    !> that were cut short
-   subroutine shorten(series, spectrum, samples, fixed)
-      !> The series
+   subroutine shorten(series, spectrum)
       type(series_t), intent(inout) :: series
-      !> The spectrum
       type(series_t), intent(in) :: spectrum
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
 
       type(series_t) :: trial
 
       do while (is_good(series) .and. size(series%rates) > 1)
-         call fit_terms(trial, size(series%rates) - 1, spectrum, samples, fixed, last_patience, &
-            series)
-         call refine(trial, samples, fixed, fine, last_patience)
+         call fit_terms(trial, size(series%rates) - 1, spectrum, last_patience, series)
+         call refine(trial, fine, last_patience)
          if (.not. is_good(trial)) exit
          ! data that are this series
-         if (norm2(series%residuals) < completes*norm2(trial%residuals)) exit
+         if (norm2(series%misfits) < completes*norm2(trial%misfits)) exit
          series = trial
       end do
    end subroutine shorten
 
    !> Drop terms that the refinement has made next to nothing
-   subroutine prune(series, samples, fixed)
-      !> The series
+   subroutine prune(series)
       type(series_t), intent(inout) :: series
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
 
       logical :: needed(size(series%rates))
 
-      needed = series%moduli > nothing*minval(samples%modulus)
+      needed = series%moduli > nothing*minval(series%samples%modulus)
       if (all(needed) .or. .not. any(needed)) return
       series%rates = pack(series%rates, needed)
       series%moduli = pack(series%moduli, needed)
-      call refine(series, samples, fixed, fine, last_patience)
+      call refine(series, fine, last_patience)
    end subroutine prune
 
    !> The spectrum on a grid, neighbours merged
-   subroutine find_spectrum(spectrum, samples, fixed)
-      !> The spectrum as a series
+   subroutine find_spectrum(spectrum, samples, given)
       type(series_t), intent(out) :: spectrum
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
+      real(wp), intent(in) :: given
 
-      real(wp), allocatable :: rates(:), moduli(:)
       real(wp) :: width
       integer :: i, n
 
+      spectrum = new_series(samples, given)
       associate (first => slowest_rate(samples), last => fastest_rate(samples))
          n = 1 + ceiling((last - first)/log(10.0_wp)*per_decade)
          width = (last - first)/real(n - 1, wp)
-         rates = first + width*[(real(i, wp), i=0, n - 1)]
+         call solve_moduli(spectrum, first + width*[(real(i, wp), i=0, n - 1)])
       end associate
-      allocate (moduli(n))
-      call solve_moduli(samples, fixed, rates, spectrum%equilibrium, moduli)
-      spectrum%rates = pack(rates, moduli > 0.0_wp)
-      spectrum%moduli = pack(moduli, moduli > 0.0_wp)
+      spectrum%rates = pack(spectrum%rates, spectrum%moduli > 0.0_wp)
+      spectrum%moduli = pack(spectrum%moduli, spectrum%moduli > 0.0_wp)
       do while (size(spectrum%rates) > 1)
          n = closest(spectrum%rates)
          if (spectrum%rates(n + 1) - spectrum%rates(n) > 1.5_wp*width) exit
@@ -172,7 +154,6 @@ contains
    pure function closest(rates) result(n)
       !> Logarithms of rates, increasing
       real(wp), intent(in) :: rates(:)
-      !> Its number
       integer :: n
 
       n = minloc(rates(2:) - rates(:size(rates) - 1), dim=1)
@@ -180,7 +161,6 @@ contains
 
    !> Make one term of two neighbours
    pure subroutine merge_terms(series, n)
-      !> The series
       type(series_t), intent(inout) :: series
       !> Number of the first of the two
       integer, intent(in) :: n
@@ -194,17 +174,11 @@ contains
    end subroutine merge_terms
 
    !> Fit a number of terms, from both starts
-   subroutine fit_terms(series, terms, spectrum, samples, fixed, most, guide)
+   subroutine fit_terms(series, terms, spectrum, most, guide)
       !> The better series
       type(series_t), intent(out) :: series
-      !> Number of terms
       integer, intent(in) :: terms
-      !> The spectrum
       type(series_t), intent(in) :: spectrum
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
       !> Most evaluations
       integer, intent(in) :: most
       !> A series of another number of terms, whose rates are a better start than equal steps
@@ -213,30 +187,32 @@ contains
       type(series_t) :: other
       integer :: i
 
-      ! equal steps over the band of the data and a little more, half a step from the ends
-      associate (first => log(1.0_wp/(around*samples%last_time())), &
-         last => log(around/samples%first_time()))
-         series%rates = first + (last - first)*[(real(2*i - 1, wp), i=1, terms)]/real(2*terms, wp)
-      end associate
-      if (present(guide)) series%rates = spread_rates(guide%rates, terms)
-      call start_from_rates(series, samples, fixed)
-      call refine(series, samples, fixed, coarse, most)
+      series = new_series(spectrum%samples, spectrum%given)
+      if (present(guide)) then
+         call start_from(series, spread_rates(guide%rates, terms))
+      else
+         ! equal steps over the band of the data and a little more, half a step from the ends
+         associate (first => log(1.0_wp/(around*series%samples%last_time())), &
+            last => log(around/series%samples%first_time()))
+            call start_from(series, first + (last - first)*[(real(2*i - 1, wp), i=1, terms)] &
+               /real(2*terms, wp))
+         end associate
+      end if
+      call refine(series, coarse, most)
       if (size(spectrum%rates) < terms) return
-      other%rates = spectrum%rates
-      other%moduli = spectrum%moduli
+      other = spectrum
       do while (size(other%rates) > terms)
          call merge_terms(other, closest(other%rates))
       end do
-      call start_from_rates(other, samples, fixed)
-      call refine(other, samples, fixed, coarse, most)
-      if (norm2(other%residuals) < norm2(series%residuals)) series = other
+      call start_from(other, (other%rates))
+      call refine(other, coarse, most)
+      if (norm2(other%misfits) < norm2(series%misfits)) series = other
    end subroutine fit_terms
 
    !> Rates of another number of terms with the same distribution
    pure function spread_rates(rates, terms) result(others)
       !> Logarithms of rates, increasing, shape (n), n >= 2
       real(wp), intent(in) :: rates(:)
-      !> Number of terms
       integer, intent(in) :: terms
       !> Logarithms of their rates, shape (terms)
       real(wp) :: others(terms)
@@ -252,40 +228,31 @@ contains
       end do
    end function spread_rates
 
-   !> Moduli for the rates of a series
-   subroutine start_from_rates(series, samples, fixed)
-      !> The series, its rates set
+   !> Make a series of rates a start of an iteration: no modulus is 0
+   subroutine start_from(series, rates)
       type(series_t), intent(inout) :: series
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
+      !> Logarithms of the rates
+      real(wp), intent(in) :: rates(:)
 
-      if (allocated(series%moduli)) deallocate (series%moduli)
-      allocate (series%moduli(size(series%rates)))
-      call solve_moduli(samples, fixed, series%rates, series%equilibrium, series%moduli)
+      call solve_moduli(series, rates)
       series%moduli = max(series%moduli, &
-         little*max(maxval(series%moduli), minval(samples%modulus)))
-   end subroutine start_from_rates
+         little*max(maxval(series%moduli), minval(series%samples%modulus)))
+   end subroutine start_from
 
    !> Search the number of terms: with growing steps as far as it pays, then with steps that halve
-   subroutine search(series, spectrum, samples, fixed)
-      !> The series
+   subroutine search(series, spectrum)
       type(series_t), intent(out) :: series
-      !> The spectrum
       type(series_t), intent(in) :: spectrum
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
 
       type(series_t) :: trial
       real(wp) :: best
       integer :: n, most, width, in_vain
       logical :: better
 
-      most = min(most_terms, (samples%count() - 2)/2, few_more &
-         + ceiling(terms_per_decade*log10(samples%last_time()/samples%first_time())))
+      associate (samples => spectrum%samples)
+         most = min(most_terms, (samples%count() - 2)/2, few_more &
+            + ceiling(terms_per_decade*log10(samples%last_time()/samples%first_time())))
+      end associate
       best = huge(best)
       in_vain = 0
       n = 1
@@ -310,14 +277,13 @@ contains
       end do
       ! data that are a series of one term more are told by what is left then
       if (size(series%rates) == most) return
-      call fit_terms(trial, size(series%rates) + 1, spectrum, samples, fixed, first_patience)
-      if (norm2(trial%residuals) < completes*norm2(series%residuals)) series = trial
+      call fit_terms(trial, size(series%rates) + 1, spectrum, first_patience)
+      if (norm2(trial%misfits) < completes*norm2(series%misfits)) series = trial
 
    contains
 
       !> Try a number of terms
       subroutine try(terms, better)
-         !> The number
          integer, intent(in) :: terms
          !> Whether it is the best so far
          logical, intent(out) :: better
@@ -330,18 +296,17 @@ contains
          guided = allocated(series%rates)
          if (guided) guided = size(series%rates) >= least_guide
          if (guided) then
-            call fit_terms(trial, terms, spectrum, samples, fixed, first_patience, series)
+            call fit_terms(trial, terms, spectrum, first_patience, series)
          else
-            call fit_terms(trial, terms, spectrum, samples, fixed, first_patience)
+            call fit_terms(trial, terms, spectrum, first_patience)
          end if
          ! nearly there, or a term less, or no closer than with fewer terms, which is a place on the
          ! way: worth a closer look, before longer ones are tried
-         look = maxval(abs(trial%residuals)) <= close*good_enough
+         look = maxval(abs(trial%misfits)) <= close*good_enough
          if (allocated(series%rates)) look = look .or. terms == size(series%rates) - 1 .or. &
             (terms > size(series%rates) &
-            .and. norm2(trial%residuals) > halfway*norm2(series%residuals))
-         if (look .and. .not. is_good(trial)) &
-            call refine(trial, samples, fixed, fine, last_patience)
+            .and. norm2(trial%misfits) > halfway*norm2(series%misfits))
+         if (look .and. .not. is_good(trial)) call refine(trial, fine, last_patience)
          value = criterion(trial)
          ! of those that are good enough the shortest
          if (is_good(trial)) value = -0.5_wp*huge(value)*(1.0_wp - 1.0e-3_wp*real(terms, wp))
@@ -354,86 +319,76 @@ contains
 
    !> Whether a series is as good as any data
    pure function is_good(series) result(yes)
-      !> The series
       type(series_t), intent(in) :: series
-      !> Whether it is
       logical :: yes
 
-      yes = maxval(abs(series%residuals)) <= good_enough
+      yes = maxval(abs(series%misfits)) <= good_enough
    end function is_good
 
    !> Bayesian information criterion
    pure function criterion(series) result(value)
-      !> The series
       type(series_t), intent(in) :: series
-      !> The criterion
       real(wp) :: value
 
       real(wp) :: m, p
 
-      m = real(size(series%residuals), wp)
+      m = real(size(series%misfits), wp)
       p = real(2*size(series%rates) + 1, wp)
-      value = m*log(max(sum(series%residuals**2)/m, epsilon(m)**2)) + p*log(m)
+      value = m*log(max(sum(series%misfits**2)/m, epsilon(m)**2)) + p*log(m)
    end function criterion
 
    !> Make the fit of a series: parameters, misfit, standard errors
-   subroutine conclude(fit, series, fixed, samples, error)
-      !> The fit
+   subroutine conclude(fit, found, error)
       type(fit_t), intent(out) :: fit
-      !> The series
-      type(series_t), intent(in) :: series
-      !> Equilibrium modulus [Pa]; negative: it was to be found
-      real(wp), intent(in) :: fixed
-      !> The samples
-      type(samples_t), intent(in) :: samples
+      type(series_t), intent(in) :: found
       !> Error of code `error_numerical` if the data do not determine the terms
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: touch = 1.0e-5_wp
-      type(series_problem_t) :: problem
+      type(series_t) :: series
       class(material_t), allocatable :: material
       integer, allocatable :: free(:)
       real(wp), allocatable :: x(:)
-      integer :: i, k, n
+      integer :: i, n
 
-      n = size(series%rates)
+      n = size(found%rates)
+      ! the fastest term first
+      series = found
+      series%moduli = found%moduli(n:1:-1)
+      series%rates = found%rates(n:1:-1)
       fit%data%name = 'prony'
       fit%data%model = 'prony'
       call fit%data%set('equilibrium_modulus', series%equilibrium)
-      call fit%data%set_list('moduli', series%moduli(n:1:-1))
-      call fit%data%set_list('rates', exp(series%rates(n:1:-1)))
+      call fit%data%set_list('moduli', series%moduli)
+      call fit%data%set_list('rates', exp(series%rates))
       allocate (fit%parameters(2*n + 1))
       fit%parameters(1) = estimate_t('equilibrium_modulus', 'Pa', series%equilibrium)
-      if (fixed >= 0.0_wp) then
+      if (series%given >= 0.0_wp) then
          fit%parameters(1)%state = state_fixed
       else if (.not. series%equilibrium > 0.0_wp) then
          fit%parameters(1)%state = state_bound
       end if
       do i = 1, n
-         k = n + 1 - i
-         fit%parameters(2*i) = estimate_t('moduli', 'Pa', series%moduli(k))
-         fit%parameters(2*i + 1) = estimate_t('times', 's', exp(-series%rates(k)))
+         fit%parameters(2*i) = estimate_t('moduli', 'Pa', series%moduli(i))
+         fit%parameters(2*i + 1) = estimate_t('times', 's', exp(-series%rates(i)))
       end do
 
       call new_material(material, fit%data, error)
       if (allocated(error)) return
-      call judge(fit, material, samples)
-      problem = new_series_problem(samples, n, series%equilibrium, fixed < 0.0_wp)
-      x = [log(series%moduli(n:1:-1)), series%rates(n:1:-1)]
+      call judge(fit, material, series%samples)
+      call set_bounds(series, series%given < 0.0_wp)
+      x = unknowns_of(series, nothing)
       free = [(2*i, i=1, n), (2*i + 1, i=1, n)]
-      if (problem%is_free) then
-         x = [log(max(series%equilibrium, nothing*minval(samples%modulus))), x]
-         free = [1, free]
-      end if
-      where (x < problem%lower + touch .or. x > problem%upper - touch) &
+      if (series%is_free) free = [1, free]
+      where (x < series%lower + touch .or. x > series%upper - touch) &
          fit%parameters(free)%state = state_bound
-      if (any(series%moduli <= nothing*minval(samples%modulus))) then
+      if (any(series%moduli <= nothing*minval(series%samples%modulus))) then
          call raise(error, error_numerical, 'the data do not support so many terms: take fewer, ' &
             //'or leave --terms out')
          return
       end if
-      call set_errors(fit, problem, x, series%residuals, free, size(samples%at), error)
-      if (.not. allocated(error)) call mark_ends(fit, material, samples)
+      call set_errors(fit, series, x, series%misfits, free, size(series%samples%at), error)
+      if (.not. allocated(error)) call mark_ends(fit, material, series%samples)
    end subroutine conclude
 
 end module vcor_fit_prony

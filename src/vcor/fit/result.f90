@@ -56,7 +56,6 @@ module vcor_fit_result
 
    !> A fit
    type :: fit_t
-      !> The material
       type(material_data_t) :: data
       !> Its parameters; moduli and times of a Prony series alternate, the fastest term first
       type(estimate_t), allocatable :: parameters(:)
@@ -80,11 +79,9 @@ contains
 
    !> Say how well a material agrees with samples
    pure subroutine judge(fit, material, samples)
-      !> The fit
       type(fit_t), intent(inout) :: fit
       !> Its material
       class(material_t), intent(in) :: material
-      !> The samples
       type(samples_t), intent(in) :: samples
 
       real(wp) :: misfit(samples%count())
@@ -106,7 +103,6 @@ contains
    subroutine set_errors(fit, problem, x, r, free, points, error)
       !> The fit, its values and states set
       type(fit_t), intent(inout) :: fit
-      !> The problem
       class(least_squares_t), intent(in) :: problem
       !> Its solution, logarithms of the parameters `free`; what is 0 has a small value, shape (n)
       real(wp), intent(in) :: x(:)
@@ -228,7 +224,6 @@ contains
       type(fit_t), intent(inout) :: fit
       !> Its material
       class(material_t), intent(in) :: material
-      !> The samples
       type(samples_t), intent(in) :: samples
 
       real(wp) :: early, late, error, time
@@ -272,7 +267,6 @@ contains
 
    !> Fall of the modulus over a decade, by its slope; 0 where it is flat
    function fall(material, time, dynamic, flat) result(change)
-      !> The material
       class(material_t), intent(in) :: material
       !> Time [s]
       real(wp), intent(in) :: time

@@ -36,9 +36,7 @@ contains
 
    !> Number of moduli, that of the residuals of a fit
    pure function count_moduli(self) result(n)
-      !> The samples
       class(samples_t), intent(in) :: self
-      !> The number
       integer :: n
 
       n = size(self%modulus) + size(self%loss)
@@ -46,7 +44,6 @@ contains
 
    !> Time from which on the samples say something: of frequencies the reciprocal of the largest
    pure function first_time(self) result(time)
-      !> The samples
       class(samples_t), intent(in) :: self
       !> Time [s]
       real(wp) :: time
@@ -57,7 +54,6 @@ contains
 
    !> Time up to which the samples say something: of frequencies the reciprocal of the smallest
    pure function last_time(self) result(time)
-      !> The samples
       class(samples_t), intent(in) :: self
       !> Time [s]
       real(wp) :: time
@@ -68,7 +64,6 @@ contains
 
    !> All moduli as one list: relaxation, or storage and then loss
    pure function all_moduli(self) result(moduli)
-      !> The samples
       class(samples_t), intent(in) :: self
       !> The moduli [Pa], shape (count)
       real(wp) :: moduli(size(self%modulus) + size(self%loss))
@@ -79,9 +74,7 @@ contains
 
    !> Moduli of a material where there are samples
    pure function moduli_of(material, samples) result(moduli)
-      !> The material
       class(material_t), intent(in) :: material
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Relaxation moduli, or storage and then loss moduli [Pa], shape (count)
       real(wp) :: moduli(samples%count())

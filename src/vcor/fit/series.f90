@@ -1,6 +1,6 @@
-!> A Prony series as a problem of least squares in the logarithms of its moduli and rates, which
-!> keeps all of them positive
-module vcor_fit_prony_problem
+!> A Prony series and how it misses samples: a problem of least squares in the logarithms of its
+!> moduli and rates, which keeps all of them positive
+module vcor_fit_series
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
    use vcor_numeric_least_squares, only : least_squares_t, minimise
@@ -8,8 +8,8 @@ module vcor_fit_prony_problem
    implicit none
    private
 
-   public :: series_t, series_problem_t, new_series_problem, response, solve_moduli, refine
-   public :: slowest_rate, fastest_rate
+   public :: series_t, new_series, set_bounds, unknowns_of, solve_moduli, refine, slowest_rate, &
+      fastest_rate
 
    !> Largest rate times the first time of the samples, smallest rate times the last one. A term
    !> beyond would be seen by one sample only: its modulus would be the noise of that sample times
@@ -26,8 +26,16 @@ module vcor_fit_prony_problem
    !> What stands for a modulus of 0, whose logarithm is taken
    real(wp), parameter :: least_modulus = 1.0e-200_wp
 
-   !> A series and how well it fits
-   type :: series_t
+   !> A series; the unknowns of the problem are the logarithms of the equilibrium modulus, if that
+   !> is free, of the moduli and of the rates
+   type, extends(least_squares_t) :: series_t
+      type(samples_t) :: samples
+      !> Their moduli as one list [Pa]
+      real(wp), allocatable :: data(:)
+      !> Equilibrium modulus that is given [Pa]; negative: it is to be found
+      real(wp) :: given = -1.0_wp
+      !> Whether the equilibrium modulus is an unknown
+      logical :: is_free = .false.
       !> Equilibrium modulus [Pa], >= 0
       real(wp) :: equilibrium = 0.0_wp
       !> Moduli of the terms [Pa], > 0, shape (n)
@@ -35,34 +43,31 @@ module vcor_fit_prony_problem
       !> Logarithms of their rates [ln 1/s], increasing, shape (n)
       real(wp), allocatable :: rates(:)
       !> Logarithms of model over data, shape (count)
-      real(wp), allocatable :: residuals(:)
+      real(wp), allocatable :: misfits(:)
       !> Whether the iteration has ended at a solution
       logical :: converged = .false.
-   end type series_t
-
-   !> The problem for MINPACK: the unknowns are the logarithms of the equilibrium modulus, if that
-   !> is free, of the moduli and of the rates
-   type, extends(least_squares_t) :: series_problem_t
-      !> The samples
-      type(samples_t) :: samples
-      !> Their moduli as one list [Pa]
-      real(wp), allocatable :: data(:)
-      !> Equilibrium modulus where it is not free [Pa]
-      real(wp) :: equilibrium = 0.0_wp
-      !> Whether it is
-      logical :: is_free = .false.
    contains
       procedure :: residuals
       procedure :: jacobian
-   end type series_problem_t
+   end type series_t
 
 contains
 
+   !> A series without terms
+   pure function new_series(samples, given) result(series)
+      type(samples_t), intent(in) :: samples
+      !> Equilibrium modulus [Pa]; negative: to be found
+      real(wp), intent(in) :: given
+      type(series_t) :: series
+
+      series%samples = samples
+      series%data = samples%all()
+      series%given = given
+   end function new_series
+
    !> Logarithm of the smallest rate of a term
    pure function slowest_rate(samples) result(rate)
-      !> The samples
       type(samples_t), intent(in) :: samples
-      !> The logarithm
       real(wp) :: rate
 
       rate = log(merge(slowest_seen, slowest, samples%dynamic)/samples%last_time())
@@ -70,9 +75,7 @@ contains
 
    !> Logarithm of the largest rate of a term
    pure function fastest_rate(samples) result(rate)
-      !> The samples
       type(samples_t), intent(in) :: samples
-      !> The logarithm
       real(wp) :: rate
 
       rate = log(merge(fastest_seen, fastest, samples%dynamic)/samples%first_time())
@@ -81,7 +84,6 @@ contains
    !> Moduli of a term of modulus 1 where there are samples: exp(-l t), or with x = omega/l
    !> x^2/(1 + x^2) and x/(1 + x^2)
    pure function response(samples, rate) result(moduli)
-      !> The samples
       type(samples_t), intent(in) :: samples
       !> Logarithm of the rate l
       real(wp), intent(in) :: rate
@@ -101,113 +103,105 @@ contains
       end if
    end function response
 
-   !> Moduli of terms with given rates, by non-negative least squares of the relative misfits
-   subroutine solve_moduli(samples, fixed, rates, equilibrium, moduli)
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
+   !> Set the rates of a series, and its moduli by non-negative least squares of the relative misfits
+   subroutine solve_moduli(series, rates)
+      !> The series; its moduli are >= 0 afterwards
+      type(series_t), intent(inout) :: series
       !> Logarithms of the rates, shape (n)
       real(wp), intent(in) :: rates(:)
-      !> Equilibrium modulus [Pa]
-      real(wp), intent(out) :: equilibrium
-      !> Moduli of the terms [Pa], >= 0, shape (n)
-      real(wp), intent(out) :: moduli(:)
 
-      real(wp) :: a(samples%count(), 0:size(rates)), b(samples%count()), x(0:size(rates))
+      real(wp) :: a(size(series%data), 0:size(rates)), b(size(series%data)), x(0:size(rates))
       integer :: k
 
-      associate (data => samples%all())
-         a(:, 0) = 0.0_wp
-         a(:size(samples%modulus), 0) = 1.0_wp/samples%modulus
-         do k = 1, size(rates)
-            a(:, k) = response(samples, rates(k))/data
-         end do
-      end associate
+      a(:, 0) = 0.0_wp
+      a(:size(series%samples%modulus), 0) = 1.0_wp/series%samples%modulus
+      do k = 1, size(rates)
+         a(:, k) = response(series%samples, rates(k))/series%data
+      end do
       b = 1.0_wp
-      if (fixed >= 0.0_wp) then
-         b = b - fixed*a(:, 0)
+      if (series%given >= 0.0_wp) then
+         b = b - series%given*a(:, 0)
          a(:, 0) = 0.0_wp
       end if
       call solve_nnls(a, b, x)
-      equilibrium = x(0)
-      if (fixed >= 0.0_wp) equilibrium = fixed
-      moduli = x(1:)
+      series%equilibrium = merge(series%given, x(0), series%given >= 0.0_wp)
+      series%rates = rates
+      series%moduli = x(1:)
    end subroutine solve_moduli
 
-   !> Make a problem of a number of terms
-   pure function new_series_problem(samples, terms, equilibrium, is_free) result(problem)
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Number of terms
-      integer, intent(in) :: terms
-      !> Equilibrium modulus [Pa]
-      real(wp), intent(in) :: equilibrium
-      !> Whether it is free
+   !> Set what is free, and the bounds of the unknowns
+   pure subroutine set_bounds(self, is_free)
+      class(series_t), intent(inout) :: self
+      !> Whether the equilibrium modulus is an unknown
       logical, intent(in) :: is_free
-      !> The problem
-      type(series_problem_t) :: problem
 
-      integer :: first
+      integer :: n, first
 
-      problem%samples = samples
-      problem%data = samples%all()
-      problem%equilibrium = equilibrium
-      problem%is_free = is_free
-      first = merge(1, 0, is_free) + terms + 1
-      allocate (problem%lower(first + terms - 1), problem%upper(first + terms - 1))
-      problem%lower = log(softest*minval(problem%data))
-      problem%upper = log(hardest*maxval(problem%data))
-      problem%lower(first:) = slowest_rate(samples)
-      problem%upper(first:) = fastest_rate(samples)
-   end function new_series_problem
+      self%is_free = is_free
+      n = size(self%rates)
+      first = merge(1, 0, is_free) + n + 1
+      if (allocated(self%lower)) deallocate (self%lower, self%upper)
+      allocate (self%lower(first + n - 1), source=log(softest*minval(self%data)))
+      allocate (self%upper(first + n - 1), source=log(hardest*maxval(self%data)))
+      self%lower(first:) = slowest_rate(self%samples)
+      self%upper(first:) = fastest_rate(self%samples)
+   end subroutine set_bounds
 
-   !> Refine a series: all moduli and rates at once
-   subroutine refine(series, samples, fixed, tolerance, most)
-      !> The series, on return ordered
+   !> The unknowns
+   pure function unknowns_of(series, least) result(x)
+      type(series_t), intent(in) :: series
+      !> Part of the smallest modulus that stands for an equilibrium modulus below it
+      real(wp), intent(in) :: least
+      real(wp), allocatable :: x(:)
+
+      x = [log(series%moduli), series%rates]
+      if (series%is_free) &
+         x = [log(max(series%equilibrium, least*minval(series%samples%modulus))), x]
+   end function unknowns_of
+
+   !> Refine a series: all moduli and rates at once, and put its terms in the order of their rates
+   subroutine refine(series, tolerance, most)
       type(series_t), intent(inout) :: series
-      !> The samples
-      type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
-      real(wp), intent(in) :: fixed
       !> Reduction of the sum of squares that counts as none
       real(wp), intent(in) :: tolerance
       !> Most evaluations
       integer, intent(in) :: most
 
-      type(series_problem_t) :: problem
-      real(wp), allocatable :: x(:)
-      integer :: n, first
-
-      n = size(series%rates)
-      if (.not. allocated(series%residuals)) allocate (series%residuals(samples%count()))
-      problem = new_series_problem(samples, n, series%equilibrium, &
-         fixed < 0.0_wp)
-      first = merge(1, 0, problem%is_free)
-      allocate (x(first + 2*n))
-      ! least squares for given rates may do without a modulus that the refinement needs
-      if (problem%is_free) x(1) = log(max(series%equilibrium, seed*minval(samples%modulus)))
-      x(first + 1:first + n) = log(series%moduli)
-      x(first + n + 1:) = series%rates
-      call minimise(problem, x, series%residuals, series%converged, tolerance, most)
-      if (problem%is_free) series%equilibrium = exp(x(1))
-      series%moduli = exp(x(first + 1:first + n))
-      series%rates = x(first + n + 1:)
-      call order(series)
-      if (.not. problem%is_free) return
-      if (series%equilibrium > nothing*minval(samples%modulus)) return
+      call iterate(series, series%given < 0.0_wp)
+      if (.not. series%is_free) return
+      if (series%equilibrium > nothing*minval(series%samples%modulus)) return
       series%equilibrium = 0.0_wp
-      problem = new_series_problem(samples, n, 0.0_wp, .false.)
-      x = [log(series%moduli), series%rates]
-      call minimise(problem, x, series%residuals, series%converged, tolerance, most)
-      series%moduli = exp(x(:n))
-      series%rates = x(n + 1:)
-      call order(series)
+      call iterate(series, .false.)
+
+   contains
+
+      !> Iterate with or without the equilibrium modulus as an unknown
+      subroutine iterate(series, is_free)
+         type(series_t), intent(inout) :: series
+         logical, intent(in) :: is_free
+
+         real(wp) :: r(size(series%data))
+         real(wp), allocatable :: x(:)
+         logical :: converged
+         integer :: n, first
+
+         call set_bounds(series, is_free)
+         n = size(series%rates)
+         first = merge(1, 0, is_free)
+         ! least squares for given rates may do without a modulus that the refinement needs
+         allocate (x, source=unknowns_of(series, seed))
+         call minimise(series, x, r, converged, tolerance, most)
+         if (is_free) series%equilibrium = exp(x(1))
+         series%moduli = exp(x(first + 1:first + n))
+         series%rates = x(first + n + 1:)
+         series%misfits = r
+         series%converged = converged
+         call order(series)
+      end subroutine iterate
    end subroutine refine
 
    !> Put the terms of a series in the order of their rates
    pure subroutine order(series)
-      !> The series
       type(series_t), intent(inout) :: series
 
       real(wp) :: rate, modulus
@@ -228,11 +222,8 @@ contains
 
    !> Residuals: logarithms of model over data
    subroutine residuals(self, x, r)
-      !> The problem
-      class(series_problem_t), intent(in) :: self
-      !> Unknowns
+      class(series_t), intent(in) :: self
       real(wp), intent(in) :: x(:)
-      !> Residuals
       real(wp), intent(out) :: r(:)
 
       integer :: k, n, first
@@ -251,11 +242,9 @@ contains
    !> Derivatives of the residuals. By ln l: -l t exp(-l t), -2 x^2/(1 + x^2)^2 and
    !> -x (1 - x^2)/(1 + x^2)^2
    subroutine jacobian(self, x, j)
-      !> The problem
-      class(series_problem_t), intent(in) :: self
-      !> Unknowns
+      class(series_t), intent(in) :: self
       real(wp), intent(in) :: x(:)
-      !> Derivatives
+      !> Derivatives, shape (count, size(x))
       real(wp), intent(out) :: j(:, :)
 
       real(wp) :: model(size(j, 1)), term(size(j, 1))
@@ -286,4 +275,4 @@ contains
       end do
    end subroutine jacobian
 
-end module vcor_fit_prony_problem
+end module vcor_fit_series
