@@ -1,48 +1,47 @@
 !> The command line as a request
 module vcor_app_cli
-   use vcor_app_argument, only : append_word, argument_t, has_word
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_commands, only : commands, options_of
-   use vcor_app_fit_options, only : apply_fit_option, fit_request_t
-   use vcor_app_option_value, only : read_positive, read_whole
    use vcor_case_name, only : control_in, name_flaw
+   use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_words, only : suggestion
+   use vcor_kinds, only : wp
    use vcor_material_moduli, only : time_range_t
-   use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_part, only : most_threads
-   use vcor_text, only : printable
+   use vcor_sweep_quantity, only : quantity_names
+   use vcor_text, only : integer_text, printable
+   use vcor_words, only : contains_word, suggestion
    implicit none
    private
 
-   public :: request_t, parse
+   public :: argument_t, request_t, get_arguments, sum_of_words, parse
+   public :: read_whole, read_number, read_positive
 
-   !> Most points of --points
-   integer, parameter :: most_points = 100000
+   !> A word
+   type :: argument_t
+      character(len=:), allocatable :: text
+   end type argument_t
 
    !> What the user asks for
    type :: request_t
       !> One of `commands`, or version
       character(len=:), allocatable :: command
-      !> Case files, or the topic of help, shape (n)
+      !> Files, or the topic of help, shape (n)
       type(argument_t), allocatable :: files(:)
       !> Values of --set, shape (n)
       type(argument_t), allocatable :: settings(:)
-      !> Names of --print, shape (n)
+      !> Names of --print or --quantity, shape (n)
       type(argument_t), allocatable :: names(:)
-      !> Directory of --output; unallocated without it
+      !> Value of --output; unallocated without it
       character(len=:), allocatable :: directory
       !> Threads of --threads; 0 without it
       integer :: threads = 0
       !> Whether to go on with what is there
       logical :: resume = .false.
-      !> Number of the shard; 0 without --shard
-      integer :: shard = 0
-      !> Number of shards; 0 without --shard
-      integer :: shards = 0
+      !> Number of the shard, and how many there are; 0 without --shard
+      integer :: shard = 0, shards = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
-      !> What is to be fitted
-      type(fit_request_t) :: fit
       !> Kind of figure of --kind; unallocated without it
       character(len=:), allocatable :: kind
       !> Format of figures of --format; unallocated without it
@@ -51,13 +50,70 @@ module vcor_app_cli
       type(argument_t), allocatable :: legends(:)
       !> Whether the script of a figure is left
       logical :: script = .false.
-      !> Nothing on the screen
+      !> Nothing on the screen but numbers that were asked for
       logical :: quiet = .false.
       !> Whether help is wanted as JSON
       logical :: json = .false.
+      !> Options that the command alone knows, each as --name=value, shape (n)
+      type(argument_t), allocatable :: own(:)
    end type request_t
 
 contains
+
+   !> All words after the name of the program
+   subroutine get_arguments(words)
+      type(argument_t), allocatable, intent(out) :: words(:)
+
+      integer :: i, length
+
+      allocate (words(command_argument_count()))
+      do i = 1, size(words)
+         call get_command_argument(i, length=length)
+         allocate (character(len=length) :: words(i)%text)
+         if (length > 0) call get_command_argument(i, words(i)%text)
+      end do
+   end subroutine get_arguments
+
+   !> A number >= 0 that tells command lines apart; what follows --threads does not count
+   pure function sum_of_words(words) result(sum)
+      type(argument_t), intent(in) :: words(:)
+      integer :: sum
+
+      integer(int64), parameter :: factor = 131_int64, modulus = 2147483647_int64
+      integer(int64) :: number
+      integer :: i, j
+      logical :: counts
+
+      number = 0_int64
+      counts = .true.
+      do i = 1, size(words)
+         if (counts .and. index(words(i)%text, '--threads') /= 1) then
+            do j = 1, len(words(i)%text)
+               number = mod(factor*number + int(ichar(words(i)%text(j:j)), int64), modulus)
+            end do
+            number = mod(factor*number + 256_int64, modulus)
+         end if
+         counts = words(i)%text /= '--threads'
+      end do
+      sum = int(number)
+   end function sum_of_words
+
+   !> Append a word. (gfortran 12 writes past the end of a deferred-length component in an array
+   !> constructor of structure constructors, so there is none.)
+   subroutine append(words, text)
+      type(argument_t), allocatable, intent(inout) :: words(:)
+      character(len=*), intent(in) :: text
+
+      type(argument_t), allocatable :: longer(:)
+      integer :: i
+
+      allocate (longer(size(words) + 1))
+      do i = 1, size(words)
+         call move_alloc(words(i)%text, longer(i)%text)
+      end do
+      longer(size(longer))%text = text
+      call move_alloc(longer, words)
+   end subroutine append
 
    !> Understand the command line
    subroutine parse(words, request, error)
@@ -67,33 +123,30 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: known, name
+      character(len=:), allocatable :: name
       integer :: i, mark
-      logical :: plain
+      logical :: plain, flag
 
       allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
+      allocate (request%own(0))
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
             //'plot, verify, help (vcor help says more)')
          return
       end if
-
-      select case (words(1)%text)
-      case ('--version')
+      request%command = words(1)%text
+      if (request%command == '--version') then
          request%command = 'version'
          if (size(words) > 1) call raise(error, error_usage, '--version takes nothing, found ' &
             //"'"//printable(words(2)%text)//"'")
          return
-      case default
-         request%command = words(1)%text
-         if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
-         if (.not. has_word(commands, request%command)) then
-            call raise(error, error_usage, "unknown command '"//printable(request%command)//"'; " &
-               //suggestion(request%command, commands//' '//options_of('help')))
-            return
-         end if
-      end select
-      known = options_of(request%command)
+      end if
+      if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
+      if (.not. contains_word(commands, request%command)) then
+         call raise(error, error_usage, "unknown command '"//printable(request%command)//"'; " &
+            //suggestion(request%command, commands//' --help --version'))
+         return
+      end if
 
       plain = .false.
       i = 1
@@ -106,7 +159,7 @@ contains
                   //printable(name)//"', expected the name of a file that can be read on one line")
                return
             end if
-            call append_word(request%files, name)
+            call append(request%files, name)
             cycle
          end if
          if (name == '--') then
@@ -118,107 +171,79 @@ contains
          ! --option=value, or the value is the next word
          mark = index(name, '=')
          if (mark > 0) name = name(:mark - 1)
-         if (.not. has_word(known, name)) then
+         if (.not. contains_word(options_of(request%command), name)) then
             call raise(error, error_usage, "unknown option '"//printable(name)//"' of " &
-               //request%command//'; '//suggestion(name, known))
+               //request%command//'; '//suggestion(name, options_of(request%command)))
             return
          end if
-         select case (name)
-         case ('--help')
+         if (name == '--help') then
             deallocate (request%files)
             allocate (request%files(0))
-            if (request%command /= 'help') call append_word(request%files, request%command)
+            if (request%command /= 'help') call append(request%files, request%command)
             request%command = 'help'
             return
-         case ('--version')
+         else if (name == '--version') then
             request%command = 'version'
             return
-         case ('--quiet', '--resume', '--shear', '--dynamic', '--script', '--json')
-            if (mark > 0) then
-               call raise(error, error_usage, 'option '//name//' takes no value')
-               return
-            end if
-            if (name == '--quiet') request%quiet = .true.
-            if (name == '--resume') request%resume = .true.
-            if (name == '--shear') request%fit%shear = .true.
-            if (name == '--dynamic') request%fit%dynamic = .true.
-            if (name == '--script') request%script = .true.
-            if (name == '--json') request%json = .true.
-            cycle
-         case default
-         end select
-
-         if (mark == 0) then
+         end if
+         flag = contains_word(options_of(request%command, flags_only=.true.), name)
+         if (flag .and. mark > 0) then
+            call raise(error, error_usage, 'option '//name//' takes no value')
+         else if (.not. flag .and. mark == 0) then
             i = i + 1
             if (i <= size(words)) then
                if (index(words(i)%text, '--') == 1) i = size(words) + 1
             end if
-            if (i > size(words)) then
-               call raise(error, error_usage, 'option '//name//' needs a value')
-               return
-            end if
+            if (i > size(words)) call raise(error, error_usage, 'option '//name//' needs a value')
          end if
-         call apply(name, words(i)%text(mark + 1:), request, error)
+         if (.not. allocated(error) .and. flag) call apply(request, name, '', error)
+         if (.not. (allocated(error) .or. flag)) &
+            call take_value(request, name, words(i)%text(mark + 1:), error)
          if (allocated(error)) return
       end do
-
-      if (size(request%files) == 0) call refuse_no_case(request, error)
-      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
-         '--print is for whole sweeps, found --shard as well')
-      if (request%command == 'help' .and. size(request%files) > 1) &
-         call raise(error, error_usage, "help takes one topic, found '" &
-         //printable(request%files(2)%text)//"' as well")
-      if (request%json .and. size(request%files) > 0) call raise(error, error_usage, &
-         "help --json takes no topic, found '"//printable(request%files(1)%text)//"'")
+      call check_request(request, error)
    end subroutine parse
 
-   !> Refuse a request without a case file where it needs one: verify does for its settings only
-   subroutine refuse_no_case(request, error)
-      !> The request, without files
-      type(request_t), intent(in) :: request
-      !> Error of code `error_usage`, unallocated where no case is needed
-      type(error_t), allocatable, intent(inout) :: error
-
-      if (request%command == 'help') return
-      if (request%command == 'verify' .and. size(request%settings) == 0) return
-      if (request%command == 'merge') then
-         call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
-         return
-      end if
-      if (request%command == 'fit') return
-      if (request%command == 'plot') then
-         call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
-      else
-         call raise(error, error_usage, 'no case file; expected vcor '//request%command &
-            //' CASE.nml')
-      end if
-   end subroutine refuse_no_case
-
    !> Take the value of an option
-   subroutine apply(option, value, request, error)
-      !> Option, a known one
-      character(len=*), intent(in) :: option
-      character(len=*), intent(in) :: value
+   subroutine take_value(request, option, value, error)
       type(request_t), intent(inout) :: request
+      character(len=*), intent(in) :: option, value
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (len_trim(value) == 0) then
          call raise(error, error_usage, 'option '//option//' needs a value')
-         return
+      else if (all(option /= ['--set  ', '--fix  ', '--units']) .and. control_in(value) /= '') then
+         call raise(error, error_usage, option//": found "//control_in(value)//" in '" &
+            //printable(value)//"', expected a text that can be read on one line")
+      else
+         call apply(request, option, value, error)
       end if
+   end subroutine take_value
+
+   !> Set what an option stands for
+   subroutine apply(request, option, value, error)
+      type(request_t), intent(inout) :: request
+      !> A known option
+      character(len=*), intent(in) :: option
+      !> Its value, empty if it takes none
+      character(len=*), intent(in) :: value
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: most_points = 100000
+
       select case (option)
-      case ('--set', '--fix', '--units')
-         continue
-      case default
-         if (control_in(value) /= '') call raise(error, error_usage, option//": found " &
-            //control_in(value)//" in '"//printable(value)//"', expected a text that can be read " &
-            //'on one line')
-         if (allocated(error)) return
-      end select
-      select case (option)
+      case ('--quiet')
+         request%quiet = .true.
+      case ('--resume')
+         request%resume = .true.
+      case ('--script')
+         request%script = .true.
+      case ('--json')
+         request%json = .true.
       case ('--set')
-         call append_word(request%settings, value)
+         call append(request%settings, value)
       case ('--output')
          request%directory = value
          if (name_flaw(value) /= '') call raise(error, error_usage, "--output: the name '" &
@@ -228,7 +253,7 @@ contains
       case ('--format')
          request%format = value
       case ('--legend')
-         call append_word(request%legends, value)
+         call append(request%legends, value)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--shard')
@@ -242,13 +267,42 @@ contains
       case ('--print', '--quantity')
          call add_names(option, value, request, error)
       case default
-         call apply_fit_option(option, value, request%fit, error)
+         call append(request%own, option//'='//value)
       end select
    end subroutine apply
 
+   !> Whether the parts of a request go together
+   subroutine check_request(request, error)
+      type(request_t), intent(in) :: request
+      !> Error of code `error_usage`, unallocated if they do
+      type(error_t), allocatable, intent(out) :: error
+
+      if (size(request%files) == 0) then
+         select case (request%command)
+         case ('help', 'fit')
+            continue
+         case ('merge')
+            call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
+         case ('plot')
+            call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
+         case default
+            ! verify needs a case for settings only
+            if (request%command /= 'verify' .or. size(request%settings) > 0) &
+               call raise(error, error_usage, 'no case file; expected vcor '//request%command &
+               //' CASE.nml')
+         end select
+      end if
+      if (request%shards > 0 .and. size(request%names) > 0) call raise(error, error_usage, &
+         '--print is for whole sweeps, found --shard as well')
+      if (request%command == 'help' .and. size(request%files) > 1) &
+         call raise(error, error_usage, "help takes one topic, found '" &
+         //printable(request%files(2)%text)//"' as well")
+      if (request%json .and. size(request%files) > 0) call raise(error, error_usage, &
+         "help --json takes no topic, found '"//printable(request%files(1)%text)//"'")
+   end subroutine check_request
+
    !> Read the value of --shard, I/N
    subroutine read_shard(value, request, error)
-      !> The value as it is written
       character(len=*), intent(in) :: value
       type(request_t), intent(inout) :: request
       !> Error of code `error_usage`, unallocated on success
@@ -268,7 +322,7 @@ contains
       call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
 
-   !> Split the value of --print or --quantity
+   !> Take the names of --print or --quantity
    subroutine add_names(option, list, request, error)
       character(len=*), intent(in) :: option
       !> Names separated by commas
@@ -277,32 +331,75 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=:), allocatable :: name
       integer :: first, last
 
       first = 1
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
-         call add_name(option, trim(adjustl(list(first:last))), request, error)
-         if (allocated(error)) return
+         name = trim(adjustl(list(first:last)))
+         ! what has a dot is a parameter of a sweep, and whether there is one the case says
+         if (index(name, '.') == 0 .and. .not. contains_word(quantity_names(), name)) then
+            call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option &
+               //'; '//suggestion(name, quantity_names()))
+            return
+         end if
+         call append(request%names, name)
          first = last + 2
       end do
    end subroutine add_names
 
-   !> Add one name of --print or --quantity
-   subroutine add_name(option, name, request, error)
-      character(len=*), intent(in) :: option
-      character(len=*), intent(in) :: name
-      type(request_t), intent(inout) :: request
+   !> Read a whole number between two others
+   subroutine read_whole(option, value, least, most, number, error)
+      character(len=*), intent(in) :: option, value
+      integer, intent(in) :: least, most
+      integer, intent(out) :: number
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      ! what has a dot is a parameter of a sweep, and whether there is one the case says
-      if (index(name, '.') == 0 .and. .not. has_word(quantity_names(), name)) then
-         call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option//'; ' &
-            //suggestion(name, quantity_names()))
-      else
-         call append_word(request%names, name)
-      end if
-   end subroutine add_name
+      integer, parameter :: most_digits = 9
+      character(len=:), allocatable :: digits
+      integer :: status
+
+      number = least - 1
+      digits = trim(adjustl(value))
+      status = 0
+      if (len(digits) <= most_digits .and. verify(digits, '0123456789') == 0) &
+         read (digits, *, iostat=status) number
+      if (status /= 0 .or. number < least .or. number > most) call raise(error, error_usage, &
+         option//": found '"//printable(digits)//"', expected a whole number from " &
+         //integer_text(least)//' to '//integer_text(most))
+   end subroutine read_whole
+
+   !> Read a number > 0
+   subroutine read_positive(option, value, number, error)
+      character(len=*), intent(in) :: option, value
+      real(wp), intent(out) :: number
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp), parameter :: smallest = 1.0e-30_wp, largest = 1.0e30_wp
+      character(len=*), parameter :: expected = 'a number from 1e-30 to 1e30'
+
+      call read_number(option, value, expected, number, error)
+      if (allocated(error)) return
+      if (.not. (number >= smallest .and. number <= largest)) call raise(error, error_usage, &
+         option//': found '//printable(trim(adjustl(value)))//', expected '//expected)
+   end subroutine read_positive
+
+   !> Read a number
+   subroutine read_number(option, value, expected, number, error)
+      character(len=*), intent(in) :: option, value
+      !> What is expected, for the message
+      character(len=*), intent(in) :: expected
+      real(wp), intent(out) :: number
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: message
+
+      call read_real(trim(adjustl(value)), expected, number, message)
+      if (allocated(message)) call raise(error, error_usage, option//': '//message)
+   end subroutine read_number
 
 end module vcor_app_cli

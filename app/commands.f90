@@ -40,7 +40,7 @@ module vcor_app_commands
       entry_t("--resume", "continue an interrupted sweep"), &
       entry_t("--shard I/N", "solve part I of N of a sweep and write it to " &
       //"STEM_shard_I_of_N.h5; `vcor merge` joins the parts"), &
-      entry_t("--quiet", "print nothing"), &
+      entry_t("--quiet", "print nothing but the numbers of `--print`; warnings go to stderr"), &
       entry_t("", "A sweep that takes longer than a moment saves the finished points in " &
       //"STEM.part.h5, which is a valid HDF5 file at any time. Ctrl-C (SIGINT) and SIGTERM end " &
       //"the sweep after the points in progress, with exit code 130 or 143. The same command " &
@@ -250,20 +250,24 @@ contains
    end subroutine get_page
 
    !> Options of a command, separated by blanks
-   pure function options_of(command) result(words)
+   pure function options_of(command, flags_only) result(words)
       !> One of `commands`
       character(len=*), intent(in) :: command
+      !> Whether only those that take no value are wanted; absent: all are
+      logical, intent(in), optional :: flags_only
       !> Its options, with those that all commands have
       character(len=:), allocatable :: words
 
       type(entry_t), allocatable :: page(:)
-      integer :: i
+      integer :: i, mark
 
       call get_page(command, page)
       words = ""
       do i = 1, size(page)
          if (index(page(i)%term, "--") /= 1) cycle
-         words = words//page(i)%term(:index(page(i)%term//" ", " "))
+         mark = index(page(i)%term//" ", " ")
+         if (present(flags_only) .and. page(i)%term(mark:) /= "") cycle
+         words = words//page(i)%term(:mark)
       end do
       words = words//"--help --version"
    end function options_of
@@ -274,7 +278,6 @@ contains
       character(len=*), intent(in) :: command
       !> `usage`, `summary` or `example`
       character(len=*), intent(in) :: term
-      !> Texts
       character(len=len(run_page%text)), allocatable :: texts(:)
 
       type(entry_t), allocatable :: page(:)

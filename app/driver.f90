@@ -1,7 +1,6 @@
-!> What the commands do
+!> What the commands do: one procedure for each
 module vcor_app_driver
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_argument, only : argument_t
    use vcor_app_cli, only : request_t
    use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_text
@@ -34,33 +33,60 @@ contains
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      if (request%command == 'run') then
-         call run(request, error)
-         return
-      else if (this_rank() > 0) then
-         return
-      end if
+      if (this_rank() > 0 .and. request%command /= 'run') return
       select case (request%command)
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
       case ('help')
-         call help(request%files, request%json, error)
+         call help(request, error)
       case ('merge')
          call merge_shards(request, error)
-      case ('check')
-         call check(request, error)
-      case ('material')
-         call materials(request, error)
       case ('fit')
          call fit_data(request, error)
       case ('plot')
          call plot(request, error)
-      case ('verify')
-         call verify(request, error)
       case default
-         continue
+         if (size(request%files) == 0) then
+            call verify_program(request%quiet, error)
+         else
+            call treat_cases(request, error)
+         end if
       end select
    end subroutine execute
+
+   !> Run, check or verify cases, or show their materials. All are read and validated before the
+   !> first one runs, so that a mistake in the last does not come after hours. A case that fails
+   !> numerically does not stop the others, anything else does
+   subroutine treat_cases(request, error)
+      type(request_t), intent(in) :: request
+      !> The last error; those before it are said
+      type(error_t), allocatable, intent(out) :: error
+
+      type(job_t), allocatable :: jobs(:)
+      type(error_t), allocatable :: trouble
+      integer :: i
+
+      call prepare(request, jobs, error)
+      if (request%command == 'run') call share_error(error)
+      if (allocated(error)) return
+      do i = 1, size(jobs)
+         select case (request%command)
+         case ('run')
+            call run_job(request, jobs(i), trouble)
+         case ('check')
+            call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
+               //chosen(jobs(i)), trouble)
+         case ('material')
+            call show_materials(request, jobs(i), trouble)
+         case default
+            call verify_case(jobs(i), request%quiet, trouble)
+         end select
+         if (.not. allocated(trouble)) cycle
+         if (allocated(error) .and. trouble%code == error_numerical) call complain(error)
+         call move_alloc(trouble, error)
+         if (error%code /= error_numerical) return
+      end do
+   end subroutine treat_cases
 
    !> One line on stderr; all ranks have the same to say
    subroutine complain(error)
@@ -71,100 +97,22 @@ contains
    end subroutine complain
 
    !> Print a help page
-   subroutine help(topics, json, error)
-      !> Topic, if any
-      type(argument_t), intent(in) :: topics(:)
-      !> Whether to print everything as JSON
-      logical, intent(in) :: json
+   subroutine help(request, error)
+      type(request_t), intent(in) :: request
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: text, topic
+      character(len=:), allocatable :: text
 
-      topic = ''
-      if (size(topics) > 0) topic = topics(1)%text
-      if (json) then
+      if (request%json) then
          text = help_json()
+      else if (size(request%files) > 0) then
+         call help_text(request%files(1)%text, text, error)
       else
-         call help_text(topic, text, error)
+         call help_text('', text, error)
       end if
       if (.not. allocated(error)) call write_stdout(text, error)
    end subroutine help
-
-   !> Validate cases and print them complete
-   subroutine check(request, error)
-      type(request_t), intent(in) :: request
-      !> The first error, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(job_t), allocatable :: jobs(:)
-      integer :: i
-
-      call prepare(request, jobs, error)
-      if (allocated(error)) return
-      do i = 1, size(jobs)
-         call write_stdout(case_text(jobs(i)%case, complete=.true., &
-            remarks=.true.)//chosen(jobs(i)), &
-            error)
-         if (allocated(error)) return
-      end do
-   end subroutine check
-
-   !> Moduli of the materials of cases
-   subroutine materials(request, error)
-      type(request_t), intent(in) :: request
-      !> The first error, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(job_t), allocatable :: jobs(:)
-      integer :: i
-
-      call prepare(request, jobs, error)
-      if (allocated(error)) return
-      do i = 1, size(jobs)
-         call show_materials(request, jobs(i), error)
-         if (allocated(error)) return
-      end do
-   end subroutine materials
-
-   !> Verify the program, or cases
-   subroutine verify(request, error)
-      type(request_t), intent(in) :: request
-      !> The first error, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(job_t), allocatable :: jobs(:)
-      type(error_t), allocatable :: trouble
-      integer :: i
-
-      if (size(request%files) == 0) then
-         call verify_program(request%quiet, error)
-         return
-      end if
-      call prepare(request, jobs, error)
-      if (allocated(error)) return
-      do i = 1, size(jobs)
-         call verify_case(jobs(i), request%quiet, trouble)
-         if (gives_up(trouble, error)) return
-      end do
-   end subroutine verify
-
-   !> Take over the trouble that a case made. A case that fails numerically does not stop the
-   !> others, anything else does
-   function gives_up(trouble, error)
-      !> Trouble of the case, unallocated if there was none; taken over
-      type(error_t), allocatable, intent(inout) :: trouble
-      !> Trouble of the cases before; said on stderr if there is more now
-      type(error_t), allocatable, intent(inout) :: error
-      !> Whether the cases that are left have to go
-      logical :: gives_up
-
-      gives_up = .false.
-      if (.not. allocated(trouble)) return
-      gives_up = trouble%code /= error_numerical
-      if (allocated(error) .and. .not. gives_up) call complain(error)
-      call move_alloc(trouble, error)
-   end function gives_up
 
    !> What the program chooses where the case says nothing, as comments
    function chosen(job) result(text)
@@ -185,25 +133,5 @@ contains
          text = text//'! mass of the sphere: '//decimal_text(job%impact%mass)//' kg'//new_line('a')
       end if
    end function chosen
-
-   !> Run cases. All are read and validated before the first one runs, so that a mistake in the
-   !> last does not come after hours
-   subroutine run(request, error)
-      type(request_t), intent(in) :: request
-      !> The first error, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      type(job_t), allocatable :: jobs(:)
-      type(error_t), allocatable :: trouble
-      integer :: i
-
-      call prepare(request, jobs, error)
-      call share_error(error)
-      if (allocated(error)) return
-      do i = 1, size(jobs)
-         call run_job(request, jobs(i), trouble)
-         if (gives_up(trouble, error)) return
-      end do
-   end subroutine run
 
 end module vcor_app_driver

@@ -34,44 +34,25 @@ contains
 
       type(table_t) :: course
       type(remark_t) :: remarks(4)
-      integer :: i, n
+      integer :: n
 
       files = ''
       if (.not. any(job%writes)) return
-      if (job%history) call history_table(course, summary%title, summary%case_text, trajectory)
-
       call make_directory(directory_of(job), error)
       if (allocated(error)) return
       ! the sum over the data, where there are any
       remarks = remarks_of(identity)
       n = merge(1, 0, len(identity%data) > 0)
-      if (job%history) then
-         if (job%writes(1)) call write_csv(job%path//trim(job%endings(1)), summary, error)
-         if (allocated(error)) return
-         if (job%writes(2)) call write_csv(job%path//trim(job%endings(2)), course, error)
-         if (allocated(error)) return
-         if (job%writes(3)) call write_hdf5(job%path//trim(job%endings(3)), summary, error, &
-            remarks(:n), more=[course])
+      if (.not. job%history) then
+         call write_summary(job%file(1), job%file(3), summary, remarks(:n), error)
       else
-         call write_summary(name_of(1), name_of(3), summary, remarks(:n), error)
+         call history_table(course, summary%title, summary%case_text, trajectory)
+         if (job%writes(1)) call write_csv(job%file(1), summary, error)
+         if (job%writes(2) .and. .not. allocated(error)) call write_csv(job%file(2), course, error)
+         if (job%writes(3) .and. .not. allocated(error)) call write_hdf5(job%file(3), summary, &
+            error, remarks(:n), more=[course])
       end if
-      if (allocated(error)) return
-      do i = 1, size(job%endings)
-         if (job%writes(i)) files = files//'  written '//name_of(i)//new_line('a')
-      end do
-
-   contains
-
-      !> Name of a file
-      function name_of(i) result(name)
-         !> Number of its ending
-         integer, intent(in) :: i
-         !> The name; empty if the file is not written
-         character(len=:), allocatable :: name
-
-         name = ''
-         if (job%writes(i)) name = job%path//trim(job%endings(i))
-      end function name_of
+      if (.not. allocated(error)) files = job%written()
    end subroutine write_files
 
    !> Number of threads of each rank

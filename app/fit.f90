@@ -1,91 +1,106 @@
-!> Identification of a material from data, or from another model
+!> The command fit: identification of a material from data, or from another model
 module vcor_app_fit
-   use vcor_app_cli, only : request_t
-   use vcor_app_fit_options, only : check_fit
+   use vcor_app_cli, only : read_number, read_positive, read_whole, request_t
    use vcor_app_fit_screen, only : fit_report, fit_remarks
    use vcor_app_place, only : find_place
    use vcor_app_sampling, only : compare_impacts, sample_model, sampled_t
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_fit, only : fit_material, fit_t, samples_t
+   use vcor_fit, only : check_fixed, estimate_t, fit_material, fit_t, samples_t
    use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_file, write_stdout
    use vcor_io_path, only : same_file
    use vcor_io_sample_file, only : read_samples, reading_t, standard_input
+   use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_kinds, only : wp
+   use vcor_material, only : identifiable_models
    use vcor_text, only : printable
+   use vcor_words, only : contains_word, join_words, suggestion
    implicit none
    private
 
    public :: fit_data
 
-   !> Poisson's ratio where none is given: that of rubber, which is incompressible
-   real(wp), parameter :: incompressible = 0.5_wp
+   !> Poisson's ratio where none is given: that of rubber, which is incompressible; and what stands
+   !> for one that was not given
+   real(wp), parameter :: incompressible = 0.5_wp, no_ratio = 1.0_wp
+
+   !> What is to be fitted, by the options that fit alone has
+   type :: wish_t
+      character(len=:), allocatable :: model
+      !> Terms of a Prony series; 0: as many as the data support
+      integer :: terms = 0
+      !> Parameters that are given, shape (n)
+      type(estimate_t), allocatable :: fixed(:)
+      !> What the options say about the data file
+      type(reading_t) :: reading
+      !> Whether its units were given
+      logical :: has_units = .false.
+      !> Density [kg/m3]; 0: not given
+      real(wp) :: density = 0.0_wp
+      !> Name of the material; unallocated: made from that of the file
+      character(len=:), allocatable :: name
+      !> Case, and perhaps material, to be sampled in place of data
+      character(len=:), allocatable :: source
+      !> Whether storage and loss modulus are sampled
+      logical :: dynamic = .false.
+   end type wish_t
 
 contains
 
    !> Fit a model, show it and write it
-   subroutine fit_data(asked, error)
-      type(request_t), intent(in) :: asked
+   subroutine fit_data(request, error)
+      type(request_t), intent(in) :: request
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(request_t) :: request
-      type(reading_t) :: reading
+      type(wish_t) :: wish
       type(sampled_t) :: sampled
       type(samples_t) :: samples
       type(fit_t) :: fit
       character(len=:), allocatable :: source, place, note, path, group, tail
       real(wp) :: density, poisson_ratio
 
-      request = asked
-      call check_fit(request%fit, size(request%files), reading, error)
+      call read_wish(request, wish, error)
       if (allocated(error)) return
-      if (allocated(request%fit%source)) then
-         source = request%fit%source
+      if (allocated(wish%source)) then
+         source = wish%source
          place = printable(source)
-         call sample_model(request, sampled, samples, note, error)
+         call sample_model(request, source, wish%dynamic, sampled, samples, note, error)
       else
          source = request%files(1)%text
-         if (request%range%first > 0.0_wp .or. request%range%last > 0.0_wp &
-            .or. request%range%points > 0 .or. size(request%settings) > 0) then
-            call raise(error, error_usage, '--from, --to, --points and --set are for ' &
-               //'--from-model')
-            return
-         end if
-         call read_samples(samples, source, reading, note, place, error)
+         call read_samples(samples, source, wish%reading, note, place, error)
          if (source == standard_input) source = 'stdin'
       end if
       if (allocated(error)) return
-      call fit_material(fit, request%fit%model, request%fit%terms, request%fit%fixed, samples, &
-         error)
+      call fit_material(fit, wish%model, wish%terms, wish%fixed, samples, error)
       if (allocated(error)) then
          error%message = place//': '//error%message
          return
       end if
 
-      density = request%fit%density
+      density = wish%density
       poisson_ratio = incompressible
       fit%data%name = stem_of(source)
       tail = ''
-      if (allocated(request%fit%source)) then
+      if (allocated(wish%source)) then
          fit%data%name = sampled%name
          if (.not. density > 0.0_wp) density = sampled%density
          poisson_ratio = sampled%poisson_ratio
          tail = sampled%notes//compare_impacts(sampled, fit%data)
       end if
-      if (allocated(request%fit%name)) fit%data%name = request%fit%name
-      if (request%fit%poisson_ratio <= incompressible) poisson_ratio = request%fit%poisson_ratio
+      if (allocated(wish%name)) fit%data%name = wish%name
+      if (wish%reading%poisson_ratio < no_ratio) poisson_ratio = wish%reading%poisson_ratio
       group = fit_remarks(fit, source, samples)//material_text(fit%data, density, poisson_ratio, &
          samples%first_time(), samples%last_time())
       if (allocated(request%directory)) then
-         call choose_path(request, source, sampled, path, error)
+         call choose_path(request%directory, source, sampled, path, error)
          if (.not. allocated(error)) call write_file(path, group, error)
          if (allocated(error)) return
          tail = tail//'  written '//path//new_line('a')
       end if
       if (request%quiet) return
-      if (.not. (request%fit%poisson_ratio <= incompressible .or. allocated(request%fit%source))) &
+      if (.not. (wish%reading%poisson_ratio < no_ratio .or. allocated(wish%source))) &
          tail = tail//'  note: poisson_ratio is taken as 0.5, --poisson-ratio gives another' &
          //new_line('a')
       if (.not. density > 0.0_wp) tail = tail//'  note: the density is not known, --density ' &
@@ -93,9 +108,154 @@ contains
       call write_stdout(fit_report(fit, source, note, samples, tail)//group, error)
    end subroutine fit_data
 
-   !> Where the group goes: a file, or a file in a directory
-   subroutine choose_path(request, source, sampled, path, error)
+   !> Read the options of fit, and see whether they go together
+   subroutine read_wish(request, wish, error)
       type(request_t), intent(in) :: request
+      type(wish_t), intent(out) :: wish
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i, mark
+
+      wish%model = 'prony'
+      wish%reading%poisson_ratio = no_ratio
+      allocate (wish%fixed(0), wish%reading%units(0))
+      do i = 1, size(request%own)
+         mark = index(request%own(i)%text, '=')
+         call apply(wish, request%own(i)%text(:mark - 1), request%own(i)%text(mark + 1:), error)
+         if (allocated(error)) return
+      end do
+      if (allocated(wish%source)) then
+         if (size(request%files) > 0) then
+            call raise(error, error_usage, '--from-model takes the place of a data file, found ' &
+               //'both')
+         else if (wish%has_units .or. wish%reading%shear) then
+            call raise(error, error_usage, '--units and --shear are for data files, found ' &
+               //'--from-model')
+         end if
+      else if (size(request%files) /= 1) then
+         call raise(error, error_usage, 'fit takes one data file, or --from-model CASE.nml')
+      else if (wish%dynamic) then
+         call raise(error, error_usage, '--dynamic is for --from-model; data tell by their ' &
+            //'columns, or by --units, what they are')
+      end if
+      if (allocated(error)) return
+      if (wish%terms > 0 .and. wish%model /= 'prony') then
+         call raise(error, error_usage, '--terms is for --model prony, found --model '//wish%model)
+         return
+      end if
+      call check_fixed(wish%model, wish%fixed, error)
+      if (allocated(error)) then
+         error%message = '--fix: '//error%message
+      else if (.not. allocated(wish%source) .and. (max(request%range%first, request%range%last) &
+               > 0.0_wp .or. request%range%points > 0 .or. size(request%settings) > 0)) then
+         call raise(error, error_usage, '--from, --to, --points and --set are for --from-model')
+      end if
+   end subroutine read_wish
+
+   !> Take an option
+   subroutine apply(wish, option, value, error)
+      type(wish_t), intent(inout) :: wish
+      !> One of those that fit alone has
+      character(len=*), intent(in) :: option
+      !> Its value, empty if it takes none
+      character(len=*), intent(in) :: value
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer, parameter :: most_terms = 60
+      character(len=*), parameter :: expected = 'a number in (-1, 0.5]'
+      type(estimate_t) :: parameter
+      integer :: mark
+
+      select case (option)
+      case ('--shear')
+         wish%reading%shear = .true.
+      case ('--dynamic')
+         wish%dynamic = .true.
+      case ('--model')
+         wish%model = trim(adjustl(value))
+         if (.not. contains_word(identifiable_models, wish%model)) call raise(error, error_usage, &
+            "--model: found '"//printable(wish%model)//"', expected one of " &
+            //join_words(identifiable_models)//'; '//suggestion(wish%model, identifiable_models))
+      case ('--terms')
+         call read_whole(option, value, 1, most_terms, wish%terms, error)
+      case ('--fix')
+         mark = index(value, '=')
+         if (mark < 2) then
+            call raise(error, error_usage, "--fix: found '"//printable(value) &
+               //"', expected KEY=VALUE, such as --fix exponent=0.5")
+            return
+         end if
+         parameter%name = adjustl(value(:mark - 1))
+         call read_number('--fix '//printable(value(:mark - 1)), value(mark + 1:), 'a number', &
+            parameter%value, error)
+         wish%fixed = [wish%fixed, parameter]
+      case ('--units')
+         wish%has_units = .true.
+         call take_units(trim(adjustl(value)), wish%reading, error)
+      case ('--poisson-ratio')
+         call read_number(option, value, expected, wish%reading%poisson_ratio, error)
+         if (allocated(error)) return
+         if (.not. (wish%reading%poisson_ratio > -1.0_wp .and. wish%reading%poisson_ratio &
+                    <= incompressible)) call raise(error, error_usage, option//': found ' &
+            //printable(value)//', expected '//expected)
+      case ('--density')
+         call read_positive(option, value, wish%density, error)
+      case ('--name')
+         wish%name = trim(adjustl(value))
+      case default
+         wish%source = value
+      end select
+   end subroutine apply
+
+   !> Take the units of --units: time and modulus, or frequency and one or two moduli
+   subroutine take_units(list, reading, error)
+      !> Units with commas between them
+      character(len=*), intent(in) :: list
+      !> What the options say about the file
+      type(reading_t), intent(inout) :: reading
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=len(reading%units)) :: words(3)
+      integer :: first, last, n, i
+      logical :: good
+
+      n = 0
+      first = 1
+      words = ''
+      do while (first <= len(list) + 1)
+         last = first + index(list(first:)//',', ',') - 2
+         n = n + 1
+         if (n <= size(words)) words(n) = adjustl(list(first:last))
+         first = last + 2
+      end do
+      good = n == 2 .or. n == 3
+      do i = 2, min(n, 3)
+         good = good .and. contains_word(modulus_units, words(i))
+      end do
+      if (contains_word(time_units, words(1))) then
+         good = good .and. n == 2
+      else
+         good = good .and. contains_word(frequency_units, words(1))
+         if (n == 2) words(3) = words(2)
+         n = 3
+      end if
+      if (good) then
+         reading%units = words(:n)
+      else
+         call raise(error, error_usage, "--units: found '"//printable(list)//"', expected " &
+            //'TIME,MODULUS or FREQUENCY,MODULUS, such as s,MPa or Hz,MPa; units of time are ' &
+            //join_words(time_units)//', of frequency '//join_words(frequency_units) &
+            //', of modulus '//join_words(modulus_units))
+      end if
+   end subroutine take_units
+
+   !> Where the group goes: a file, or a file in a directory; no file that was read is replaced
+   subroutine choose_path(output, source, sampled, path, error)
+      !> Value of --output
+      character(len=*), intent(in) :: output
       !> The data file, or the case
       character(len=*), intent(in) :: source
       !> What was sampled, if it was
@@ -106,24 +266,23 @@ contains
 
       character(len=:), allocatable :: extension
 
-      call keep_what_was_read(request%directory)
+      call keep_what_was_read(output)
       if (allocated(error)) return
-      call find_place(request%directory, stem_of(source)//'_fit', 'nml', path, extension, error)
+      call find_place(output, stem_of(source)//'_fit', 'nml', path, extension, error)
       if (allocated(error)) return
       path = path//'.nml'
       call keep_what_was_read(path)
 
    contains
 
-      !> No file that was read is replaced
+      !> Refuse the name of a file that was read
       subroutine keep_what_was_read(name)
-         !> Name of a file
          character(len=*), intent(in) :: name
 
          integer :: i
          logical :: taken
 
-         if (.not. allocated(request%fit%source)) then
+         if (sampled%item == 0) then
             taken = same_file(name, source)
          else
             taken = same_file(name, sampled%case%source)

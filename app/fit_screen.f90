@@ -84,7 +84,6 @@ contains
    !> and the material may go on to relax all of it
    pure function is_open(fit) result(yes)
       type(fit_t), intent(in) :: fit
-      !> Whether it is
       logical :: yes
 
       associate (first => fit%parameters(1))
@@ -159,7 +158,6 @@ contains
    !> Under what condition a standard error is one
    pure function condition(fit, i) result(text)
       type(fit_t), intent(in) :: fit
-      !> Number of the parameter
       integer, intent(in) :: i
       !> In words; nothing where the data show all that counts
       character(len=:), allocatable :: text
@@ -179,7 +177,6 @@ contains
    !> Name of a parameter, with the number of the term of a series
    function name_of(fit, i) result(name)
       type(fit_t), intent(in) :: fit
-      !> Number of the parameter
       integer, intent(in) :: i
       character(len=:), allocatable :: name
 
@@ -190,7 +187,6 @@ contains
    !> Line of a parameter
    function line(fit, i) result(text)
       type(fit_t), intent(in) :: fit
-      !> Number of the parameter
       integer, intent(in) :: i
       !> The line
       character(len=:), allocatable :: text

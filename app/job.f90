@@ -1,6 +1,5 @@
 !> The cases of a call, read and ready to run
 module vcor_app_job
-   use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
@@ -14,7 +13,7 @@ module vcor_app_job
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, same_file
    use vcor_text, only : integer_text, printable
-   use vcor_words, only : suggestion
+   use vcor_words, only : contains_word, suggestion
    use vcor_solver, only : method_for
    use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : quantity_names
@@ -22,7 +21,7 @@ module vcor_app_job
    implicit none
    private
 
-   public :: job_t, prepare, name_files, directory_of, endings, material_endings, shard_text
+   public :: job_t, prepare, name_files, directory_of, shard_text
 
    !> Letters of the longest ending
    integer, parameter :: longest_ending = 24
@@ -45,16 +44,44 @@ module vcor_app_job
       logical, allocatable :: writes(:)
       !> Whether there is a time history in them
       logical :: history = .true.
+   contains
+      procedure :: file
+      procedure :: written
    end type job_t
 
    !> What the names of the files of run end with
-   character(len=*), parameter :: endings(3) = [character(len=longest_ending) :: &
+   character(len=*), parameter :: run_endings(3) = [character(len=longest_ending) :: &
       '_summary.csv', '.csv', '.h5']
    !> What the names of the files of material end with
    character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
       '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
 
 contains
+
+   !> Name of a file
+   pure function file(self, i)
+      class(job_t), intent(in) :: self
+      !> Number of its ending
+      integer, intent(in) :: i
+      !> The name; empty if the file is not written
+      character(len=:), allocatable :: file
+
+      file = ''
+      if (self%writes(i)) file = self%path//trim(self%endings(i))
+   end function file
+
+   !> Names of the files that are written, one to a line of the screen
+   pure function written(self) result(text)
+      class(job_t), intent(in) :: self
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = ''
+      do i = 1, size(self%endings)
+         if (self%writes(i)) text = text//'  written '//self%file(i)//new_line('a')
+      end do
+   end function written
 
    !> Read, override, validate and build all cases of a request
    subroutine prepare(request, jobs, error)
@@ -71,7 +98,7 @@ contains
          call read_job(request, request%files(i)%text, jobs(i), error)
          if (.not. allocated(error)) call name_files(request, jobs(i), error)
          do j = 1, i
-            if (.not. allocated(error)) call refuse_clash(request, jobs, i, j, error)
+            if (.not. allocated(error)) call refuse_clash(jobs(i), jobs(j), i == j, error)
          end do
          if (allocated(error)) return
       end do
@@ -140,7 +167,7 @@ contains
          job%endings = material_endings
          job%writes = [csv, csv, csv, hdf5]
       else
-         job%endings = endings
+         job%endings = run_endings
          job%writes = [csv, csv .and. job%history, hdf5]
       end if
       ! bare numbers are for scripts, which would be surprised by files
@@ -252,7 +279,6 @@ contains
    !> Names of --print with a dot are parameters that the case sweeps
    subroutine check_names(request, grid, error)
       type(request_t), intent(in) :: request
-      !> Points of a case
       type(grid_t), intent(in) :: grid
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -265,7 +291,7 @@ contains
          known = known//' '//grid%axes(j)%name
       end do
       do i = 1, size(request%names)
-         if (has_word(known, request%names(i)%text)) cycle
+         if (contains_word(known, request%names(i)%text)) cycle
          call raise(error, error_usage, "unknown name '"//printable(request%names(i)%text) &
             //"' in --print; "//suggestion(request%names(i)%text, known))
          return
@@ -273,59 +299,51 @@ contains
    end subroutine check_names
 
    !> No file of one case may be a file of another, nor a case file itself, nor a data file
-   subroutine refuse_clash(request, jobs, new, old, error)
-      type(request_t), intent(in) :: request
-      !> The cases
-      type(job_t), intent(in) :: jobs(:)
-      !> A case
-      integer, intent(in) :: new
-      !> A case that comes no later
-      integer, intent(in) :: old
+   subroutine refuse_clash(new, old, is_same, error)
+      type(job_t), intent(in) :: new
+      !> One that comes no later
+      type(job_t), intent(in) :: old
+      !> Whether they are the same
+      logical, intent(in) :: is_same
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer :: i, j
 
-      do i = 1, size(jobs(new)%endings)
-         if (jobs(new)%writes(i)) call keep_data(new, old)
-         if (jobs(old)%writes(i) .and. old /= new) call keep_data(old, new)
-         if (allocated(error)) return
-         if (.not. jobs(new)%writes(i)) cycle
-         if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), request%files(old)%text)) then
-            call raise(error, error_input, request%files(new)%text//': its results would replace ' &
-               //'the case file '//request%files(old)%text//': give it another output.stem')
-            return
-         end if
-         if (old == new) cycle
-         do j = 1, size(jobs(old)%endings)
-            if (.not. jobs(old)%writes(j)) cycle
-            if (same_file(jobs(new)%path//trim(jobs(new)%endings(i)), &
-               jobs(old)%path//trim(jobs(old)%endings(j)))) then
-               call raise(error, error_input, request%files(new)%text//': its files would ' &
-                  //'replace those of '//request%files(old)%text//': give one of them another ' &
-                  //'output.stem')
-               return
-            end if
+      call keep_inputs(new, old)
+      if (is_same .or. allocated(error)) return
+      call keep_inputs(old, new)
+      do i = 1, size(new%endings)
+         do j = 1, size(old%endings)
+            if (allocated(error)) return
+            if (.not. (new%writes(i) .and. old%writes(j))) cycle
+            if (same_file(new%file(i), old%file(j))) call raise(error, error_input, &
+               new%case%source//': its files would replace those of '//old%case%source &
+               //': give one of them another output.stem')
          end do
       end do
 
    contains
 
-      !> No file of a case may be a data file of another or its own
-      subroutine keep_data(writer, reader)
-         !> The case whose results are written
-         integer, intent(in) :: writer
-         !> The case whose data files are read
-         integer, intent(in) :: reader
+      !> No file that is written may be one that is read
+      subroutine keep_inputs(writer, reader)
+         type(job_t), intent(in) :: writer, reader
 
-         do j = 1, jobs(reader)%case%count('material')
-            if (.not. same_file(jobs(writer)%path//trim(jobs(writer)%endings(i)), &
-               data_file(jobs(reader)%case, j))) cycle
-            call raise(error, error_input, request%files(writer)%text//': its results would ' &
-               //'replace the data file '//data_file(jobs(reader)%case, j) &
-               //': give it another output.stem')
+         integer :: k
+
+         do i = 1, size(writer%endings)
+            if (.not. writer%writes(i)) cycle
+            if (same_file(writer%file(i), reader%case%source)) call raise(error, error_input, &
+               writer%case%source//': its results would replace the case file ' &
+               //reader%case%source//': give it another output.stem')
+            do k = 1, reader%case%count('material')
+               if (same_file(writer%file(i), data_file(reader%case, k))) &
+                  call raise(error, error_input, writer%case%source//': its results would ' &
+                  //'replace the data file '//data_file(reader%case, k) &
+                  //': give it another output.stem')
+            end do
          end do
-      end subroutine keep_data
+      end subroutine keep_inputs
    end subroutine refuse_clash
 
 end module vcor_app_job

@@ -2,8 +2,7 @@
 program vcor_main
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_argument, only : argument_t, get_arguments, sum_of_words
-   use vcor_app_cli, only : parse, request_t
+   use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
    use vcor_app_driver, only : complain, execute
    use vcor_app_signals, only : prepare_signals
    use vcor_error, only : error_t, error_usage, raise

@@ -85,26 +85,19 @@ contains
          curves(2))
       if (.not. any(job%writes)) return
       call make_directory(directory_of(job), error)
-      if (.not. allocated(error) .and. job%writes(1)) &
-         call write_csv(job%path//trim(job%endings(1)), summary, error)
+      if (.not. allocated(error) .and. job%writes(1)) call write_csv(job%file(1), summary, error)
       do i = 1, size(curves)
          if (.not. allocated(error) .and. job%writes(i + 1)) &
-            call write_csv(job%path//trim(job%endings(i + 1)), curves(i), error)
+            call write_csv(job%file(i + 1), curves(i), error)
       end do
       if (.not. allocated(error) .and. job%writes(4)) &
-         call write_hdf5(job%path//trim(job%endings(4)), summary, error=error, more=curves)
-      if (allocated(error)) return
-      do i = 1, size(job%endings)
-         if (job%writes(i)) &
-            files = files//'  written '//job%path//trim(job%endings(i))//nl
-      end do
+         call write_hdf5(job%file(4), summary, error=error, more=curves)
+      if (.not. allocated(error)) files = job%written()
    end subroutine write_files
 
    !> What the screen shows
    function report(filename, title, moduli) result(text)
-      !> Case file
       character(len=*), intent(in) :: filename
-      !> Title of the case
       character(len=*), intent(in) :: title
       type(moduli_t), intent(in) :: moduli
       !> Text of several lines

@@ -29,7 +29,6 @@ contains
 
    !> Merge shards
    subroutine merge_shards(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> Error of code `error_file` if shards are missing or do not belong together, of code
       !> `error_numerical` if points have no result; unallocated on success
@@ -66,7 +65,6 @@ contains
 
    !> See whether the files are all shards of one sweep
    subroutine identify(request, first, numbers, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> What the first file is about
       type(identity_t), intent(out) :: first
@@ -140,7 +138,6 @@ contains
 
    !> Outcomes of all shards in one summary
    subroutine gather(request, identity, numbers, summary, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> What the shards are about
       type(identity_t), intent(in) :: identity
@@ -200,7 +197,6 @@ contains
 
    !> Write the files of the whole sweep
    subroutine write_merged(request, job, identity, summary, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case and its grid
       type(job_t), intent(inout) :: job
@@ -220,7 +216,7 @@ contains
       call name_files(request, job, error)
       if (allocated(error)) return
       do i = 1, size(request%files)
-         if (.not. same_file(request%files(i)%text, job%path//trim(job%endings(3)))) cycle
+         if (.not. same_file(request%files(i)%text, job%file(3))) cycle
          call raise(error, error_file, quoted_path(request%files(i)%text) &
             //' would be replaced by what it is merged into: give another --output')
          return

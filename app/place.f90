@@ -1,10 +1,9 @@
 !> Where a command that writes one file puts it
 module vcor_app_place
-   use vcor_app_argument, only : has_word
    use vcor_error, only : error_t, error_usage, raise
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, make_directory
-   use vcor_words, only : suggestion
+   use vcor_words, only : contains_word, suggestion
    use vcor_text, only : printable
    implicit none
    private
@@ -46,7 +45,7 @@ contains
       else
          extension = name(mark + 1:)
          path = directory//name(:mark - 1)
-         if (.not. has_word(extensions, extension)) then
+         if (.not. contains_word(extensions, extension)) then
             call raise(error, error_usage, "unknown format '"//printable(extension)//"' of '" &
                //printable(trim(output))//"'; "//suggestion(extension, extensions) &
                //"; the name of a folder ends with a slash")

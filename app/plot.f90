@@ -1,6 +1,5 @@
 !> The command plot: figures of results
 module vcor_app_plot
-   use vcor_app_argument, only : has_word
    use vcor_app_cli, only : request_t
    use vcor_app_place, only : find_place
    use vcor_error, only : error_input, error_t, error_usage, raise
@@ -12,7 +11,7 @@ module vcor_app_plot
    use vcor_io_gnuplot, only : figure_formats => formats
    use vcor_text, only : integer_text, printable
    use vcor_io_path, only : same_file
-   use vcor_words, only : suggestion
+   use vcor_words, only : contains_word, suggestion
    implicit none
    private
 
@@ -64,12 +63,12 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (allocated(request%kind)) then
-         if (.not. has_word(figure_kinds, request%kind)) call raise(error, error_usage, &
+         if (.not. contains_word(figure_kinds, request%kind)) call raise(error, error_usage, &
             "unknown kind '"//printable(request%kind)//"' in --kind; " &
             //suggestion(request%kind, figure_kinds))
       end if
       if (allocated(request%format) .and. .not. allocated(error)) then
-         if (.not. has_word(figure_formats, request%format)) call raise(error, error_usage, &
+         if (.not. contains_word(figure_formats, request%format)) call raise(error, error_usage, &
             "unknown format '"//printable(request%format)//"' in --format; " &
             //suggestion(request%format, figure_formats))
       end if

@@ -29,7 +29,6 @@ contains
 
    !> Look for results
    subroutine look_back(job, expected, previous)
-      !> The case
       type(job_t), intent(in) :: job
       !> What they should be about
       type(identity_t), intent(in) :: expected
@@ -43,7 +42,7 @@ contains
 
       ! HDF5 first; a history says nothing that the others do not
       do i = 3, 1, -2
-         previous%path = job%path//trim(job%endings(i))
+         previous%path = job%file(i)
          if (job%writes(i)) previous%exist = plain_file_exists(previous%path)
          if (previous%exist) exit
       end do
@@ -67,9 +66,7 @@ contains
 
    !> Whether there is nothing to do: with --resume, where the results are there
    subroutine heed(request, job, previous, is_finished, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
       !> What is there
       type(previous_t), intent(in) :: previous
@@ -98,7 +95,6 @@ contains
 
    !> Whether all files are there, and the CSV files have all of their rows
    function is_whole(job, previous)
-      !> The case
       type(job_t), intent(in) :: job
       !> What is there, about this case
       type(previous_t), intent(in) :: previous
@@ -109,9 +105,9 @@ contains
 
       is_whole = previous%has_hdf5 .or. .not. job%writes(3)
       if (is_whole .and. job%writes(1)) &
-         is_whole = csv_rows(job%path//trim(job%endings(1))) == job%part%count()
+         is_whole = csv_rows(job%file(1)) == job%part%count()
       if (.not. (is_whole .and. job%writes(2))) return
-      rows = csv_rows(job%path//trim(job%endings(2)))
+      rows = csv_rows(job%file(2))
       is_whole = rows > 0
       if (previous%has_hdf5) is_whole = rows == history_rows(previous%path)
    end function is_whole

@@ -1,6 +1,5 @@
 !> A material of a case in place of measured data
 module vcor_app_sampling
-   use vcor_app_argument, only : append_word
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t, prepare
    use vcor_app_window, only : find_window, take_first_point, window_t
@@ -45,8 +44,12 @@ module vcor_app_sampling
 contains
 
    !> Sample a material of a case
-   subroutine sample_model(request, sampled, samples, note, error)
+   subroutine sample_model(request, source, dynamic, sampled, samples, note, error)
       type(request_t), intent(in) :: request
+      !> CASE.nml or CASE.nml:MATERIAL
+      character(len=*), intent(in) :: source
+      !> Whether storage and loss modulus are sampled
+      logical, intent(in) :: dynamic
       !> What was sampled
       type(sampled_t), intent(out) :: sampled
       type(samples_t), intent(out) :: samples
@@ -63,11 +66,11 @@ contains
       complex(wp), allocatable :: modulus(:)
       integer :: n
 
-      call take_name(request%fit%source, filename, name)
+      call take_name(source, filename, name)
       reading = request
       deallocate (reading%files)
-      allocate (reading%files(0))
-      call append_word(reading%files, filename)
+      allocate (reading%files(1))
+      reading%files(1)%text = filename
       call prepare(reading, jobs, error)
       if (allocated(error)) return
       call take_first_point(jobs(1), sampled%case, sampled%notes, error)
@@ -98,7 +101,7 @@ contains
          call raise(error, error_usage, 'expected --from before --to')
          return
       end if
-      samples%dynamic = request%fit%dynamic
+      samples%dynamic = dynamic
       if (samples%dynamic) range = time_range_t(1.0_wp/range%last, 1.0_wp/range%first, range%points)
       samples%at = sampled_times(range)
       n = size(samples%at)

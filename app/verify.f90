@@ -110,9 +110,7 @@ contains
 
    !> A comparison of methods
    function comparison_text(filename, title, comparison) result(text)
-      !> Case file
       character(len=*), intent(in) :: filename
-      !> Title of the case
       character(len=*), intent(in) :: title
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text

@@ -58,7 +58,6 @@ contains
 
    !> Points are finished
    subroutine finished(self, first, last, count, summary, error)
-      !> The watch
       class(watch_t), intent(inout) :: self
       !> First place that may have changed
       integer, intent(in) :: first
@@ -90,7 +89,6 @@ contains
 
    !> Show how far the sweep is
    subroutine show(self, time)
-      !> The watch
       type(watch_t), intent(in) :: self
       !> Time since it began [s]
       real(wp), intent(in) :: time
@@ -142,7 +140,6 @@ contains
       function two(number)
          !> Number, from 0 to 59
          integer, intent(in) :: number
-         !> Its digits
          character(len=2) :: two
 
          write (two, '(i2.2)') number
@@ -151,7 +148,6 @@ contains
 
    !> Take the line off the terminal
    subroutine clear(self)
-      !> The watch
       class(watch_t), intent(inout) :: self
 
       if (self%shown > 0.0_wp) &

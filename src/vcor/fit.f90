@@ -1,9 +1,11 @@
 !> Identification of a material: the parameters of a model from samples of its moduli
 module vcor_fit
    use vcor_error, only : error_input, error_t, error_usage, raise
+   use vcor_interval, only : interval_text, is_within
    use vcor_kinds, only : wp
-   use vcor_material_parameter, only : parameter_t
-   use vcor_text, only : integer_text
+   use vcor_material_parameter, only : linear, parameter_t
+   use vcor_text, only : integer_text, printable
+   use vcor_words, only : join_words
    use vcor_fit_law_problem, only : stated_parameters
    use vcor_fit_law, only : fit_law
    use vcor_fit_result, only : estimate_t, fit_t, state_bound, state_fixed, state_free, &
@@ -13,7 +15,7 @@ module vcor_fit
    implicit none
    private
 
-   public :: fit_t, estimate_t, samples_t, fit_material, fixable_parameters
+   public :: fit_t, estimate_t, samples_t, fit_material, check_fixed, fixable_parameters
    public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
 
    !> Relative change of the modulus below which nothing relaxes
@@ -37,6 +39,54 @@ contains
       end do
    end function fixable_parameters
 
+   !> Check parameters that are to have a given value
+   pure subroutine check_fixed(model, fixed, error)
+      !> One of `identifiable_models`
+      character(len=*), intent(in) :: model
+      !> The parameters, shape (n)
+      type(estimate_t), intent(in) :: fixed(:)
+      !> Error of code `error_usage`, unallocated if the model has them, each is given once, and all
+      !> are within their ranges
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp), parameter :: largest = 1.0e30_wp, smallest = 1.0e-30_wp
+      type(parameter_t), allocatable :: stated(:)
+      character(len=:), allocatable :: expected
+      logical :: good
+      integer :: i, k
+
+      allocate (stated, source=stated_parameters(model))
+      do i = 1, size(fixed)
+         k = findloc(stated%name == fixed(i)%name, .true., dim=1)
+         if (k == 0) then
+            call raise(error, error_usage, "found '"//printable(trim(fixed(i)%name)) &
+               //"', expected a parameter of model "//model//': ' &
+               //join_words(fixable_parameters(model)))
+            return
+         end if
+         associate (parameter => stated(k), value => fixed(i)%value)
+            if (parameter%unit == '') then
+               expected = interval_text(parameter%range)
+            else
+               expected = trim(merge('>=', '> ', parameter%scale == linear))//' 0, at most 1e30'
+            end if
+            good = is_within(parameter%range, value) .and. value >= smallest .and. value <= largest
+            if (parameter%scale == linear) good = good .or. .not. abs(value) > 0.0_wp
+         end associate
+         if (.not. good) then
+            call raise(error, error_usage, 'the value of '//trim(fixed(i)%name) &
+               //' is out of range, expected a number '//expected)
+         else if (any(fixed(:i - 1)%name == fixed(i)%name)) then
+            call raise(error, error_usage, trim(fixed(i)%name)//' is given twice')
+         end if
+         if (allocated(error)) return
+      end do
+      if (model /= 'sls' .or. size(fixed) < 2) return
+      if (sum(fixed%value, fixed%name == 'alpha') > sum(fixed%value, fixed%name == 'beta') &
+         .and. any(fixed%name == 'beta')) call raise(error, error_usage, 'found alpha above ' &
+         //'beta, expected alpha <= beta: the rubbery modulus is glassy_modulus*alpha/beta')
+   end subroutine check_fixed
+
    !> Fit a model to samples
    subroutine fit_material(fit, model, terms, fixed, samples, error)
       type(fit_t), intent(out) :: fit
@@ -44,16 +94,18 @@ contains
       character(len=*), intent(in) :: model
       !> Terms of a Prony series; 0: as many as the data support
       integer, intent(in) :: terms
-      !> Parameters that have a given value, each one of `fixable_parameters`, shape (n)
+      !> Parameters that have a given value, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
       type(samples_t), intent(in) :: samples
-      !> Error of code `error_input` if the data cannot be fitted, of code `error_numerical` if the
-      !> fit fails; unallocated on success
+      !> Error of code `error_usage` if parameters cannot have their given values, `error_input` if
+      !> the data cannot be fitted, `error_numerical` if the fit fails; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: equilibrium
       integer :: unknowns
 
+      call check_fixed(model, fixed, error)
+      if (allocated(error)) return
       unknowns = size(stated_parameters(model)) - size(fixed)
       if (model == 'prony') unknowns = unknowns + 2*max(1, terms)
       if (samples%count() <= unknowns) then

@@ -103,7 +103,7 @@ contains
       end if
    end function response
 
-   !> Set the rates of a series, and its moduli by non-negative least squares of the relative misfits
+   !> Set the rates, and the moduli by non-negative least squares of the relative misfits
    subroutine solve_moduli(series, rates)
       !> The series; its moduli are >= 0 afterwards
       type(series_t), intent(inout) :: series
