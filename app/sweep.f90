@@ -23,7 +23,7 @@ module vcor_app_sweep
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
    use vcor_sweep_points, only : clock, solve_points
-   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending
+   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities
    use vcor_sweep_summary, only : new_summary, summary_t
    implicit none
    private
@@ -144,15 +144,16 @@ contains
       !> Error of code `error_file`, unallocated where there is enough
       type(error_t), allocatable, intent(out) :: error
 
-      ! Outcomes are kept once as numbers and once as a file in memory, 320 bytes to a point as
-      ! measured; a thread has a stack of 8 MB and what it works with
-      integer(int64), parameter :: bytes_per_point = 400_int64, bytes_per_thread = 12000000_int64, &
+      ! Outcomes are kept once as numbers of 8 bytes, and a column or two once more where they are
+      ! written; a thread has a stack of 8 MB and what it works with
+      integer(int64), parameter :: bytes_per_column = 12_int64, bytes_per_thread = 12000000_int64, &
          megabyte = 1000000_int64
       character, allocatable :: room(:)
       integer(int64) :: bytes
       integer :: status
 
-      bytes = bytes_per_point*int(job%part%count(), int64) + bytes_per_thread*int(threads, int64)
+      bytes = bytes_per_column*size(quantities())*int(job%part%count(), int64) &
+         + bytes_per_thread*int(threads, int64)
       allocate (room(bytes), stat=status)
       if (status /= 0) call raise(error, error_file, job%case%source//': there is not enough ' &
          //'memory for '//integer_text(job%part%count())//' points by '//integer_text(threads) &

@@ -16,8 +16,8 @@
 !> other file. So of two processes that begin the same sweep one has it, and the lock goes with the
 !> process, however that ends. Links and pipes of that name are refused, not followed.
 module vcor_io_checkpoint
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_loc, &
-      c_null_char, c_null_ptr, c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
+      c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_t, raise
@@ -301,11 +301,13 @@ contains
       !> Last place
       integer, intent(in) :: last
       !> Outcomes of all places
-      type(summary_t), intent(in) :: summary
+      type(summary_t), intent(in), target :: summary
       !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
 
-      character(kind=c_char), parameter :: bytes(1) = c_null_char
+      ! bytes of a number
+      integer, parameter :: real_width = 8, integer_width = 4
+      integer, target :: checks(last - first + 1)
       integer(c_int) :: reason
       integer :: i, n
 
@@ -313,31 +315,33 @@ contains
       do i = 1, n
          associate (values => summary%values(i))
             if (allocated(values%reals)) then
-               call write_at(i, storage_size(1.0_wp)/8, transfer(values%reals(first:last), bytes))
+               call write_at(i, c_loc(values%reals(first)), real_width)
             else
-               call write_at(i, storage_size(1)/8, transfer(values%integers(first:last), bytes))
+               call write_at(i, c_loc(values%integers(first)), integer_width)
             end if
          end associate
       end do
-      call write_at(n + 1, storage_size(1)/8, transfer(summary%status(first:last), bytes))
-      call write_at(n + 2, storage_size(1)/8, transfer(checks_of(summary, first, last), bytes))
+      call write_at(n + 1, c_loc(summary%status(first)), integer_width)
+      ! last: a point is done if its check sum is right
+      checks = checks_of(summary, first, last)
+      call write_at(n + 2, c_loc(checks), integer_width)
 
    contains
 
       !> Write numbers of a column to their places
-      subroutine write_at(column, width, what)
+      subroutine write_at(column, numbers, width)
          !> Number of the column
          integer, intent(in) :: column
-         !> Bytes of one of its numbers
+         !> Where the first of the numbers is in memory
+         type(c_ptr), intent(in) :: numbers
+         !> Bytes of a number
          integer, intent(in) :: width
-         !> All bytes
-         character(kind=c_char), intent(in), contiguous, target :: what(:)
 
          integer(c_size_t) :: length
 
          if (allocated(error)) return
-         length = size(what, kind=c_size_t)
-         if (c_pwrite(c_fileno(self%stream), c_loc(what), length, self%offsets(column) &
+         length = int(last - first + 1, c_size_t)*width
+         if (c_pwrite(c_fileno(self%stream), numbers, length, self%offsets(column) &
             + int(first - 1, c_int64_t)*width) == length) return
          reason = last_errno()
          call raise_system(error, 'cannot write '//quoted_path(self%path), reason)

@@ -19,18 +19,19 @@
 !> Every error is an `error_file` with the path and the system's reason. Files are written by one
 !> thread at a time.
 module vcor_io_file
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char, c_null_ptr, &
-      c_ptr, c_size_t
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_null_char, &
+      c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
       plain_file_exists, quoted_path, raise_system
-   use vcor_io_posix, only : c_fclose, c_fopen, c_fwrite, c_isatty, c_mkdtemp, c_rename, c_rmdir, &
-      c_text, c_unlink, c_write, errno_interrupted, last_errno, standard_error, standard_output
+   use vcor_io_posix, only : c_fallocate, c_fclose, c_fflush, c_fileno, c_fopen, c_fwrite, &
+      c_isatty, c_mkdtemp, c_rename, c_rmdir, c_text, c_unlink, c_write, errno_interrupted, &
+      last_errno, standard_error, standard_output
    implicit none
    private
 
-   public :: output_file_t, create_file, put, commit, discard, write_file, check_target
+   public :: output_file_t, create_file, put, reserve, commit, discard, write_file, check_target
    public :: move_file, remove_file
    public :: make_scratch, remember, remove_scratch, remove_all_scratch
    public :: write_stdout, write_terminal, stderr_is_terminal
@@ -38,13 +39,14 @@ module vcor_io_file
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`.
    !> A procedure that fails discards the file
    type :: output_file_t
-      private
-      !> Stream of C, null unless the file is open
-      type(c_ptr) :: stream = c_null_ptr
+      !> Its path until `commit`
+      character(len=:), allocatable :: temporary
+      !> The private folder that it is in
+      character(len=:), allocatable, private :: folder
       !> The real name
-      character(len=:), allocatable :: path
-      !> The private folder that it is in until `commit`, and its path there
-      character(len=:), allocatable :: folder, temporary
+      character(len=:), allocatable, private :: path
+      !> Stream of C, null unless the file is open
+      type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
 
    !> Longest path that is remembered (PATH_MAX of Linux), and most of them; a run has few at a time
@@ -79,7 +81,7 @@ contains
       if (allocated(error)) return
       file%temporary = join_path(file%folder, 'new')
       call remember(file%temporary)
-      file%stream = c_fopen(c_text(file%temporary), c_text('wbx'))
+      file%stream = c_fopen(c_text(file%temporary), c_text('abx'))
       reason = last_errno()
       if (.not. c_associated(file%stream)) call fail(file, reason, error)
    end subroutine create_file
@@ -103,6 +105,24 @@ contains
       reason = last_errno()
       call fail(file, reason, error)
    end subroutine put
+
+   !> Take room on the disk for somebody else who writes to the file by its temporary path, and may
+   !> leave it shorter
+   subroutine reserve(file, bytes, error)
+      !> Open file; discarded on failure
+      type(output_file_t), intent(inout) :: file
+      !> Length of the file [bytes]
+      integer(c_int64_t), intent(in) :: bytes
+      !> Set if there is not so much room
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(c_int) :: reason
+
+      reason = 0
+      if (c_fflush(file%stream) /= 0) reason = last_errno()
+      if (reason == 0) reason = c_fallocate(c_fileno(file%stream), 0_c_int64_t, bytes)
+      if (reason /= 0) call fail(file, reason, error)
+   end subroutine reserve
 
    !> End a file: hand the rest of it to the system, close it and give it its real name
    subroutine commit(file, error)

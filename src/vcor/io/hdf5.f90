@@ -12,25 +12,25 @@
 !> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
 !> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
-!> The file is built in memory and written by `vcor_io_file`, for HDF5 does not survive a full disk:
-!> release 1.10 crashes when it closes a file that it could not write. A seal (`vcor_io_seal`) ends
-!> it. Objects hold no times: the same tables give the same bytes.
+!> HDF5 does not survive a full disk: release 1.10 crashes when it closes a file that it could not
+!> write. So the file takes its room on the disk before HDF5 writes to it, in the private folder of
+!> `vcor_io_file`. A seal (`vcor_io_seal`) ends it. Objects hold no times: the same tables give the
+!> same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int64_t, &
-      c_int8_t, c_loc, c_null_char, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_char, c_loc, c_null_char, c_ptr
+   use, intrinsic :: iso_fortran_env, only : int64
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
-      h5f_acc_trunc_f, h5f_close_strong_f, h5f_libver_v18_f, h5f_scope_global_f, h5fclose_f, &
-      h5fcreate_f, h5fflush_f, h5fget_file_image_f, h5gclose_f, h5gcreate_f, &
-      h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, &
-      h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, &
-      h5pcreate_f, h5pset_fapl_core_f, h5pset_fclose_degree_f, h5pset_fill_value_f, &
-      h5pset_libver_bounds_f, h5pset_link_creation_order_f, h5pset_obj_track_times_f, &
-      h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, h5t_cset_utf8_f, &
-      h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, h5t_string, &
-      h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t, size_t
+      h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_libver_v18_f, h5fclose_f, &
+      h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5p_crt_order_indexed_f, &
+      h5p_crt_order_tracked_f, h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, &
+      h5p_group_create_f, h5pclose_f, h5pcopy_f, h5pcreate_f, h5pset_fclose_degree_f, &
+      h5pset_fill_value_f, h5pset_libver_bounds_f, h5pset_link_creation_order_f, &
+      h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
+      h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, &
+      h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : commit, create_file, output_file_t, put
+   use vcor_io_file, only : commit, create_file, discard, output_file_t, put, reserve
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
    use vcor_io_seal, only : seal_of
@@ -53,7 +53,7 @@ module vcor_io_hdf5
       character(len=:), allocatable :: text
    end type remark_t
 
-   !> A file that is being built in memory. The first failure is kept; what comes after it does
+   !> A file that is being built. The first failure is kept; what comes after it does
    !> nothing
    type :: writer_t
       !> The file
@@ -63,21 +63,10 @@ module vcor_io_hdf5
       !> Type of text
       integer(hid_t) :: text_type = nothing
       !> What the seal of the file leaves out, as in `seal_of`
-      integer(c_int64_t), allocatable :: left_out(:, :)
+      integer(int64), allocatable :: left_out(:, :)
       !> What failed first; unallocated as long as nothing did
       character(len=:), allocatable :: fault
    end type writer_t
-
-   interface
-      !> What the driver of a file works with: in memory, the address of a pointer to its bytes
-      function c_get_vfd_handle(file, access, handle) result(status) &
-         bind(c, name='H5Fget_vfd_handle')
-         import :: c_int, c_int64_t, c_ptr
-         integer(c_int64_t), intent(in), value :: file, access
-         type(c_ptr), intent(out) :: handle
-         integer(c_int) :: status
-      end function c_get_vfd_handle
-   end interface
 
 contains
 
@@ -97,60 +86,70 @@ contains
       !> are in the file: they are no part of the seal
       integer, intent(in), optional :: changing
 
+      type(output_file_t) :: file
       type(writer_t) :: writer
       type(handler_t) :: handler
       integer :: i, ignored
 
       call check_table(table, error)
-      if (allocated(error)) return
       if (present(more)) then
          do i = 1, size(more)
-            call check_table(more(i), error)
-            if (allocated(error)) return
+            if (.not. allocated(error)) call check_table(more(i), error)
          end do
       end if
+      if (.not. allocated(error)) call create_file(file, filename, error)
+      if (allocated(error)) return
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         call begin_file(writer, bytes_of(table))
-         call put_text(writer, writer%file, 'program', 'vcor')
-         call put_text(writer, writer%file, 'version', table%version)
-         call put_text(writer, writer%file, 'title', table%title)
-         call put_text(writer, writer%file, 'case', table%case_text)
-         if (present(remarks)) then
-            do i = 1, size(remarks)
-               call put_text(writer, writer%file, remarks(i)%name, remarks(i)%text)
-            end do
+         call begin_file(writer, file, bytes_of(table, more), error)
+         if (.not. allocated(error)) then
+            call put_text(writer, writer%file, 'program', 'vcor')
+            call put_text(writer, writer%file, 'version', table%version)
+            call put_text(writer, writer%file, 'title', table%title)
+            call put_text(writer, writer%file, 'case', table%case_text)
+            if (present(remarks)) then
+               do i = 1, size(remarks)
+                  call put_text(writer, writer%file, remarks(i)%name, remarks(i)%text)
+               end do
+            end if
+            call put_table(writer, table, changing)
+            if (present(more)) then
+               do i = 1, size(more)
+                  call put_table(writer, more(i))
+               end do
+            end if
+            ! what is still open in it after a failure goes with the file
+            call h5fclose_f(writer%file, i)
+            call note(writer, i, 'close the file')
          end if
-         call put_table(writer, table, changing)
-         if (present(more)) then
-            do i = 1, size(more)
-               call put_table(writer, more(i))
-            end do
-         end if
-         call save(writer, filename, error)
-         ! what is still open in it after a failure goes with the file
-         call h5fclose_f(writer%file, ignored)
          call h5tclose_f(writer%text_type, ignored)
          call h5pclose_f(writer%group_creation, ignored)
          call h5pclose_f(writer%dataset_creation, ignored)
          call end_hdf5(handler)
       end if
-      if (allocated(writer%fault)) call raise(error, error_file, &
-         'cannot write '//quoted_path(filename)//': HDF5 cannot '//writer%fault)
+      if (allocated(writer%fault)) then
+         call raise(error, error_file, &
+            'cannot write '//quoted_path(filename)//': HDF5 cannot '//writer%fault)
+         call discard(file)
+      end if
+      if (.not. allocated(error)) call put(file, seal_of(file%temporary, writer%left_out), error)
+      if (.not. allocated(error)) call commit(file, error)
    end subroutine write_hdf5
 
-   !> Begin a file in memory, with the property lists and the type that all its objects share
-   subroutine begin_file(writer, growth)
+   !> Begin a file, with the property lists and the type that all its objects share
+   subroutine begin_file(writer, file, bytes, error)
       !> Writer, nothing open yet
       type(writer_t), intent(inout) :: writer
-      !> Bytes by which the file grows in memory
-      integer(size_t), intent(in) :: growth
+      !> File to write to
+      type(output_file_t), intent(inout) :: file
+      !> Room that it takes on the disk [bytes]
+      integer(int64), intent(in) :: bytes
+      !> Set if there is not so much room
+      type(error_t), allocatable, intent(out) :: error
 
-      ! HDF5 wants a name for a file in memory too and reads what has that name: nothing can
-      character(len=*), parameter :: no_path = '/dev/null/vcor.h5'
       integer(hid_t) :: access, creation
-      integer :: ignored, order, status(15)
+      integer :: ignored, order, status(13)
 
       order = ior(h5p_crt_order_tracked_f, h5p_crt_order_indexed_f)
       allocate (writer%left_out(2, 0))
@@ -163,43 +162,66 @@ contains
       call h5pcreate_f(h5p_dataset_create_f, writer%dataset_creation, status(7))
       call h5pset_obj_track_times_f(writer%dataset_creation, .false., status(8))
       call h5pcreate_f(h5p_file_access_f, access, status(9))
-      call h5pset_fapl_core_f(access, growth, .false., status(10))
       ! From 1.8 on HDF5 keeps check sums of what makes a file an HDF5 file
-      call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_v18_f, status(11))
-      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(12))
-      call h5tcopy_f(h5t_string, writer%text_type, status(13))
-      call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status(14))
-      call h5fcreate_f(no_path, h5f_acc_trunc_f, writer%file, status(15), creation, access)
-      call note(writer, minval(status), 'create a file in memory')
+      call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_v18_f, status(10))
+      call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(11))
+      call h5tcopy_f(h5t_string, writer%text_type, status(12))
+      call h5tset_cset_f(writer%text_type, h5t_cset_utf8_f, status(13))
+      call reserve(file, bytes, error)
+      if (.not. allocated(error)) then
+         call h5fcreate_f(file%temporary, h5f_acc_trunc_f, writer%file, status(1), creation, access)
+         call h5fclose_f(writer%file, ignored)
+         ! HDF5 has given the room back
+         call reserve(file, bytes, error)
+      end if
+      if (.not. allocated(error)) then
+         call h5fopen_f(file%temporary, h5f_acc_rdwr_f, writer%file, status(2), access)
+         call note(writer, minval(status), 'create a file')
+      end if
       call h5pclose_f(creation, ignored)
       call h5pclose_f(access, ignored)
    end subroutine begin_file
 
-   !> Room that a table takes in a file, somewhat more: a file that grows in small steps moves in
-   !> memory, and what it leaves behind is a fifth of the memory of a large sweep
-   pure function bytes_of(table) result(bytes)
-      !> The table
+   !> Room that tables take in a file, somewhat more
+   pure recursive function bytes_of(table, more) result(bytes)
+      !> First table
       type(table_t), intent(in) :: table
+      !> Further tables
+      type(table_t), intent(in), optional :: more(:)
       !> Number of bytes
-      integer(size_t) :: bytes
+      integer(int64) :: bytes
 
+      ! what HDF5 needs at most for a dataset and for a text, beside its values
+      integer(int64), parameter :: per_dataset = 4096_int64, per_text = 44_int64
       integer :: i
 
-      bytes = 65536_size_t + 8_size_t*sum(int(table%dimensions%length, size_t))
-      do i = 1, size(table%columns)
-         associate (column => table%columns(i))
-            select case (column%kind)
-            case (real_column)
-               bytes = bytes + 8_size_t*column%length
-            case (integer_column)
-               bytes = bytes + 4_size_t*column%length
-            case default
-               if (.not. is_uniform(column)) &
-                  bytes = bytes + int(column%width + 40, size_t)*column%length
-            end select
-         end associate
+      bytes = 65536_int64 + len(table%case_text, kind=int64)
+      do i = 1, size(table%dimensions)
+         bytes = bytes + bytes_of_column(table%dimensions(i))
       end do
-      bytes = bytes + bytes/50_size_t
+      do i = 1, size(table%columns)
+         bytes = bytes + bytes_of_column(table%columns(i))
+      end do
+      if (.not. present(more)) return
+      do i = 1, size(more)
+         bytes = bytes + bytes_of(more(i))
+      end do
+
+   contains
+
+      !> Room for one column
+      pure function bytes_of_column(column) result(bytes)
+         !> The column
+         type(column_t), intent(in) :: column
+         !> Number of bytes
+         integer(int64) :: bytes
+
+         bytes = 8_int64
+         if (column%kind == integer_column) bytes = 4_int64
+         if (column%kind == text_column) bytes = column%width + per_text
+         if (is_uniform(column)) bytes = 0_int64
+         bytes = per_dataset + bytes*column%length
+      end function bytes_of_column
    end function bytes_of
 
    !> Write a table as a group
@@ -376,12 +398,12 @@ contains
       !> The dataset, in one piece
       integer(hid_t), intent(in) :: dataset
 
-      integer(c_int64_t) :: bytes, offset
+      integer(int64) :: bytes, offset
       integer :: below
 
-      offset = c_get_offset(int(dataset, c_int64_t))
+      offset = c_get_offset(int(dataset, int64))
       call note(writer, merge(0, -1, offset >= 0), "find '"//column%name//"'")
-      bytes = int(merge(8, 4, column%kind == real_column), c_int64_t)*column%length
+      bytes = int(merge(8, 4, column%kind == real_column), int64)*column%length
       ! in ascending order: HDF5 may have them in another one
       below = count(writer%left_out(1, :) < offset)
       writer%left_out = reshape([writer%left_out(:, :below), offset, bytes, &
@@ -443,54 +465,6 @@ contains
       call h5sclose_f(space, status(5))
       call note(writer, minval(status), "write the attribute '"//name//"'")
    end subroutine put_attribute
-
-   !> Write the bytes of the file, from where HDF5 has them (a copy would double the memory), and
-   !> its seal
-   subroutine save(writer, filename, error)
-      !> Writer with a file
-      type(writer_t), intent(inout) :: writer
-      !> Name of the file; replaced if it is there
-      character(len=*), intent(in) :: filename
-      !> Set if the file could not be written
-      type(error_t), allocatable, intent(out) :: error
-
-      integer(c_int64_t), parameter :: default = 0_c_int64_t
-      integer(c_int8_t), pointer, contiguous :: bytes(:)
-      character(kind=c_char), pointer, contiguous :: letters(:)
-      type(c_ptr) :: handle
-      type(c_ptr), pointer :: place
-      integer(size_t) :: length
-      integer :: status(3)
-
-      if (allocated(writer%fault)) return
-      handle = c_null_ptr
-      call h5fflush_f(writer%file, h5f_scope_global_f, status(1))
-      call h5fget_file_image_f(writer%file, handle, 0_size_t, status(2), length)
-      status(3) = c_get_vfd_handle(int(writer%file, c_int64_t), default, handle)
-      call note(writer, minval(status), 'give the bytes of the file')
-      if (allocated(writer%fault)) return
-      call c_f_pointer(handle, place)
-      call c_f_pointer(place, bytes, [length])
-      call c_f_pointer(place, letters, [length])
-      call save_as_text(length, letters)
-
-   contains
-
-      !> Write bytes as one text
-      subroutine save_as_text(length, text)
-         !> Number of bytes
-         integer(size_t), intent(in) :: length
-         !> The bytes
-         character(len=length), intent(in) :: text(1)
-
-         type(output_file_t) :: file
-
-         call create_file(file, filename, error)
-         if (.not. allocated(error)) call put(file, text(1), error)
-         if (.not. allocated(error)) call put(file, seal_of(bytes, writer%left_out), error)
-         if (.not. allocated(error)) call commit(file, error)
-      end subroutine save_as_text
-   end subroutine save
 
    !> Keep the first failure
    pure subroutine note(writer, status, what)

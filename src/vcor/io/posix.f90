@@ -11,8 +11,9 @@ module vcor_io_posix
    implicit none
    private
 
-   public :: c_fopen, c_fwrite, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, c_rmdir, c_mkdir
-   public :: c_write, c_isatty, c_pwrite, c_fsync, c_lockf, c_link
+   public :: c_fopen, c_fwrite, c_fflush, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, &
+      c_rmdir, c_mkdir
+   public :: c_write, c_isatty, c_fallocate, c_pwrite, c_fsync, c_lockf, c_link
    public :: standard_output, standard_error, all_permissions, lock_alone
    public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
    public :: c_text
@@ -41,8 +42,9 @@ module vcor_io_posix
    end type file_id_t
 
    interface
-      !> Open a stream, to write files; null if that fails. The mode ends with NUL: `wbx` creates,
-      !> with the permissions that the umask leaves, and fails where there is anything of that name
+      !> Open a stream, to write files; null if that fails. The mode ends with NUL: `abx` creates a
+      !> file, with the permissions that the umask leaves, fails where there is anything of that
+      !> name, and writes to the end of the file, wherever others have moved that
       function c_fopen(path, mode) result(stream) bind(c, name='fopen')
          import :: c_char, c_ptr
          character(kind=c_char), intent(in) :: path(*), mode(*)
@@ -57,6 +59,13 @@ module vcor_io_posix
          type(c_ptr), intent(in), value :: stream
          integer(c_size_t) :: written
       end function c_fwrite
+
+      !> Hand what is left in a stream to the system
+      function c_fflush(stream) result(status) bind(c, name='fflush')
+         import :: c_int, c_ptr
+         type(c_ptr), intent(in), value :: stream
+         integer(c_int) :: status
+      end function c_fflush
 
       !> Close a stream, whatever the status; what is left of it is written, and may not fit the
       !> disk
@@ -126,6 +135,16 @@ module vcor_io_posix
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: is_one
       end function c_isatty
+
+      !> Take room on the disk for `length` bytes of a file from `offset` on; the status is a value
+      !> of `errno`
+      function c_fallocate(descriptor, offset, length) result(status) &
+         bind(c, name='posix_fallocate')
+         import :: c_int, c_int64_t
+         integer(c_int), intent(in), value :: descriptor
+         integer(c_int64_t), intent(in), value :: offset, length
+         integer(c_int) :: status
+      end function c_fallocate
 
       !> As `c_write`, to the place behind the first `offset` bytes of a file: a checkpoint keeps
       !> outcomes so

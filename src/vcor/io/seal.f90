@@ -33,22 +33,29 @@ module vcor_io_seal
 contains
 
    !> Seal of a file
-   function seal_of(bytes, left_out) result(seal)
-      !> All bytes of the file
-      integer(int8), intent(in), contiguous :: bytes(:)
+   function seal_of(path, left_out) result(seal)
+      !> Path of the file, which has none yet
+      character(len=*), intent(in) :: path
       !> First byte, from 0, and number of bytes of what is left out, ascending, shape (2, n)
       integer(int64), intent(in) :: left_out(:, :)
-      !> What comes behind it
+      !> What comes behind it; nothing if it cannot be read
       character(len=:), allocatable :: seal
 
-      integer(int64) :: numbers(size(left_out) + 2)
-      integer :: n
+      integer(int64) :: bytes, numbers(size(left_out) + 2)
+      integer :: n, status, unit
 
       n = size(left_out)
       numbers(:n) = reshape(left_out, [n])
       numbers(n + 1) = size(left_out, 2, kind=int64)
-      numbers(n + 2) = unsigned(crc32(transfer(numbers(:n + 1), byte), &
-         sum_of(bytes, 0_int64, left_out, 0_int32)))
+      seal = ''
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+         action='read', iostat=status)
+      if (status /= 0) return
+      inquire (unit=unit, size=bytes)
+      numbers(n + 2) = sum_of_file(unit, bytes, left_out)
+      close (unit)
+      if (numbers(n + 2) < 0) return
+      deallocate (seal)
       allocate (character(len=word*size(numbers) + len(mark)) :: seal)
       seal = transfer([transfer(numbers, byte), transfer(mark, byte)], seal)
    end function seal_of
@@ -92,11 +99,8 @@ contains
       !> Whether it is
       logical :: is_sound
 
-      integer(int64), parameter :: block_length = 65536
       integer(int64), allocatable :: left_out(:, :)
-      integer(int64) :: count, expected, length, start
-      integer(int8) :: block(block_length)
-      integer(int32) :: sum
+      integer(int64) :: count, expected, length
       integer :: status
 
       is_sound = .false.
@@ -108,6 +112,27 @@ contains
       if (status /= 0) return
       if (count > 0) read (unit, pos=length + 1, iostat=status) left_out
       if (status /= 0 .or. any(left_out < 0) .or. any(left_out > length)) return
+      is_sound = expected == sum_of_file(unit, length, left_out)
+   end function is_sealed
+
+   !> Check sum of a file and of where its parts are that are left out
+   function sum_of_file(unit, length, left_out) result(number)
+      !> The open file
+      integer, intent(in) :: unit
+      !> Number of bytes before the seal
+      integer(int64), intent(in) :: length
+      !> What is left out of the file, ascending, shape (2, n)
+      integer(int64), intent(in) :: left_out(:, :)
+      !> The sum; negative if the file cannot be read
+      integer(int64) :: number
+
+      integer(int64), parameter :: block_length = 65536
+      integer(int64) :: start
+      integer(int8) :: block(block_length)
+      integer(int32) :: sum
+      integer :: status
+
+      number = -1
       sum = 0
       do start = 0, length - 1, block_length
          associate (part => block(:min(block_length, length - start)))
@@ -116,9 +141,10 @@ contains
             sum = sum_of(part, start, left_out, sum)
          end associate
       end do
-      sum = crc32(transfer([reshape(left_out, [size(left_out)]), count], byte), sum)
-      is_sound = expected == unsigned(sum)
-   end function is_sealed
+      sum = crc32(transfer([reshape(left_out, [size(left_out)]), size(left_out, 2, kind=int64)], &
+         byte), sum)
+      number = ibits(int(sum, int64), 0, 32)
+   end function sum_of_file
 
    !> Check sum of what is not left out of a part of a file
    pure function sum_of(bytes, start, left_out, before) result(sum)
@@ -145,16 +171,6 @@ contains
       end do
       if (first <= size(bytes, kind=int64)) sum = crc32(bytes(first:), sum)
    end function sum_of
-
-   !> A check sum as a number that is not negative
-   pure function unsigned(sum) result(number)
-      !> The sum
-      integer(int32), intent(in) :: sum
-      !> The number
-      integer(int64) :: number
-
-      number = ibits(int(sum, int64), 0, 32)
-   end function unsigned
 
    !> Whether a file ends where HDF5 says, or does not say where it ends in the way of this program
    function ends_well(unit, bytes) result(is_sound)
