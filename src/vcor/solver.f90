@@ -1,11 +1,10 @@
 !> Solvers by the name of their method
 module vcor_solver
-   use vcor_error, only : error_input, error_t, raise
+   use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_solver_auto, only : auto_t
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
@@ -16,6 +15,18 @@ module vcor_solver
 
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
+
+   !> The method that works: internal variables, or product integration where those fail. They fail
+   !> where the kernel is no sum of exponentials: that of a table whose data begin long after the
+   !> contact has ended, of some pairs, of exponents next to a limit
+   type, extends(solver_t) :: auto_t
+      !> What is tried first
+      type(ive_t) :: ive
+      !> What is tried if that has no result, or one that is far from the accuracy asked for
+      type(product_t) :: product
+   contains
+      procedure :: solve => solve_by_what_works
+   end type auto_t
 
    !> Solve an impact: by a solver, or by the one that a case without &solver has
    interface solve_impact
@@ -133,27 +144,20 @@ contains
       type(product_t), allocatable :: product
       type(adams_bashforth_t), allocatable :: adams_bashforth
       type(solver_settings_t) :: fallback
-      real(wp) :: accuracy
 
-      if (settings%method == 'ive' .or. &
-          (settings%method == 'auto' .and. settings%scheme == 'product')) then
-         accuracy = settings%accuracy
-         if (.not. accuracy > 0.0_wp) accuracy = default_accuracy('ive')
+      if (settings%method == 'ive') then
          allocate (ive)
-         call new_ive(ive, accuracy, settings%end_time, error, settings%second_coefficient, &
-            settings%ghost)
+         call new_ive(ive, settings, error)
+         if (.not. allocated(error)) call move_alloc(ive, solver)
+      else if (settings%method == 'auto' .and. settings%scheme == 'product') then
+         allocate (auto)
+         call new_ive(auto%ive, settings, error)
          if (allocated(error)) return
-         if (settings%method == 'ive') then
-            call move_alloc(ive, solver)
-         else
-            allocate (auto)
-            auto%ive = ive
-            ! the time step is that of a method which the user has not asked for
-            fallback = settings
-            fallback%time_step = 0.0_wp
-            call new_product(auto%product, fallback)
-            call move_alloc(auto, solver)
-         end if
+         ! the time step is that of a method which the user has not asked for
+         fallback = settings
+         fallback%time_step = 0.0_wp
+         call new_product(auto%product, fallback)
+         call move_alloc(auto, solver)
       else if (settings%method /= 'direct' .and. settings%method /= 'auto') then
          call raise(error, error_input, "unknown method '"//trim(settings%method) &
             //"'; known: auto, ive, direct")
@@ -170,5 +174,29 @@ contains
             //"'; known: product, adams_bashforth")
       end if
    end subroutine new_solver_for_all
+
+   !> Compute the course of an impact
+   subroutine solve_by_what_works(self, impact, trajectory, error)
+      class(auto_t), intent(in) :: self
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(out) :: trajectory
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(error_t), allocatable :: failure
+
+      call self%ive%solve(impact, trajectory, error)
+      if (allocated(error)) then
+         if (error%code /= error_numerical) return
+         call move_alloc(error, failure)
+      else if (trajectory%status /= contact_separated .or. .not. trajectory%misses_by_far()) then
+         return
+      end if
+      call self%product%solve(impact, trajectory, error)
+      if (allocated(error) .or. .not. allocated(failure)) return
+      ! that equal steps run out says nothing about a contact whose end nobody has set
+      if (trajectory%status == contact_lasting .and. &
+          .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
+   end subroutine solve_by_what_works
 
 end module vcor_solver

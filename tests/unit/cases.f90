@@ -24,10 +24,7 @@ module vcor_test_cases
 
    public :: random_t
    public :: success, read_impact, rigid_on_plate, body_on_body, run, make_ive, make_product
-   public :: unlimited
 
-   !> End time that leaves the end to the solver [s]
-   real(wp), parameter :: unlimited = 0.0_wp
 
    !> Random numbers, the same on every machine: the multiplicative generator of Park and Miller,
    !> Commun. ACM 31 (1988) 1192, doi:10.1145/63039.63042
@@ -170,7 +167,7 @@ contains
 
       type(error_t), allocatable :: error
 
-      call new_ive(solver, accuracy, unlimited, error)
+      call new_ive(solver, solver_settings_t(accuracy=accuracy), error)
       if (allocated(error)) call success(error, "the internal-variable method is set up")
    end subroutine make_ive
 

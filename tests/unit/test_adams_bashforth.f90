@@ -12,10 +12,10 @@ program test_adams_bashforth
    use vcor_material_prony, only : new_elastic, new_prony, new_sls, prony_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
-   use vcor_solver_paper_stability, only : damping_limit, kernel_terms
+   use vcor_solver_paper_formulas, only : damping_limit, kernel_terms
    use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
-   use vcor_test_cases, only : rigid_on_plate, run, success, unlimited
+   use vcor_test_cases, only : rigid_on_plate, run, success
    implicit none
 
    !> The paper's step for the SLS, 2 ms/3000, and the one of its BUTYL runs [s]
@@ -231,7 +231,8 @@ contains
       integer :: i, j, n
 
       call rigid_on_plate(sls, waves_relaxing, 10.0_wp, impact)
-      call new_ive(ive, 1.0e-9_wp, unlimited, error, coefficient)
+      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, second_coefficient=coefficient), &
+         error)
       call run(ive, impact, reference)
       call march(impact, 1.0e-6_wp, "a", "trapezoid", without)
       call check(abs(without%cor - reference%cor) > 1.0e-3_wp, "the second term matters")

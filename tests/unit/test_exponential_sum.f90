@@ -190,7 +190,7 @@ contains
       real(wp) :: cor, direct(3), ratio
       integer :: i, j
 
-      call new_ive(ive, accuracy, 0.0_wp, error)
+      call new_ive(ive, solver_settings_t(accuracy=accuracy), error)
       do i = 1, size(exponents)
          call make("power_law", exponents(i), material)
          call make_impact(material, impact)
@@ -240,7 +240,7 @@ contains
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
 
-      call new_ive(ive, 1.0e-8_wp, 0.0_wp, error)
+      call new_ive(ive, solver_settings_t(), error)
       call make("power_law", 0.9_wp, material)
       call make_impact(material, impact)
       call ive%solve(impact, trajectory, error)
@@ -249,7 +249,7 @@ contains
       call check_close(outcome%cor, reference, 1.0e-8_wp, "exponent 0.9")
 
       ! ghost lines to twice the contact time are beyond the first window, too
-      call new_ive(ive, 1.0e-8_wp, 0.0_wp, error, ghost=.true.)
+      call new_ive(ive, solver_settings_t(ghost=.true.), error)
       call ive%solve(impact, trajectory, error)
       call check(.not. allocated(error), "ghost lines beyond the first window")
       call check_close(cor_of(impact, trajectory), reference, 1.0e-8_wp, "do not change the end")

@@ -10,8 +10,8 @@ program test_volterra
    use vcor_kinds, only : wp
    use vcor_material_prony, only : new_prony, new_rigid, new_sls, prony_t
    use vcor_solver_ive, only : ive_t, new_ive
+   use vcor_solver_convolution, only : second_term_t
    use vcor_solver_direct_product, only : new_product, product_t
-   use vcor_solver_second_term, only : second_term_t
    use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, finish, suite
    implicit none
@@ -116,7 +116,8 @@ contains
          do waves = waves_relaxing, waves_frozen
             call paper_impact(material, waves, impact)
             do j = 1, size(coefficient)
-               call new_ive(ive, 1.0e-9_wp, 0.0_wp, error, coefficient(j))
+               call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, &
+                  second_coefficient=coefficient(j)), error)
                call ive%solve(impact, trajectory, error)
                call check(.not. allocated(error), "ive comes to its end")
                one = evaluate(impact, trajectory)
@@ -156,7 +157,8 @@ contains
 
       call paper_material(1, material)
       call paper_impact(material, waves_relaxing, impact)
-      call new_ive(ive, 1.0e-9_wp, end_time, error, ghost=.true.)
+      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp, end_time=end_time, ghost=.true.), &
+         error)
       call ive%solve(impact, one, error)
       call new_product(product, solver_settings_t(time_step=step, accuracy=1.0e-6_wp, &
          end_time=end_time, ghost=.true.))
@@ -177,7 +179,7 @@ contains
       end associate
       call check(state(col_time, 900) > 1.79e-3_wp, "sampled beyond the contact")
 
-      call new_ive(ive, 1.0e-9_wp, 0.0_wp, error)
+      call new_ive(ive, solver_settings_t(accuracy=1.0e-9_wp), error)
       call ive%solve(impact, short, error)
       call check_close(evaluated(impact, one), evaluated(impact, short), 1.0e-14_wp, &
          "the outcome is that of the contact")

@@ -1,10 +1,22 @@
 !> Sums over the past on equal steps: hereditary integrals as the direct methods compute them
+!>
+!> The second term of the Volterra series, Eq. (10) of Green's paper with h2(t1, t2) = h(t1 + t2),
+!> is
+!>
+!>     D_n = sum_{a=1..n} sum_{b=1..n} h_{2n-a-b} w_a w_b
+!>
+!> which is O(n^2) work at every step and O(N^3) in all as it stands. The kernel depends on a + b
+!> alone, so D_n = sum_m h_{2n-m} C_n(m) with C_n(m) = sum_{a+b=m; a,b<=n} w_a w_b. From step to
+!> step C_n gains 2 w_n w_a at m = n + a and w_n^2 at m = 2n only: O(n) work, the same number but
+!> for rounding, arrays of length 2N. With the newest value w_n apart,
+!>
+!>     D_n = sum_{m<=2n-2} h_{2n-m} C_{n-1}(m) + 2 w_n sum_{a<n} h_{n-a} w_a + h_0 w_n^2
 module vcor_solver_convolution
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: convolution_t, dot, lengthen
+   public :: convolution_t, second_term_t, dot, lengthen
 
    !> Weights W_i of sums sum_j W_{n-j} x_j
    type :: convolution_t
@@ -17,17 +29,29 @@ module vcor_solver_convolution
    contains
       !> Set the weights
       procedure :: set
-      !> One weight
-      procedure :: weight
       !> Sum over a part of the past
       procedure :: sum_over
    end type convolution_t
+
+   !> Second term of the Volterra series as a double sum under way
+   type :: second_term_t
+      !> Kernel h_i at t = i dt, room for half as many steps
+      type(convolution_t) :: kernel
+      !> sums(m) = C_n(m)
+      real(wp), allocatable, private :: sums(:)
+   contains
+      !> Make room and set the kernel
+      procedure :: prepare
+      !> The double sum without the newest value
+      procedure :: past
+      !> Take the newest value in
+      procedure :: accept
+   end type second_term_t
 
 contains
 
    !> Set the weights
    pure subroutine set(self, weights)
-      !> The convolution
       class(convolution_t), intent(inout) :: self
       !> W_i, shape (0:)
       real(wp), intent(in) :: weights(0:)
@@ -37,21 +61,8 @@ contains
       self%reversed = weights(self%room - 1:0:-1)
    end subroutine set
 
-   !> The weight W_i
-   pure function weight(self, i)
-      !> The convolution
-      class(convolution_t), intent(in) :: self
-      !> Steps that have passed, 0 <= i < room
-      integer, intent(in) :: i
-      !> Weight
-      real(wp) :: weight
-
-      weight = self%reversed(self%room - i)
-   end function weight
-
    !> Sum of W_{n-j} x_j from j = first to last
    pure function sum_over(self, n, first, last, x) result(total)
-      !> The convolution
       class(convolution_t), intent(in) :: self
       !> Step at which the sum is taken, n - first < room
       integer, intent(in) :: n
@@ -68,6 +79,39 @@ contains
          total = dot(self%reversed(shift + first:shift + last), x(first:last))
       end associate
    end function sum_over
+
+   !> Make room and set the kernel; the sums so far stay
+   pure subroutine prepare(self, kernel)
+      class(second_term_t), intent(inout) :: self
+      !> Kernel h_i at t = i dt, shape (0:)
+      real(wp), intent(in) :: kernel(0:)
+
+      call self%kernel%set(kernel)
+      call lengthen(self%sums, 1, size(kernel))
+   end subroutine prepare
+
+   !> The double sum D_n without the newest value: its part that does not depend on w_n
+   pure function past(self, n)
+      class(second_term_t), intent(in) :: self
+      !> Step, 1 <= n, 2 n <= room
+      integer, intent(in) :: n
+      !> Sum
+      real(wp) :: past
+
+      past = self%kernel%sum_over(2*n, 2, 2*n - 2, self%sums)
+   end function past
+
+   !> Take the newest value w_n in
+   pure subroutine accept(self, n, w)
+      class(second_term_t), intent(inout) :: self
+      !> Step
+      integer, intent(in) :: n
+      !> Values w_1 .. w_n, shape (>= n)
+      real(wp), contiguous, intent(in) :: w(:)
+
+      self%sums(n + 1:2*n - 1) = self%sums(n + 1:2*n - 1) + 2.0_wp*w(n)*w(1:n - 1)
+      self%sums(2*n) = self%sums(2*n) + w(n)**2
+   end subroutine accept
 
    !> Scalar product a . b. Partial sums in a fixed order make it a matter of vector registers and
    !> free of the latency of one running sum, with the same result on every machine; the intrinsic

@@ -38,7 +38,6 @@ contains
 
    !> Largest indentation and force, by the parabola through the largest node and its neighbours
    pure subroutine find_peaks(trajectory)
-      !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
       call peak(col_indentation, trajectory%max_indentation, trajectory%time_of_max_indentation)

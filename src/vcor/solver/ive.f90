@@ -16,7 +16,7 @@ module vcor_solver_ive
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_tuning, only : early_force, error_of_kernel, kernel_share, &
       loosest_accuracy, no_sum, plate_share, window_growth, window_margin
-   use vcor_solver_type, only : solver_t
+   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
 
@@ -25,15 +25,9 @@ module vcor_solver_ive
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
       private
-      !> Wanted accuracy of the coefficient of restitution [-]
-      real(wp) :: accuracy = 1.0e-8_wp
-      !> The same as it was asked for, which may be looser than what is worked to [-]
-      real(wp) :: asked = 1.0e-8_wp
-      !> End of the computation [s]; 0: follows from the contact's time scale
-      real(wp) :: end_time = 0.0_wp
-      !> Go on after the separation
-      logical :: ghost = .false.
-      !> Collocation rules
+      !> Accuracy of the coefficient of restitution that is worked to [-]; what is asked for may be
+      !> looser
+      real(wp) :: accuracy = 0.0_wp
       type(collocator_t) :: collocator
    contains
       procedure :: solve
@@ -42,38 +36,25 @@ module vcor_solver_ive
 contains
 
    !> Build the solver
-   subroutine new_ive(self, accuracy, end_time, error, second_coefficient, ghost)
-      !> The solver
+   subroutine new_ive(self, settings, error)
       type(ive_t), intent(out) :: self
-      !> Wanted accuracy of the coefficient of restitution, > 0
-      real(wp), intent(in) :: accuracy
-      !> End of the computation [s]; 0: follows from the contact's time scale
-      real(wp), intent(in) :: end_time
+      !> Accuracy, end and second term
+      type(solver_settings_t), intent(in) :: settings
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Coefficient of the second term of the Volterra series [m^-1.5]; absent: without it
-      real(wp), intent(in), optional :: second_coefficient
-      !> Go on after the separation, to `end_time` or to twice the contact time; absent: no
-      logical, intent(in), optional :: ghost
 
-      self%accuracy = min(accuracy, loosest_accuracy)
-      self%asked = accuracy
-      self%end_time = end_time
-      if (present(ghost)) self%ghost = ghost
-      call new_collocator(self%collocator, self%accuracy, error)
-      if (present(second_coefficient)) &
-         self%collocator%second_coefficient = second_coefficient
+      self%settings = settings
+      if (.not. settings%accuracy > 0.0_wp) self%settings%accuracy = default_accuracy('ive')
+      self%accuracy = min(self%settings%accuracy, loosest_accuracy)
+      call new_collocator(self%collocator, self%accuracy, settings%second_coefficient, error)
    end subroutine new_ive
 
    !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is
    !> made that holds up to some times the expected contact time, and anew if the contact outlasts
    !> it
    subroutine solve(self, impact, trajectory, error)
-      !> The solver
       class(ive_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -83,9 +64,9 @@ contains
       logical :: complete
 
       time_scale = impact%time_scale()
-      end_time = self%end_time
+      end_time = self%settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
-      ghost_end = merge(self%end_time, -1.0_wp, self%ghost)
+      ghost_end = merge(self%settings%end_time, -1.0_wp, self%settings%ghost)
       window = window_margin*impact%law%contact_time*time_scale
       do
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
@@ -116,7 +97,7 @@ contains
          trajectory%cor_error = trajectory%cor_error + error_of_sums
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
-      trajectory%accuracy = self%asked
+      trajectory%accuracy = self%settings%accuracy
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error
@@ -127,13 +108,11 @@ contains
    !> window, that of the kernel's integral up to there, if that is more, in the share of the
    !> momentum that the loading has taken
    pure function error_felt(impact, contact, window, trajectory) result(error)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Its kernel as a sum of exponentials
       type(exponential_sum_t), intent(in) :: contact
       !> Time up to which the sum holds [s]
       real(wp), intent(in) :: window
-      !> Its course
       type(trajectory_t), intent(in) :: trajectory
       !> Relative error
       real(wp) :: error

@@ -39,6 +39,8 @@ module vcor_solver_type
 
    !> A method for impacts; immutable once built, so that threads can share it
    type, abstract :: solver_t
+      !> The settings that it was built with
+      type(solver_settings_t) :: settings
    contains
       !> Compute the course of an impact
       procedure(solve_i), deferred :: solve
@@ -48,9 +50,7 @@ module vcor_solver_type
       !> Compute the course of an impact
       subroutine solve_i(self, impact, trajectory, error)
          import :: error_t, impact_t, solver_t, trajectory_t
-         !> The solver
          class(solver_t), intent(in) :: self
-         !> The impact
          type(impact_t), intent(in) :: impact
          !> Its course; an impact that does not end in separation is no error but a status
          type(trajectory_t), intent(out) :: trajectory
@@ -88,11 +88,8 @@ contains
 
    !> Solve an impact: the one place where a result is held against the accuracy that was asked for
    subroutine solve_impact(solver, impact, trajectory, outcome, error)
-      !> The solver
       class(solver_t), intent(in) :: solver
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(inout) :: trajectory
       !> Its outcome; one that is no separation has a status and no numbers
       type(outcome_t), intent(out) :: outcome
@@ -122,7 +119,6 @@ contains
    !> Refuse a receding contact in which t1 grows. On a plate at rest s' only falls, and t1' has the
    !> sign of s': there it is what rounding leaves of a sphere that has come to rest
    subroutine refuse_growth(impact, error)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Error of code `error_numerical`
       type(error_t), allocatable, intent(out) :: error

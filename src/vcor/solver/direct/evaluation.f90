@@ -18,11 +18,9 @@ contains
    !> cubic Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth
    !> there even where s goes to zero with F
    pure function end_of_contact(impact, stiffness, trajectory, n) result(node)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> About dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
-      !> The trajectory
       type(trajectory_t), intent(in) :: trajectory
       !> Node
       integer, intent(in) :: n
@@ -72,7 +70,6 @@ contains
    !> State where a receding contact ends in the step before node n, as t1 gets to 0: it is a smooth
    !> function of time, and the force, an integral of u' from 0 to t1, goes to zero as t1^n
    pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> t1 at nodes n - 2, n - 1 and n in any unit, the last one negative
       real(wp), intent(in) :: t1(-1:1)
@@ -111,9 +108,7 @@ contains
 
    !> Complete the state at the end of contact
    pure subroutine complete(impact, trajectory, n, theta, node)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> The trajectory
       type(trajectory_t), intent(in) :: trajectory
       !> Node behind the end
       integer, intent(in) :: n
@@ -168,11 +163,9 @@ contains
    !> by the first difference, with a dashpot the start for integrands in powers of t^(n-1); on the
    !> last step, which is shorter, the parabola through the last three nodes
    pure subroutine set_weights(impact, dt, trajectory)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
       real(wp), parameter :: difference = 1.0_wp/12.0_wp
@@ -202,7 +195,6 @@ contains
    !> and t^n, such as the force of a dashpot has at first: a sum over t^p misses zeta(-p). Where n
    !> is next to an integer such integrands are smooth
    pure function start_weights(law) result(weight)
-      !> Contact law
       type(contact_law_t), intent(in) :: law
       !> Weights of nodes 0 .. 3
       real(wp) :: weight(4)

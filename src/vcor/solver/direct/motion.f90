@@ -78,9 +78,7 @@ contains
 
    !> Make room for `steps` steps, what is there stays
    subroutine prepare(self, impact, dt, steps)
-      !> The motion
       class(motion_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -98,9 +96,7 @@ contains
 
    !> Go to node n: its rule, and all integrals but for the share of this node
    pure subroutine advance(self, impact, n, stiffness, viscosity)
-      !> The motion
       class(motion_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -133,9 +129,7 @@ contains
 
    !> Set the motion at node n as a function of the force there
    pure subroutine respond(self, impact, n, dashpot)
-      !> The motion
       class(motion_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -174,7 +168,6 @@ contains
 
    !> Take the force at node n in
    pure subroutine accept(self, n, force, dashpot)
-      !> The motion
       class(motion_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
@@ -202,7 +195,6 @@ contains
 
    !> Go on with an integral to the next node, but for the share of that node
    pure subroutine go_on(integral, rule)
-      !> The integral
       type(integral_t), intent(inout) :: integral
       !> Rule for the step [s]
       real(wp), intent(in) :: rule(3)
@@ -212,7 +204,6 @@ contains
 
    !> Complete an integral by the share of the node
    pure subroutine complete(integral, rule, integrand)
-      !> The integral
       type(integral_t), intent(inout) :: integral
       !> Rule for the step [s]
       real(wp), intent(in) :: rule(3)
@@ -227,7 +218,6 @@ contains
    !> Power of t with which the rate of a frozen plate's drift, alpha' F, begins: alpha' is infinite
    !> at first contact for a continuous spectrum, and F = int k u' goes with t^(n-1) int k
    pure function power_of_drift(impact, dt) result(power)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt

@@ -24,13 +24,12 @@ module vcor_solver_direct_product
       contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
-   use vcor_solver_convolution, only : lengthen
+   use vcor_solver_convolution, only : lengthen, second_term_t
    use vcor_solver_direct_evaluation, only : end_of_contact, end_of_receding_contact, set_weights
    use vcor_solver_direct_motion, only : motion_t
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_second_term, only : second_term_t
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    implicit none
    private
@@ -42,8 +41,6 @@ module vcor_solver_direct_product
 
    !> Product integration
    type, extends(solver_t) :: product_t
-      !> With a time step of 0 it is refined until the accuracy is reached
-      type(solver_settings_t) :: settings
    contains
       procedure :: solve
    end type product_t
@@ -82,10 +79,9 @@ contains
 
    !> Build the solver
    pure subroutine new_product(self, settings)
-      !> The solver
       type(product_t), intent(out) :: self
-      !> Step, end and second term; an accuracy is what the step is refined to, or what the result
-      !> with a given step is held against
+      !> Step, end and second term; without a step it is refined until the accuracy is reached, a
+      !> result with a given step is held against the accuracy
       type(solver_settings_t), intent(in) :: settings
 
       self%settings = settings
@@ -95,11 +91,8 @@ contains
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
-      !> The solver
       class(product_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -183,11 +176,9 @@ contains
    subroutine march(settings, impact, dt, trajectory, error)
       !> End, second term, and whether to go on after the separation
       type(solver_settings_t), intent(in) :: settings
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -259,15 +250,12 @@ contains
 
    !> Make room for `room` steps, what is there stays
    subroutine make_room(run, impact, dt, room, trajectory)
-      !> The run
       type(run_t), intent(inout) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Number of steps
       integer, intent(in) :: room
-      !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
       ! one node more for the end of contact before ghost lines
@@ -282,9 +270,7 @@ contains
 
    !> Go to node n: motion and force there
    subroutine take_step(run, impact, n)
-      !> The run
       type(run_t), intent(inout) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -312,9 +298,7 @@ contains
    !> Solve node n with a force that is the sum over all the past: F = known + linear*u +
    !> quadratic*u^2, and the dashpot's viscosity*u', make s + c u + d u^2 = right
    subroutine step_with_all_the_past(run, impact, n)
-      !> The run
       type(run_t), intent(inout) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -356,9 +340,7 @@ contains
    !> Solve node n with the force of a contact that shrinks, a sum over a part of the past. If it
    !> still grows, nothing is changed
    subroutine step_with_a_part(run, impact, n, dashpot)
-      !> The run
       type(run_t), intent(inout) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -379,9 +361,7 @@ contains
 
    !> State at the node
    pure function state_of(run, impact) result(node)
-      !> The run
       type(run_t), intent(in) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> State
       real(wp) :: node(columns)

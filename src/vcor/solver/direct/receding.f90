@@ -47,7 +47,6 @@ contains
 
    !> Make room for `steps` steps, what is there stays
    pure subroutine prepare(self, steps)
-      !> The contact
       class(receding_t), intent(inout) :: self
       !> Number of steps
       integer, intent(in) :: steps
@@ -58,7 +57,6 @@ contains
 
    !> Take the indentation at node n into the sums
    pure subroutine accept(self, n, s)
-      !> The contact
       class(receding_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
@@ -77,11 +75,8 @@ contains
    !> Force at node n, t1 with it. If t1 is found to lie in the newest step, nothing is: the contact
    !> still grows
    subroutine find_force(self, impact, kernel, n, du, indentation, velocity)
-      !> The contact
       class(receding_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
       type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
@@ -140,9 +135,7 @@ contains
    subroutine find_in_step(self, impact, kernel, n, m, du, known, per_force)
       !> The contact; on entry its force is that up to the end of the step
       class(receding_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its kernel
       type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n

@@ -34,9 +34,7 @@ contains
 
    !> Compute the weights
    pure subroutine prepare(self, impact, dt, n)
-      !> Kernel
       class(contact_kernel_t), intent(inout) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s], > 0
       real(wp), intent(in) :: dt
@@ -58,9 +56,7 @@ contains
    !> Integral of the kernel over the later part of a step in t1, over dt: next to t = 0 exactly,
    !> later by its mean and its slope
    pure function part(self, impact, i, position) result(integral)
-      !> Kernel
       class(contact_kernel_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Step, counted from t = 0 of the kernel, > 0
       integer, intent(in) :: i
@@ -82,7 +78,6 @@ contains
 
    !> Weights W_i of the memory of a hereditary plate
    pure function memory_weights(plate, dt, n) result(weight)
-      !> The plate
       type(plate_t), intent(in) :: plate
       !> Time step [s], > 0
       real(wp), intent(in) :: dt
@@ -150,7 +145,6 @@ contains
    !> the mean of the kernel over step i. Near t = 0 by quadrature, farther off from the w at whole
    !> steps, up to their fourth difference
    function square_weights(impact, dt, n) result(mean)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt

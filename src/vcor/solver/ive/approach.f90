@@ -44,7 +44,6 @@ module vcor_solver_ive_approach
 
    !> The approach
    type :: approach_t
-      !> Contact law
       type(contact_law_t), private :: law
       !> Time of its end, the largest indentation [s]
       real(wp) :: end = 0.0_wp
@@ -78,17 +77,13 @@ contains
 
    !> Add a panel
    subroutine add(self, law, rule, step, contact, panel, start_rate, rate)
-      !> The approach
       class(approach_t), intent(inout) :: self
-      !> Contact law
       type(contact_law_t), intent(in) :: law
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
       !> Step of the panel
       type(step_t), intent(in) :: step
       !> Kernel of the contact
       type(exponential_sum_t), intent(in) :: contact
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Rate of the indentation at the start [m/s]
       real(wp), intent(in) :: start_rate
@@ -158,7 +153,6 @@ contains
 
    !> Force and condition by t1, and their derivatives, at the stages of a panel of the rebound
    pure subroutine evaluate(self, equilibrium, stages, t, t1, condition, force, slope, rate)
-      !> The approach
       class(approach_t), intent(in) :: self
       !> Modulus of the kernel at rate 0 [N/m^1.5]
       real(wp), intent(in) :: equilibrium
@@ -273,7 +267,6 @@ contains
 
    !> Lagrange's polynomials at positions in a panel
    pure function basis_at(self, theta) result(basis)
-      !> The approach
       class(approach_t), intent(in) :: self
       !> Positions
       real(wp), intent(in) :: theta(width)
@@ -302,7 +295,6 @@ contains
    !> The t1 at which the condition has changed by a given amount, next to a known one: N is about a
    !> parabola with its vertex at the end of the approach, where s' is zero
    pure function moved(self, t1, change, rate) result(other)
-      !> The approach
       class(approach_t), intent(in) :: self
       !> Known t1 [s]
       real(wp), intent(in) :: t1

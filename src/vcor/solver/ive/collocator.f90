@@ -43,17 +43,19 @@ module vcor_solver_ive_collocator
 contains
 
    !> Build the rules
-   subroutine new_collocator(self, accuracy, error)
-      !> The rules
+   subroutine new_collocator(self, accuracy, second_coefficient, error)
       type(collocator_t), intent(out) :: self
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
+      !> Coefficient of the second term of the Volterra series [m^-1.5], 0 without it
+      real(wp), intent(in) :: second_coefficient
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: unit(0:stages)
       integer :: i, j
 
+      self%second_coefficient = second_coefficient
       self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
       self%near_tolerance = max(least_tolerance, near_tolerance*accuracy)
       call new_collocation(self%rule, stages, most_steps, error)
@@ -79,7 +81,6 @@ contains
 
    !> Values of a polynomial at the nodes of `coarse`
    pure function coarsened(self, value) result(coarse)
-      !> The rules
       class(collocator_t), intent(in) :: self
       !> Values at the points of `rule`
       real(wp), intent(in) :: value(0:width)

@@ -70,11 +70,8 @@ contains
    !> Follow the contact with the kernel as a sum of exponentials
    subroutine follow(collocator, impact, modes, accuracy, time_scale, end_time, ghost_end, window, &
                      trajectory, complete, error)
-      !> The collocation
       type(collocator_t), intent(in), target :: collocator
-      !> The impact
       type(impact_t), intent(in), target :: impact
-      !> Modes of contact and plate
       type(modes_t), intent(in), target :: modes
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
@@ -86,7 +83,6 @@ contains
       real(wp), intent(in) :: ghost_end
       !> Time up to which the sum holds [s]
       real(wp), intent(in) :: window
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Whether the window was long enough
       logical, intent(out) :: complete
@@ -129,7 +125,6 @@ contains
 
    !> First step: the square root of some part of the expected contact time, in x = sqrt(t)
    subroutine start(self)
-      !> The contact
       type(contact_t), intent(inout) :: self
 
       real(wp) :: reach, finer
@@ -183,9 +178,7 @@ contains
    !> Solve the next panel, up to the end of the contact or the largest indentation if that is in
    !> it, and its companion
    subroutine solve_panel(self, trajectory)
-      !> The contact
       type(contact_t), intent(inout) :: self
-      !> Course up to the panel
       type(trajectory_t), intent(in) :: trajectory
 
       associate (problem => self%problem, rule => self%problem%collocator%rule)
@@ -213,11 +206,8 @@ contains
 
    !> Whether the indentation has begun to fall
    pure function is_turning(impact, panel)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> The panel
       type(panel_t), intent(in) :: panel
-      !> Whether it has
       logical :: is_turning
 
       integer :: j
@@ -233,9 +223,7 @@ contains
    !> maximum and at the end; elsewhere it is what is left of transients that the impulse does not
    !> feel
    subroutine judge(self, trajectory)
-      !> The contact
       type(contact_t), intent(inout) :: self
-      !> Course up to the panel
       type(trajectory_t), intent(in) :: trajectory
 
       real(wp) :: force_error, allowed
@@ -274,9 +262,7 @@ contains
 
    !> Whether the panel is refused; it is shortened then
    function is_refused(self)
-      !> The contact
       type(contact_t), intent(inout) :: self
-      !> Whether it is
       logical :: is_refused
 
       ! what a shorter panel did not reduce has been handed down by the panels before
@@ -300,11 +286,9 @@ contains
 
    !> Make the panel a part of the course
    subroutine accept(self, approach, trajectory)
-      !> The contact
       type(contact_t), intent(inout) :: self
       !> The approach of a contact that recedes
       type(approach_t), intent(inout) :: approach
-      !> The course
       type(trajectory_t), intent(inout) :: trajectory
 
       type(panel_t) :: recorded
@@ -344,13 +328,10 @@ contains
 
    !> Whether the computation has come to its end with the panel
    function is_over(self, ghost_end, trajectory)
-      !> The contact
       type(contact_t), intent(inout) :: self
       !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
       real(wp), intent(in) :: ghost_end
-      !> The course
       type(trajectory_t), intent(inout) :: trajectory
-      !> Whether it has
       logical :: is_over
 
       is_over = self%last
@@ -371,7 +352,6 @@ contains
 
    !> Go on to the next step: to an end that was refused not before the panels that lead to it
    subroutine go_on(self)
-      !> The contact
       type(contact_t), intent(inout) :: self
 
       associate (problem => self%problem)
@@ -391,9 +371,7 @@ contains
    subroutine turn_round(self, approach, trajectory, error)
       !> The contact, at its largest indentation
       type(contact_t), intent(inout) :: self
-      !> The approach
       type(approach_t), intent(in), target :: approach
-      !> Course up to there
       type(trajectory_t), intent(inout) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error

@@ -52,7 +52,6 @@ contains
 
    !> By how much the difference of a panel and its companion grows over the panel
    pure function growth_of(self, one, other) result(difference)
-      !> The course
       class(course_t), intent(in) :: self
       !> Values of the solution at the points of the panel
       real(wp), intent(in) :: one(0:width)
@@ -69,7 +68,6 @@ contains
    !> What a panel adds to the error of the coefficient of restitution, by its companion: through
    !> the impulse, the indentation and the velocity of a plate that drifts
    pure function motion_error(self) result(error)
-      !> The course
       class(course_t), intent(in) :: self
       !> Error [-]
       real(wp) :: error
@@ -85,7 +83,6 @@ contains
 
    !> Factor by which the next panel can be longer than an accepted one
    pure function growth_of_step(self) result(factor)
-      !> The course
       class(course_t), intent(in) :: self
       !> Factor
       real(wp) :: factor
@@ -98,7 +95,6 @@ contains
    !> short as at the usual accuracy the one that counts is better by an order, unless modes of a
    !> continuous spectrum settle within the last panel, which neither of them resolves
    pure function time_tolerance(self) result(tolerance)
-      !> The course
       class(course_t), intent(in) :: self
       !> Tolerance [-]
       real(wp) :: tolerance

@@ -21,7 +21,6 @@ contains
    !> First stage of a panel at which the force is gone; 0 if there is none. While the indentation
    !> grows, or stands still, the force is positive: what is not is rounding
    pure function first_without_force(panel) result(stage)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Stage
       integer :: stage
@@ -37,9 +36,7 @@ contains
    !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
    !> power of the time since the maximum
    subroutine land_on_largest(problem, start, start_velocity, step, panel, inverse)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Rate of the indentation there [m/s]
       real(wp), intent(in) :: start_velocity
@@ -73,13 +70,10 @@ contains
 
    !> Solve a panel that is cut from another one
    subroutine solve_cut(problem, longer, start, step, panel, inverse)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
       !> The panel that it is cut from
       type(panel_t), intent(in) :: longer
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> The step
       type(step_t), intent(in) :: step
       !> The panel; not converged on failure
       type(panel_t), intent(inout) :: panel
@@ -97,9 +91,7 @@ contains
 
    !> Cut a panel in which the force changes its sign so that it ends where the force is zero
    subroutine land_on_zero(problem, start, accuracy, shallow, step, panel, inverse)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
@@ -160,13 +152,10 @@ contains
    !> Zero of the force in a panel by its polynomials, and the slope there of the memory
    !> M = kappa u - F
    subroutine look_for_zero(rule, law, kappa, panel, time, memory_rate)
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Contact law
       type(contact_law_t), intent(in) :: law
       !> Stiffness kappa [N/m^1.5]
       real(wp), intent(in) :: kappa
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Time of the zero since the start of the panel [s]; 0 where a panel is so crude that its
       !> force is negative while the indentation grows
@@ -189,7 +178,6 @@ contains
 
    !> Solve kappa u(s + v x) = memory + rate x for x near 0 by Newton's method
    pure subroutine look_ahead(law, kappa, s, v, memory, rate, x, found)
-      !> Contact law
       type(contact_law_t), intent(in) :: law
       !> Stiffness kappa [N/m^1.5], > 0
       real(wp), intent(in) :: kappa
@@ -225,9 +213,7 @@ contains
    !> polynomials go on up to there, and all values move with their nodes, so that integrals stay
    !> sums over them
    pure subroutine end_at_zero(rule, impact, panel)
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> The last panel
       type(panel_t), intent(inout) :: panel
@@ -272,9 +258,7 @@ contains
 
    !> Rate of a value at the end of a panel
    pure function slope_at_end(rule, panel, value) result(slope)
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Its values at the points of the panel
       real(wp), intent(in) :: value(0:width)

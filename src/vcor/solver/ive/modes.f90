@@ -34,7 +34,6 @@ contains
       type(exponential_sum_t), intent(in) :: terms
       !> Values p_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: p(:)
-      !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Eigenvalues of H [s]
       real(wp), intent(in) :: lambda(width)
@@ -71,7 +70,6 @@ contains
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
    !> stage for x = 0 at the start
    pure subroutine advance_lags(map, scale, terms, x, p)
-      !> Map of the panel
       type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale

@@ -34,15 +34,11 @@ contains
 
    !> Guess the indentation in the panel to come from the polynomial of the panel solved last
    subroutine guess(problem, previous, step, start, panel)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
       !> The panel solved last, accepted or not; without stages if there is none
       type(panel_t), intent(in) :: previous
-      !> Step
       type(step_t), intent(in) :: step
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(inout) :: panel
 
       real(wp) :: time(width)
@@ -60,13 +56,9 @@ contains
 
    !> Solve the equations of a panel by Newton's method
    subroutine solve(problem, rule, step, start, panel, inverse)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Step
       type(step_t), intent(in) :: step
-      !> State at the start
       type(start_t), intent(in) :: start
       !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages
       type(panel_t), intent(inout) :: panel
@@ -91,15 +83,11 @@ contains
    !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls as u
    !> does next to its branch point, or faster, otherwise linearly
    subroutine correct(self, problem, e, inverse, panel)
-      !> State of the iteration
       type(newton_t), intent(inout) :: self
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
       !> Inverse of the Jacobian, made anew where `stale`
       real(wp), intent(inout) :: inverse(width, width)
-      !> The panel
       type(panel_t), intent(inout) :: panel
 
       real(wp) :: change(width), force(width), second(width, width)
@@ -151,13 +139,9 @@ contains
    !> Solve the equations of a panel with the Jacobian of one next to it, of another length, or with
    !> that of the panel whose companion it is. No matrix is formed, so this costs half of a solution
    subroutine solve_near(problem, rule, step, start, inverse, panel)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Step
       type(step_t), intent(in) :: step
-      !> State at the start
       type(start_t), intent(in) :: start
       !> Inverse of the Jacobian of a panel of the full number of stages
       real(wp), intent(in) :: inverse(width, width)
@@ -220,9 +204,7 @@ contains
    subroutine improve(problem, step, start, tolerance, panel)
       !> The problem, its contact growing
       type(panel_problem_t), intent(in) :: problem
-      !> Step
       type(step_t), intent(in) :: step
-      !> State at the start
       type(start_t), intent(in) :: start
       !> Wanted error of the indentation over its largest value
       real(wp), intent(in) :: tolerance
@@ -255,17 +237,13 @@ contains
 
    !> Solve the companion of a panel, from its own start
    subroutine accompany(problem, step, start, panel, inverse, companion)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> Step
       type(step_t), intent(in) :: step
       !> State of the companion at the start of the panel
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Inverse of its Jacobian
       real(wp), intent(in) :: inverse(width, width)
-      !> Its companion
       type(panel_t), intent(out) :: companion
 
       real(wp) :: own_inverse(width, width)
@@ -294,7 +272,6 @@ contains
    subroutine close_contact(problem, start, time_tolerance, length, panel, inverse)
       !> The problem, its contact receding
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start
       type(start_t), intent(in) :: start
       !> Wanted relative error of the time of the end
       real(wp), intent(in) :: time_tolerance

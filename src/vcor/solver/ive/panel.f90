@@ -81,7 +81,6 @@ contains
 
    !> Set all values at the start of a panel, and its times
    pure subroutine begin(self, stages, node, map, start, elapsed)
-      !> The panel
       class(panel_t), intent(inout) :: self
       !> Number of stages
       integer, intent(in) :: stages
@@ -89,7 +88,6 @@ contains
       real(wp), intent(in) :: node(width)
       !> Coefficients of theta and theta^2 in time [s]
       real(wp), intent(in) :: map(2)
-      !> State at the start
       type(start_t), intent(in) :: start
       !> Times of the stages since the start [s]
       real(wp), intent(out) :: elapsed(width)
@@ -112,7 +110,6 @@ contains
 
    !> Position of times in the panel: the root of the quadratic map in its stable form
    pure function theta(self, time)
-      !> The panel
       class(panel_t), intent(in) :: self
       !> Times [s], not before the panel's start
       real(wp), intent(in) :: time(width)
@@ -126,7 +123,6 @@ contains
 
    !> dt/dtheta at the end of a panel [s]
    pure function pace_at_end(self) result(pace)
-      !> The panel
       class(panel_t), intent(in) :: self
       !> dt/dtheta [s]
       real(wp) :: pace
@@ -136,7 +132,6 @@ contains
 
    !> Make the end of a panel the start of the next one, internal variables aside
    pure subroutine move_to_end(panel, start)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> State at the start of the panel, on return that at its end
       type(start_t), intent(inout) :: start
@@ -158,9 +153,7 @@ contains
    !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
    !> drift of a frozen or hereditary plate
    pure function plate_velocity(impact, panel, j) result(velocity)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Stage, > 0
       integer, intent(in) :: j
@@ -178,9 +171,7 @@ contains
 
    !> Rate of the indentation at a stage of a panel: s' = v0 - I/m - U'
    pure function relative_velocity(impact, panel, j) result(velocity)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Stage, > 0
       integer, intent(in) :: j

@@ -46,11 +46,8 @@ module vcor_solver_ive_problem
 
    !> What the panels of an impact have in common; what it points to outlives it
    type :: panel_problem_t
-      !> Collocation rules
       type(collocator_t), pointer :: collocator => null()
-      !> The impact
       type(impact_t), pointer :: impact => null()
-      !> Modes of contact and plate
       type(modes_t), pointer :: modes => null()
       !> The approach, once the contact recedes
       type(approach_t), pointer :: approach => null()
@@ -148,13 +145,9 @@ contains
 
    !> The problem of an impact, its contact growing
    function new_panel_problem(collocator, impact, modes) result(self)
-      !> Collocation rules
       type(collocator_t), intent(in), target :: collocator
-      !> The impact
       type(impact_t), intent(in), target :: impact
-      !> Modes of contact and plate
       type(modes_t), intent(in), target :: modes
-      !> The problem
       type(panel_problem_t) :: self
 
       self%collocator => collocator
@@ -165,17 +158,12 @@ contains
 
    !> Set up the equations of a panel
    subroutine set_up(self, rule, step, start, panel, equations)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
       type(collocation_t), intent(in), target :: rule
-      !> Step
       type(step_t), intent(in) :: step
-      !> State at the start
       type(start_t), intent(in) :: start
       !> The panel: its times and plate parameters are set, and all values at its start
       type(panel_t), intent(inout) :: panel
-      !> The equations
       type(equations_t), intent(out) :: equations
 
       real(wp) :: velocity
@@ -263,7 +251,6 @@ contains
 
    !> int x dt over the panel, for the values x at its stages
    pure function integral(e, x)
-      !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> Values at the stages
       real(wp), intent(in) :: x(width)
@@ -276,7 +263,6 @@ contains
    !> What forces in the panel take of the indentation: R F. A frozen plate has
    !> U' = alpha F - int alpha' F dt, others U = alpha I and what they remember
    pure function lost_indentation(e, numbers) result(lost)
-      !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> Numbers of the forces [N]
       real(wp), intent(in) :: numbers(width)
@@ -297,7 +283,6 @@ contains
 
    !> What they take of the rate of the indentation: Q F
    pure function lost_velocity(e, numbers) result(lost)
-      !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> Numbers of the forces [N]
       real(wp), intent(in) :: numbers(width)
@@ -321,7 +306,6 @@ contains
 
    !> M f
    pure function product_with_m(e, f) result(product)
-      !> Equations of the panel
       type(equations_t), intent(in) :: e
       !> f
       real(wp), intent(in) :: f(width)
@@ -353,7 +337,6 @@ contains
 
    !> Form M, column by column or at once where it is a function of H
    pure subroutine form_matrix(e)
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
 
       real(wp) :: scaled(width, width), f, g
@@ -386,11 +369,8 @@ contains
 
    !> The unknown x and f(x) at the stages: indentation and u, or condition and force by t1
    pure subroutine evaluate(self, e, panel)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
-      !> The panel
       type(panel_t), intent(in) :: panel
 
       if (e%rebounds) then
@@ -406,13 +386,11 @@ contains
 
    !> Change the unknown of a panel; condition and force are extrapolated
    pure subroutine move(self, e, change, panel)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel, evaluated
       type(equations_t), intent(in) :: e
       !> Change of x
       real(wp), intent(in) :: change(width)
-      !> The panel
       type(panel_t), intent(inout) :: panel
 
       integer :: i
@@ -430,11 +408,8 @@ contains
 
    !> Forces of a solution; while the contact recedes they are part of it
    pure subroutine find_forces(self, e, panel, numbers)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
-      !> The panel
       type(panel_t), intent(inout) :: panel
       !> Numbers of the forces [N]
       real(wp), intent(out) :: numbers(width)
@@ -458,11 +433,8 @@ contains
    !> Forces of a solution and their integrals I = I_n + H F, J = J_n + H I_n + H^2 F, and the
    !> motion that they make where it is not the solution itself
    pure subroutine integrate(self, e, panel)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
-      !> The panel
       type(panel_t), intent(inout) :: panel
 
       real(wp), dimension(width) :: numbers, impulse, rate
@@ -492,15 +464,10 @@ contains
    !> variables that settle in it, and the end has no weight in the integrals of the panel: what
    !> they make of the drift of a hereditary plate and of the condition is integrated
    pure subroutine settle(self, rule, e, start, panel)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Equations of the panel
       type(equations_t), intent(in) :: e
-      !> State at the start
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(inout) :: panel
 
       real(wp) :: velocity
@@ -528,13 +495,9 @@ contains
 
    !> Make the end of a panel the start of the next one
    subroutine advance(self, rule, step, panel, start)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> Step
       type(step_t), intent(in) :: step
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> State at the start of the panel, on return that at its end
       type(start_t), intent(inout) :: start
@@ -554,9 +517,7 @@ contains
 
    !> Begin the rebound where the approach has ended, at the largest indentation
    subroutine turn_round(self, approach, start)
-      !> The problem
       class(panel_problem_t), intent(inout) :: self
-      !> The approach
       type(approach_t), intent(in), target :: approach
       !> State at the end of the approach, on return the same for the rebound
       type(start_t), intent(inout) :: start
@@ -573,7 +534,6 @@ contains
 
    !> Set up the second term of the Volterra series, for which the matrices of the modes are formed
    pure subroutine set_up_second_term(e, rates, start_lag)
-      !> Equations of the panel
       type(equations_t), intent(inout) :: e
       !> Rates of the modes [1/s], shape (modes)
       real(wp), intent(in) :: rates(:)
@@ -595,7 +555,6 @@ contains
 
    !> What the second term adds to the force, c2 (G_0 u^2 + sum_k G_k p_k^2), and its derivative
    pure subroutine second_term(self, e, force, slope)
-      !> The problem
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel, evaluated
       type(equations_t), intent(in) :: e

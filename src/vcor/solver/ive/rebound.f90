@@ -34,7 +34,6 @@ module vcor_solver_ive_rebound
 
    !> The rebound until the contact ends
    type, extends(course_t) :: rebound_t
-      !> The approach
       type(approach_t), pointer :: approach => null()
       !> Index of the map of the next panel but the last one
       integer :: kind = linear
@@ -63,7 +62,6 @@ contains
    subroutine follow_rebound(course, approach, trajectory, error)
       !> The course up to the largest indentation
       type(course_t), intent(in) :: course
-      !> The approach
       type(approach_t), intent(in), target :: approach
       !> Course of the impact, on entry its approach
       type(trajectory_t), intent(inout) :: trajectory
@@ -103,9 +101,7 @@ contains
 
    !> Lengths of the first panel, of the last one and of the rebound to begin with
    subroutine start(self, approach)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
-      !> The approach
       type(approach_t), intent(in), target :: approach
 
       real(wp) :: finer
@@ -137,7 +133,6 @@ contains
    !> Choose the length of the next panel. Some equal ones leave what is for the last panel: the end
    !> is a branch point, from which panels keep away
    subroutine choose_length(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
 
       real(wp) :: part, left
@@ -164,7 +159,6 @@ contains
 
    !> Solve the next panel and its companion
    subroutine solve_panel(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
 
       real(wp) :: theta
@@ -208,7 +202,6 @@ contains
 
    !> Guess t1 in the next panel
    subroutine guess(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
 
       real(wp), dimension(width) :: theta, time
@@ -233,7 +226,6 @@ contains
    !> Error of the panel over what it may be: that of the motion and, at the end, that of the
    !> contact time
    subroutine judge(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
 
       real(wp) :: alpha_rate, impulse_error, time_error
@@ -264,9 +256,7 @@ contains
 
    !> Whether the panel is refused; its length is cut then
    function is_refused(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
-      !> Whether it is
       logical :: is_refused
 
       real(wp) :: order, cut
@@ -305,9 +295,7 @@ contains
    !> Whether t1 rises somewhere in the panel. It does where its slope is positive in the solution
    !> and in its companion, by more than the two differ anywhere in the panel
    pure function is_growing(self) result(grows)
-      !> The rebound
       type(rebound_t), intent(in) :: self
-      !> Whether it does
       logical :: grows
 
       real(wp), parameter :: roughly = 1.0e-3_wp
@@ -337,9 +325,7 @@ contains
 
    !> Make the panel a part of the course
    subroutine accept(self, trajectory)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
-      !> The course
       type(trajectory_t), intent(inout) :: trajectory
 
       if (self%ends) self%panel%force(self%panel%stages) = 0.0_wp
@@ -350,11 +336,8 @@ contains
 
    !> Whether the computation has come to its end with the panel
    function is_over(self, trajectory)
-      !> The rebound
       type(rebound_t), intent(in) :: self
-      !> The course
       type(trajectory_t), intent(inout) :: trajectory
-      !> Whether it has
       logical :: is_over
 
       is_over = self%last
@@ -373,7 +356,6 @@ contains
    !> Go on to the next panel, with the end and t1 up to there by the parabolas that go on where
    !> this one ends. While the condition grows nothing tells when the contact ends
    subroutine go_on(self)
-      !> The rebound
       type(rebound_t), intent(inout) :: self
 
       real(wp) :: fall, fall_rate

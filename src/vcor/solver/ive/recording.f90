@@ -33,11 +33,8 @@ contains
 
    !> First node of a trajectory
    subroutine begin(rule, impact, trajectory)
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(inout) :: trajectory
 
       integer, parameter :: usual_panels = 8
@@ -54,13 +51,9 @@ contains
 
    !> Add the nodes of a panel to the trajectory
    subroutine record(rule, impact, panel, trajectory)
-      !> Collocation rule
       type(collocation_t), intent(in) :: rule
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> The panel
       type(panel_t), intent(in) :: panel
-      !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
       integer :: n, first, j
@@ -91,11 +84,8 @@ contains
 
    !> Largest indentation and force so far
    subroutine find_peaks(problem, start, panel, doubt, before, accuracy, trajectory)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Difference of its force from that of its companion, at its end [N]
       real(wp), intent(in) :: doubt
@@ -129,11 +119,8 @@ contains
    !> Maximum in a panel, by improving the panel up to there: the polynomials of the panel are less
    !> accurate inside of it than at its end
    subroutine find_peak(problem, start, panel, value, of_indentation, accuracy, peak, time)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Values at its points
       real(wp), intent(in) :: value(0:width)
@@ -179,11 +166,8 @@ contains
    !> panel still that of the panel before. And a panel in t that begins next to the branch point
    !> at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
    subroutine refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> State at the start of the panel
       type(start_t), intent(in) :: start
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Difference of its force from that of its companion, at its end [N]
       real(wp), intent(in) :: doubt
@@ -225,7 +209,6 @@ contains
 
    !> Go on to a time by two panels: halves in x from first contact, otherwise in time
    subroutine solve_halves(problem, time, now, last)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
       !> The time [s]
       real(wp), intent(in) :: time
@@ -249,9 +232,7 @@ contains
 
    !> Go on by one panel
    subroutine solve_on(problem, step, now, last)
-      !> The problem
       type(panel_problem_t), intent(in) :: problem
-      !> The step
       type(step_t), intent(in) :: step
       !> State at its start, on return that at its end
       type(start_t), intent(inout) :: now

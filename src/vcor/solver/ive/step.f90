@@ -37,7 +37,6 @@ contains
       real(wp), intent(in) :: start
       !> Duration [s]
       real(wp), intent(in) :: time
-      !> Step
       type(step_t) :: step
 
       step = step_of(merge(linear, 0, start > 0.0_wp), time)
@@ -49,7 +48,6 @@ contains
       integer, intent(in) :: kind
       !> Duration [s]
       real(wp), intent(in) :: time
-      !> Step
       type(step_t) :: step
 
       step%index = kind
@@ -59,7 +57,6 @@ contains
 
    !> Scale of the map of the panel [s]
    pure function map_scale(self) result(scale)
-      !> The step
       class(step_t), intent(in) :: self
       !> Scale [s]
       real(wp) :: scale
@@ -70,7 +67,6 @@ contains
 
    !> Duration [s]
    pure function duration(self)
-      !> The step
       class(step_t), intent(in) :: self
       !> Duration [s]
       real(wp) :: duration
@@ -82,7 +78,6 @@ contains
    !> Cut the step. Steps in x can only be halved, so that the next ones still start at multiples
    !> of their length; from x = 2 h on, a step in t of any length does as well
    pure subroutine shorten(self, time)
-      !> The step
       class(step_t), intent(inout) :: self
       !> Wanted duration [s], less than the present one
       real(wp), intent(in) :: time

@@ -3,7 +3,7 @@
 !>
 !> The sums leave an error of order dt with rectangles. With trapezoids it is of order dt^2, but for
 !> a small term of order dt^1.5 from the start, u' ~ sqrt(t). The capped kernel t^-a leaves one of
-!> order dt^(1-a). The scheme is stable for small steps only, `vcor_solver_paper_stability` says how
+!> order dt^(1-a). The scheme is stable for small steps only, `vcor_solver_paper_formulas` says how
 !> small: a run in which the oscillation from step to step grows is refused.
 module vcor_solver_paper_adams_bashforth
    use vcor_error, only : error_input, error_numerical, error_t, raise
@@ -13,7 +13,7 @@ module vcor_solver_paper_adams_bashforth
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_direct_product, only : new_product, product_t
-   use vcor_solver_paper_march, only : capped, march, scheme_t, stable_damping
+   use vcor_solver_paper_march, only : capped, march, share_of_newest, stable_damping
    use vcor_solver_type, only : solver_settings_t, solver_t
    implicit none
    private
@@ -22,15 +22,6 @@ module vcor_solver_paper_adams_bashforth
 
    !> The paper's time marching
    type, extends(solver_t) :: adams_bashforth_t
-      private
-      !> Time step [s]; 0: a part of the expected contact time
-      real(wp) :: time_step = 0.0_wp
-      !> Accuracy that the result is held against [-]; 0: none
-      real(wp) :: accuracy = 0.0_wp
-      !> Scheme but for its step
-      type(scheme_t) :: scheme
-      !> Go on after the separation
-      logical :: ghost = .false.
    contains
       procedure :: solve
    end type adams_bashforth_t
@@ -39,7 +30,6 @@ contains
 
    !> Build the solver
    pure subroutine new_adams_bashforth(self, settings, error)
-      !> The solver
       type(adams_bashforth_t), intent(out) :: self
       !> Form, quadrature, step, end and second term; a step of 0 is a 3000th of the expected
       !> contact time, an accuracy is what the result is held against
@@ -54,22 +44,13 @@ contains
             //"'; known: rectangle, trapezoid")
       end if
       if (allocated(error)) return
-      self%time_step = settings%time_step
-      self%accuracy = settings%accuracy
-      self%ghost = settings%ghost
-      self%scheme%form = settings%form(1:1)
-      self%scheme%share = merge(0.5_wp, 1.0_wp, settings%quadrature == 'trapezoid')
-      self%scheme%second_coefficient = settings%second_coefficient
-      self%scheme%end_time = settings%end_time
+      self%settings = settings
    end subroutine new_adams_bashforth
 
    !> Compute the course of an impact, with the error estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
-      !> The solver
       class(adams_bashforth_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -80,7 +61,7 @@ contains
       call refuse(self, impact, error)
       if (allocated(error)) return
       contact_time = impact%law%contact_time*impact%time_scale()
-      dt = self%time_step
+      dt = self%settings%time_step
       if (.not. dt > 0.0_wp) dt = contact_time/real(usual_steps, wp)
       ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
       if (.not. real(fewest_steps, wp)*dt < contact_time) then
@@ -89,7 +70,7 @@ contains
             //': at most '//trim(in_seconds(contact_time/real(fewest_steps, wp))))
          return
       end if
-      call run(self, impact, dt, self%ghost, trajectory, error)
+      call run(self, impact, dt, self%settings%ghost, trajectory, error)
       if (allocated(error)) return
       if (trajectory%status == contact_separated) &
          call estimate_errors(self, impact, dt, trajectory)
@@ -97,9 +78,7 @@ contains
 
    !> Say what the scheme cannot do
    subroutine refuse(self, impact, error)
-      !> The solver
       type(adams_bashforth_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Error of code `error_input`, unallocated if all is well
       type(error_t), allocatable, intent(out) :: error
@@ -112,7 +91,7 @@ contains
       if (impact%kernel_viscosity() > 0.0_wp) then
          call raise(error, error_input, "scheme = 'adams_bashforth' has no term for a viscosity; " &
             //"use scheme = 'product' or method = 'ive'")
-      else if (self%scheme%form == 'b') then
+      else if (self%settings%form == 'b') then
          time = early*impact%time_scale()
          if (impact%modulus%glassy() > huge(1.0_wp)) then
             call raise(error, error_input, "form = 'b' needs a finite modulus at t = 0, which " &
@@ -121,7 +100,7 @@ contains
                   > noticeable*abs(impact%modulus%rate(4.0_wp*time))) then
             call raise(error, error_input, "form = 'b' needs a modulus with a finite rate at " &
                //"t = 0, which this contact does not have; use form = 'a'")
-         else if (abs(self%scheme%second_coefficient) > 0.0_wp) then
+         else if (abs(self%settings%second_coefficient) > 0.0_wp) then
             call impact%kernel_exponentials(impact%time_scale(), 1.0_wp, terms)
             if (terms%error > 0.0_wp) call raise(error, error_input, 'the second Volterra term ' &
                //"in form = 'b' needs a modulus that is a sum of exponentials; use form = 'a'")
@@ -131,22 +110,19 @@ contains
 
    !> One run, its failures as errors
    subroutine run(self, impact, dt, ghost, trajectory, error)
-      !> The solver
       type(adams_bashforth_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Go on after the separation
       logical, intent(in) :: ghost
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       logical :: stable, complete
 
-      call march(self%scheme, impact, dt, ghost, trajectory, stable, complete)
+      call march(self%settings, impact, dt, ghost, trajectory, stable, complete)
       if (.not. stable) then
          call raise(error, error_numerical, "scheme = 'adams_bashforth' is unstable with " &
             //'solver.time_step = '//trim(in_seconds(dt))//': the largest stable one is about ' &
@@ -159,9 +135,7 @@ contains
 
    !> Both coefficients of restitution
    pure function cor_of(impact, trajectory) result(cor)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its course
       type(trajectory_t), intent(in) :: trajectory
       !> -s'(t0)/v0 and -z'(t0)/v0 [-]
       real(wp) :: cor(2)
@@ -174,9 +148,7 @@ contains
    !> kernel falls within a step. Where longer steps are unstable from one other run, with the order
    !> of rectangles or of the capped kernel
    subroutine estimate_errors(self, impact, dt, trajectory)
-      !> The solver
       type(adams_bashforth_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -215,7 +187,7 @@ contains
       end select
       trajectory%cor_error = estimate(1)
       trajectory%cor_sphere_error = estimate(2)
-      trajectory%accuracy = self%accuracy
+      trajectory%accuracy = self%settings%accuracy
 
    contains
 
@@ -232,7 +204,7 @@ contains
          logical :: stable, complete
 
          value = 0.0_wp
-         call march(self%scheme, impact, step, .false., trajectory, stable, complete)
+         call march(self%settings, impact, step, .false., trajectory, stable, complete)
          known = stable .and. complete .and. trajectory%status == contact_separated
          if (known) value = cor_of(impact, trajectory)
       end subroutine attempt
@@ -241,9 +213,7 @@ contains
    !> Largest stable time step, estimated along a course that product integration computes: it is
    !> stable with any step
    function stable_step(self, impact, dt) result(step)
-      !> The solver
       type(adams_bashforth_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> An unstable time step [s]
       real(wp), intent(in) :: dt
@@ -259,7 +229,7 @@ contains
       integer :: i
 
       call new_product(product, solver_settings_t(accuracy=accuracy, &
-         end_time=self%scheme%end_time, second_coefficient=self%scheme%second_coefficient))
+         end_time=self%settings%end_time, second_coefficient=self%settings%second_coefficient))
       call product%solve(impact, trajectory, error)
       damping = 0.0_wp
       do i = 1, trajectory%last
@@ -293,17 +263,16 @@ contains
       pure function holds(trial)
          !> Time step [s]
          real(wp), intent(in) :: trial
-         !> Whether it is
          logical :: holds
 
          integer, parameter :: most_terms = 60000
          real(wp) :: left
          integer :: j
 
-         holds = damping <= stable_damping(self%scheme, impact, trial)
-         if (.not. holds .or. self%scheme%form == 'a') return
+         holds = damping <= stable_damping(self%settings, impact, trial)
+         if (.not. holds .or. self%settings%form == 'a') return
          left = impact%kernel(0.0_wp) &
-            + self%scheme%share*trial*impact%hertz_factor*impact%modulus%rate(0.0_wp)
+            + share_of_newest(self%settings)*trial*impact%hertz_factor*impact%modulus%rate(0.0_wp)
          do j = 1, min(int(impact%law%contact_time*impact%time_scale()/trial), most_terms)
             left = left + trial*impact%hertz_factor*impact%modulus%rate(trial*real(j, wp))
             holds = left > 0.5_wp*impact%kernel(trial*real(j, wp))

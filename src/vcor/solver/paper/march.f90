@@ -20,39 +20,32 @@ module vcor_solver_paper_march
       contact_separated, contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_solver_convolution, only : convolution_t, lengthen
-   use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_paper_evaluation, only : insert_separation, set_simpson_weights, steps_beyond
-   use vcor_solver_paper_multistep, only : ab_points, adams_bashforth, first_difference, &
-      first_points, runge_kutta, second_difference, second_points, start_steps
-   use vcor_solver_paper_stability, only : damping_limit, kernel_terms
-   use vcor_solver_second_term, only : second_term_t
+   use vcor_solver_convolution, only : convolution_t, lengthen, second_term_t
+   use vcor_solver_equal_steps, only : add_last_step, find_peaks
+   use vcor_solver_paper_formulas, only : ab_points, adams_bashforth, damping_limit, &
+      first_difference, first_points, kernel_terms, runge_kutta, second_difference, second_points, &
+      start_steps
+   use vcor_solver_type, only : solver_settings_t
    implicit none
    private
 
-   public :: scheme_t, march, capped, stable_damping
+   public :: march, capped, share_of_newest, stable_damping
 
    !> A run of more steps is given up: its sums take seconds
    integer, parameter :: most_steps = 60000
    !> Velocities that are kept, enough for a sixth difference
    integer, parameter :: kept = 7
-
-   !> Scheme but for its step
-   type :: scheme_t
-      !> Form of Eq. (8): a or b
-      character(len=1) :: form = 'a'
-      !> Share of the newest value in the sums: 1 in rectangles, 1/2 in trapezoids
-      real(wp) :: share = 1.0_wp
-      !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
-      real(wp) :: second_coefficient = 0.0_wp
-      !> End of the computation [s]; 0: follows from the contact's time scale
-      real(wp) :: end_time = 0.0_wp
-   end type scheme_t
+   !> Points of the interpolation that finds the end of the contact
+   integer, parameter :: points = 6
+   !> Nodes wanted beyond the first one without force, so that the root lies amid the points
+   integer, parameter :: steps_beyond = points/2 - 1
 
    !> A run with a given step, at its last node
    type :: run_t
       !> Time step [s]
       real(wp) :: dt = 0.0_wp
+      !> Share of the newest value in the sums
+      real(wp) :: share = 1.0_wp
       !> Kernel h_j
       type(convolution_t) :: kernel
       !> What it acts on, w_j
@@ -81,9 +74,7 @@ contains
 
    !> Whether k(0) is infinite and replaced
    pure function capped(impact)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Whether it is
       logical :: capped
 
       capped = impact%modulus%glassy() > huge(1.0_wp)
@@ -91,7 +82,6 @@ contains
 
    !> The kernel k_j at t = j dt, k(0) capped if it is infinite
    pure function kernel_values(impact, dt, n) result(kernel)
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -106,32 +96,36 @@ contains
       if (capped(impact)) kernel(0) = impact%kernel(dt)
    end function kernel_values
 
+   !> Share of the newest value in the sums: 1 in rectangles, 1/2 in trapezoids
+   pure function share_of_newest(settings) result(share)
+      type(solver_settings_t), intent(in) :: settings
+      !> Share [-]
+      real(wp) :: share
+
+      share = merge(0.5_wp, 1.0_wp, settings%quadrature == 'trapezoid')
+   end function share_of_newest
+
    !> Largest d = (3/2) alpha sqrt(s) for which the scheme is stable
-   pure function stable_damping(scheme, impact, dt) result(limit)
-      !> Scheme
-      type(scheme_t), intent(in) :: scheme
-      !> The impact
+   pure function stable_damping(settings, impact, dt) result(limit)
+      type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Limit [m^1.5/(N s)]
       real(wp) :: limit
 
-      limit = damping_limit(dt, kernel_values(impact, dt, kernel_terms + 1), scheme%form, &
-         scheme%share, impact%plate%frozen())
+      limit = damping_limit(dt, kernel_values(impact, dt, kernel_terms + 1), settings%form(1:1), &
+         share_of_newest(settings), impact%plate%frozen())
    end function stable_damping
 
    !> One run with a given step
-   subroutine march(scheme, impact, dt, ghost, trajectory, stable, complete)
-      !> Scheme
-      type(scheme_t), intent(in) :: scheme
-      !> The impact
+   subroutine march(settings, impact, dt, ghost, trajectory, stable, complete)
+      type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Go on after the separation
       logical, intent(in) :: ghost
-      !> Its course
       type(trajectory_t), intent(out) :: trajectory
       !> Whether no oscillation from step to step grew
       logical, intent(out) :: stable
@@ -153,19 +147,20 @@ contains
       ! steps (1) and (2): the kernel, and the state at first contact
       stable = .false.
       complete = .true.
-      end_time = scheme%end_time
+      end_time = settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
       room = max(kernel_terms, nint(min(min(end_time, 5.0_wp*impact%time_scale())/dt, &
          real(most_steps, wp)))) + steps_beyond + 2
       run%dt = dt
+      run%share = share_of_newest(settings)
       run%velocity(1) = impact%velocity
       t = merge(dt, 0.0_wp, capped(impact))
       run%first_kernel = impact%kernel(t)
       run%first_alpha = impact%plate%alpha(t)
-      call make_room(run, scheme, impact, room, trajectory)
+      call make_room(run, settings, impact, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
-      limit = stable_damping(scheme, impact, dt)
+      limit = stable_damping(settings, impact, dt)
       beyond_limit = .false.
 
       ! step (3): the loop over time
@@ -177,14 +172,14 @@ contains
          if (.not. complete) exit
          if (n >= room) then
             room = 2*room
-            call make_room(run, scheme, impact, room, trajectory)
+            call make_room(run, settings, impact, room, trajectory)
          end if
          t = dt*real(n, wp)
          call advance(run, impact, n)
          if (.not. abs(run%velocity(1)) <= merge(fastest, fastest_ghost, crossing == 0) &
              *impact%velocity) return
-         call sum_force(run, scheme, impact, n)
-         call accelerate(run, scheme, impact, n)
+         call sum_force(run, settings, impact, n)
+         call accelerate(run, impact, n)
 
          ! an oscillation from step to step that the damper should have stopped
          beyond_limit = beyond_limit .or. run%damping > limit
@@ -206,11 +201,11 @@ contains
          if (run%force(1) <= 0.0_wp) then
             ! while the indentation grows the force presses
             if (run%force(1) < 0.0_wp .and. run%velocity(1) > 0.0_wp .and. n > second_points &
-                .and. .not. abs(scheme%second_coefficient) > 0.0_wp) return
+                .and. .not. abs(settings%second_coefficient) > 0.0_wp) return
             if (run%velocity(1) <= 0.0_wp) then
                crossing = n
                trajectory%status = contact_separated
-               if (ghost .and. .not. scheme%end_time > 0.0_wp) end_time = 2.0_wp*t
+               if (ghost .and. .not. settings%end_time > 0.0_wp) end_time = 2.0_wp*t
                cycle
             end if
          end if
@@ -231,16 +226,12 @@ contains
    end subroutine march
 
    !> Make room for `room` steps, what is there stays
-   subroutine make_room(run, scheme, impact, room, trajectory)
-      !> The run
+   subroutine make_room(run, settings, impact, room, trajectory)
       type(run_t), intent(inout) :: run
-      !> Scheme
-      type(scheme_t), intent(in) :: scheme
-      !> The impact
+      type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Number of steps
       integer, intent(in) :: room
-      !> The trajectory
       type(trajectory_t), intent(inout) :: trajectory
 
       type(exponential_sum_t) :: terms
@@ -251,9 +242,9 @@ contains
       ! one node more for the end of contact
       call trajectory%reserve(room + 1)
       call lengthen(run%w, 1, room)
-      two_terms = abs(scheme%second_coefficient) > 0.0_wp
+      two_terms = abs(settings%second_coefficient) > 0.0_wp
       values = room
-      if (scheme%form == 'a') then
+      if (settings%form == 'a') then
          if (two_terms) values = 2*room
          kernel(:values - 1) = kernel_values(impact, run%dt, values)
          if (two_terms) call run%second%prepare(kernel)
@@ -262,7 +253,7 @@ contains
             *impact%modulus%rate([(run%dt*real(i, wp), i = 0, room - 1)])
       end if
       call run%kernel%set(kernel(:room - 1))
-      if (two_terms .and. scheme%form == 'b') then
+      if (two_terms .and. settings%form == 'b') then
          ! k'' of a finite sum, whatever the accuracy: others are refused
          call impact%kernel_exponentials(run%dt*real(room, wp), 1.0_wp, terms)
          do i = 0, 2*room - 1
@@ -274,9 +265,7 @@ contains
 
    !> Step (6), its second half: s and s' at node n from s'' before it
    pure subroutine advance(run, impact, n)
-      !> The run
       type(run_t), intent(inout) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -297,12 +286,9 @@ contains
    end subroutine advance
 
    !> Step (4): the force at node n, the sums of Eqs. (8) and (10)
-   pure subroutine sum_force(run, scheme, impact, n)
-      !> The run
+   pure subroutine sum_force(run, settings, impact, n)
       type(run_t), intent(inout) :: run
-      !> Scheme
-      type(scheme_t), intent(in) :: scheme
-      !> The impact
+      type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -310,22 +296,22 @@ contains
       real(wp) :: secant, past, own, force, u
       logical :: form_a
 
-      form_a = scheme%form == 'a'
+      form_a = settings%form == 'a'
       secant = impact%law%secant(run%s)
       u = run%s*secant
       run%w(n) = u
       if (form_a) run%w(n) = impact%law%exponent*run%velocity(1)*secant
-      own = scheme%share*run%w(n)
+      own = run%share*run%w(n)
       past = run%kernel%sum_over(n, 1, n - 1, run%w)
       force = run%dt*(past + run%kernel%newest*own)
       if (.not. form_a) force = run%first_kernel*u + force
-      if (abs(scheme%second_coefficient) > 0.0_wp) then
+      if (abs(settings%second_coefficient) > 0.0_wp) then
          ! form b by parts: k(0) u^2 + 2 u int k'(x) u(t - x) dx + int int k''(x + y) u u
          if (.not. form_a) then
             past = run%second%kernel%sum_over(n, 1, n - 1, run%w)
-            force = force + scheme%second_coefficient*(2.0_wp*force - run%first_kernel*u)*u
+            force = force + settings%second_coefficient*(2.0_wp*force - run%first_kernel*u)*u
          end if
-         force = force + scheme%second_coefficient*run%dt**2*(run%second%past(n) &
+         force = force + settings%second_coefficient*run%dt**2*(run%second%past(n) &
             + own*(2.0_wp*past + run%second%kernel%newest*own))
          call run%second%accept(n, run%w)
       end if
@@ -333,12 +319,8 @@ contains
    end subroutine sum_force
 
    !> Steps (5) and (6): U'' by backward differences, and s'' from Eq. (11)
-   pure subroutine accelerate(run, scheme, impact, n)
-      !> The run
+   pure subroutine accelerate(run, impact, n)
       type(run_t), intent(inout) :: run
-      !> Scheme
-      type(scheme_t), intent(in) :: scheme
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Node
       integer, intent(in) :: n
@@ -346,7 +328,7 @@ contains
       real(wp) :: alpha, alpha_rate, acceleration
       integer :: p
 
-      associate (dt => run%dt, share => scheme%share, force => run%force(1))
+      associate (dt => run%dt, share => run%share, force => run%force(1))
          call impact%plate%alpha_and_rate(dt*real(n, wp), alpha, alpha_rate)
          run%damping = alpha*impact%law%slope(run%s)
          run%impulse = run%impulse + dt*(share*force + (1.0_wp - share)*run%force(2))
@@ -372,9 +354,7 @@ contains
 
    !> State at the last node
    pure function state_of(run, impact, t) result(node)
-      !> The run
       type(run_t), intent(in) :: run
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Its time [s]
       real(wp), intent(in) :: t
@@ -391,5 +371,108 @@ contains
       node(col_plate) = run%plate
       node(col_plate_velocity) = run%plate_velocity
    end function state_of
+
+   !> Put the node where F = 0 before node n, the first one with F <= 0; the nodes behind move up
+   pure subroutine insert_separation(impact, n, trajectory)
+      type(impact_t), intent(in) :: impact
+      !> Node; `steps_beyond` more have followed
+      integer, intent(in) :: n
+      !> The trajectory, room for a node more
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: window(columns, 0:points - 1), node(columns), lower, upper, x
+      integer :: first, last, i, iteration
+
+      first = max(n - points/2, 0)
+      last = min(n + steps_beyond, trajectory%final) - first
+      window(:, 0:last) = trajectory%state(:, first:first + last)
+
+      ! the sign changes between nodes n - 1 and n
+      lower = real(n - 1 - first, wp)
+      upper = lower + 1.0_wp
+      do iteration = 1, digits(1.0_wp)
+         x = 0.5_wp*(lower + upper)
+         if (sum(lagrange(last, x)*window(col_force, 0:last)) > 0.0_wp) then
+            lower = x
+         else
+            upper = x
+         end if
+      end do
+
+      node = matmul(window(:, 0:last), lagrange(last, upper))
+      node(col_force) = 0.0_wp
+      if (.not. impact%plate%frozen()) then
+         node(col_plate) = impact%plate%alpha(node(col_time))*node(col_impulse)
+         node(col_plate_velocity) = impact%plate%alpha_rate(node(col_time))*node(col_impulse)
+      end if
+      node(col_sphere) = node(col_indentation) + node(col_plate)
+      node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
+
+      do i = trajectory%final, n, -1
+         trajectory%state(:, i + 1) = trajectory%state(:, i)
+      end do
+      trajectory%state(:, n) = node
+      trajectory%final = trajectory%final + 1
+      trajectory%last = n
+   end subroutine insert_separation
+
+   !> Lagrange's polynomials of the points 0, 1 .. n
+   pure function lagrange(n, x) result(c)
+      !> Last point
+      integer, intent(in) :: n
+      !> Argument
+      real(wp), intent(in) :: x
+      !> Polynomials, shape (0:n)
+      real(wp) :: c(0:n)
+
+      integer :: i, j
+
+      c = 1.0_wp
+      do j = 0, n
+         do i = 0, n
+            if (i /= j) c(j) = c(j)*(x - real(i, wp))/real(j - i, wp)
+         end do
+      end do
+   end function lagrange
+
+   !> Weights for integrals over the contact: Simpson's rule on the equal steps, with Simpson's 3/8
+   !> rule on three of them where their number is odd, and on the last step, which is shorter, the
+   !> parabola through the last three nodes
+   pure subroutine set_simpson_weights(dt, trajectory)
+      !> Time step [s]
+      real(wp), intent(in) :: dt
+      type(trajectory_t), intent(inout) :: trajectory
+
+      real(wp) :: h
+      integer :: n, even
+
+      n = trajectory%last
+      associate (w => trajectory%weight)
+         w(0:n) = 0.0_wp
+         if (n < 1) return
+         h = trajectory%state(col_time, n) - trajectory%state(col_time, n - 1)
+         if (n < 3) then
+            w(0:n - 1) = dt
+            w(0) = 0.5_wp*dt
+            if (n == 1) w(0) = 0.0_wp
+            if (n == 2) w(1) = 0.5_wp*dt
+            w(n - 1:n) = w(n - 1:n) + 0.5_wp*h
+            return
+         end if
+
+         ! steps that go by pairs, up to node `even`; the other three up to node n - 1
+         even = n - 1
+         if (mod(even, 2) == 1) even = even - 3
+         if (even > 0) then
+            w(0:even) = 2.0_wp/3.0_wp*dt
+            w(1:even - 1:2) = 4.0_wp/3.0_wp*dt
+            w(0) = dt/3.0_wp
+            w(even) = dt/3.0_wp
+         end if
+         if (even < n - 1) &
+            w(even:n - 1) = w(even:n - 1) + dt*[3.0_wp, 9.0_wp, 9.0_wp, 3.0_wp]/8.0_wp
+         call add_last_step(dt, h, w(n - 2:n))
+      end associate
+   end subroutine set_simpson_weights
 
 end module vcor_solver_paper_march
