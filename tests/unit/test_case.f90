@@ -434,9 +434,9 @@ contains
       call refuses_option("impact.velocity=5 /", error_usage, "'5 /', expected a number")
       call refuses_option("impact.velocity=5 radius=6", error_usage, &
          & "'5 radius=6'|expected a number")
-      call refuses_option("impact.velocity=5 'x", error_usage, "expected a number")
+      call refuses_option("impact.velocity=5 'x", error_usage, "'x is cut off")
       call refuses_option("impact.velocity=!5", error_usage, "'!5', expected a number")
-      call refuses_option("case.title='cut off", error_usage, "cut off'")
+      call refuses_option("case.title='no end", error_usage, "'no end is cut off|closing quote")
       call refuses_option("case.title=a"//achar(10)//"b", error_usage, "control character")
       call refuses_option("solver.volterra_order=1.5", error_usage, "whole number")
       call refuses_option("impact.velocity=-5", error_input, &

@@ -89,7 +89,6 @@ contains
       call reads_title("'a ! b / c & d, e = f (g) &end'", "a ! b / c & d, e = f (g) &end")
       call reads_title("'  blanks inside   count  '", "  blanks inside   count  ")
       call reads_title("'Stoß auf Gummi, β = 5 1/s'", "Stoß auf Gummi, β = 5 1/s")
-      call reads_title("1*'once'", "once")
       call reads_title("''''", "'")
    end subroutine test_logicals_and_texts
 
@@ -136,6 +135,7 @@ contains
          & "text cut off")
       call refuses("&case title = 'it's' /", "'it's|doubled", "quote not doubled")
       call refuses("&case title = 'a'b /", "'a'b|blank or a comma", "text glued to a word")
+      call refuses("&case title = 1*'once' /", "repeat count", "repeat count of a text")
       call refuses("&case title = 'ab"//achar(0)//"cd' /", "byte 0|text file", "NUL in a text")
       call refuses(achar(127)//"ELF"//achar(2)//achar(1), "x.nml:1: |byte 127|text file", &
          & "binary file")
@@ -194,7 +194,6 @@ contains
       call refuses_value("1e-400", "too small")
       call refuses_value("0."//repeat("0", 400)//"1", "too small")
       call refuses_value("1.0.0", "'1.0.0', expected a number")
-      call refuses_value("5.0m", "'5.0m', expected a number")
       call refuses_value("5.0;", "'5.0;', expected a number")
       call refuses_value("5.0_wp", "'5.0_wp', expected a number")
       call refuses_value("1e", "'1e', expected a number")
@@ -212,7 +211,12 @@ contains
       call refuses_value("3*", "repeat count without a value")
       call refuses_value("0*5.0", "repeat count that is not a positive number")
       call refuses_value("99999999999*5.0", "repeat count")
-      call refuses_value("5.0 m/s", "more than one value|'5.0 m'")
+      call refuses_value("5.0 m/s", "more than one value|'5.0 m'|; give 5.0, in m/s")
+      call refuses_value("5.0m", "'5.0m', expected a number|; give 5.0, in m/s")
+      call refuses("&material modulus = 70 GPa /", "'70 GPa'|; give 70e9, in Pa", "modulus in GPa")
+      call refuses("&material modulus = .7TPa /", "'.7TPa'|; give .7e12, in Pa", "modulus in TPa")
+      call refuses("&sphere radius = 5 mm /", "'5 mm'|; give 5e-3, in m", "radius in millimetres")
+      call refuses("&material moduli = 1e6 2 MPa /", "'MPa'|; give 2e6, in Pa", "a list with units")
 
       call refuses("&solver volterra_order = 1.0 /", &
          & "volterra_order: |'1.0', expected a whole number in [1, 2]", &

@@ -1,18 +1,15 @@
 !> Namelists as groups and their statements, with line numbers
 !>
-!> A text is split into groups `&name ... /` and their statements `key = values`, one group after
-!> the other. The
-!> values are not looked at here: a statement says where in the text each of them stands.
+!> A text is a sequence of tokens; groups `&name ... /` and their statements `key = values` are
+!> taken from it one after the other. What the values mean is `vcor_case_values`'s: a statement says
+!> where in the text each of them stands.
 module vcor_case_namelist
    use vcor_error, only : error_input, error_t, raise
-   use vcor_case_scanner, only : bad_token, comma_token, control_byte, end_token, equals_token, &
-      & group_token, scan_text, section_token, slash_token, string_token, token_t, unclosed_quote, &
-      & unclosed_section, word_token
-   use vcor_text, only : integer_text, lower, printable, shortened
+   use vcor_text, only : integer_text, is_control, lower, printable, shortened
    implicit none
    private
 
-   public :: namelist_t, statement_t, value_t, new_namelist, values_of
+   public :: namelist_t, statement_t, value_t, new_namelist, values_in
 
    !> One value of a statement
    type :: value_t
@@ -38,14 +35,30 @@ module vcor_case_namelist
       type(value_t), allocatable :: values(:)
    end type statement_t
 
+   !> One token
+   type :: token_t
+      !> `,`, `=` or `/`; `&` for this and the word behind it, `'` for a text in quotes, `(` for
+      !> what is in parentheses, `w` for any other word, `.` for the end, `?` for what is none of
+      !> them
+      character :: kind = '.'
+      !> First byte of it in the text
+      integer :: first = 1
+      !> Last byte of it in the text
+      integer :: last = 0
+      !> Line it stands in, from 1
+      integer :: line = 1
+   end type token_t
+
    !> A text with namelists that is read from its beginning to its end
    type :: namelist_t
       !> The text
       character(len=:), allocatable :: text
       !> Name of its source, for messages
       character(len=:), allocatable :: source
-      !> Tokens of the text
+      !> Tokens of the text, the last of which is the end or none
       type(token_t), allocatable, private :: tokens(:)
+      !> What is wrong with a last token that is none
+      character(len=:), allocatable, private :: flaw
       !> The token that is looked at next
       integer, private :: next = 1
    contains
@@ -57,21 +70,171 @@ module vcor_case_namelist
       procedure :: place
    end type namelist_t
 
+   character, parameter :: tab = achar(9), line_feed = achar(10), carriage_return = achar(13)
+   character(len=*), parameter :: line_ends = line_feed//carriage_return
+   !> What ends a word
+   character(len=*), parameter :: delimiters = " ,'""=/&!()"//tab//line_ends
+
 contains
 
    !> Begin with a text
    pure subroutine new_namelist(self, text, source)
       !> The namelists
       type(namelist_t), intent(out) :: self
-      !> The text
+      !> The text; lines end with line feed, carriage return, or both
       character(len=*), intent(in) :: text
       !> Name of its source, for messages
       character(len=*), intent(in) :: source
 
+      character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+      type(token_t), allocatable :: larger(:)
+      type(token_t) :: token
+      integer :: n
+
       self%text = text
       self%source = source
-      call scan_text(text, self%tokens)
+      self%flaw = ''
+      allocate (self%tokens(256))
+      n = 0
+      if (index(text, byte_order_mark) == 1) token%last = len(byte_order_mark)
+      do
+         call go_on(text, token, self%flaw)
+         n = n + 1
+         if (n > size(self%tokens)) then
+            allocate (larger(2*n))
+            larger(:n - 1) = self%tokens
+            call move_alloc(larger, self%tokens)
+         end if
+         self%tokens(n) = token
+         if (token%kind == '.' .or. token%kind == '?') exit
+      end do
+      self%tokens = self%tokens(:n)
    end subroutine new_namelist
+
+   !> Go on from a token to the next one
+   pure subroutine go_on(text, token, flaw)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The token before; on return the next one
+      type(token_t), intent(inout) :: token
+      !> What is wrong with it if it is none
+      character(len=:), allocatable, intent(inout) :: flaw
+
+      integer :: i, length
+
+      token%first = token%last + 1
+      call skip_blanks(text, token%first, token%line)
+      i = token%first
+      token%last = i - 1
+      token%kind = '.'
+      if (i > len(text)) return
+      token%last = i
+      token%kind = text(i:i)
+      select case (text(i:i))
+      case (',', '=', '/')
+         continue
+      case ("'", '"')
+         token%kind = "'"
+         token%last = end_of_string(text, i)
+         if (token%last == 0) then
+            token%kind = '?'
+            token%last = end_of(text, i, line_ends)
+            flaw = 'the text '//shortened(text(i:token%last)) &
+               //' is cut off, expected a closing quote in its line'
+         end if
+      case ('(', ')')
+         token%last = end_of(text, i + 1, ")=('""!"//line_ends) + 1
+         if (text(i:i) == ')' .or. text(token%last:min(token%last, len(text))) /= ')') then
+            token%kind = '?'
+            flaw = "found '"//text(i:i)//"' without its counterpart"
+            token%last = i
+         end if
+      case ('&')
+         token%last = end_of(text, i + 1, delimiters)
+      case default
+         token%kind = 'w'
+         token%last = end_of(text, i, delimiters)
+      end select
+      ! a byte that is part of no text says more than what it stands in
+      do length = 1, token%last - i + 1
+         if (.not. is_control(text(i + length - 1:i + length - 1)) &
+             .or. text(i + length - 1:i + length - 1) == tab) cycle
+         token%kind = '?'
+         flaw = 'found byte '//integer_text(ichar(text(i + length - 1:i + length - 1))) &
+            //', a control character, expected a text file'
+         exit
+      end do
+   end subroutine go_on
+
+   !> Go on to what is neither blank nor comment
+   pure subroutine skip_blanks(text, position, line)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Byte to look at next
+      integer, intent(inout) :: position
+      !> Its line
+      integer, intent(inout) :: line
+
+      logical :: in_comment
+
+      in_comment = .false.
+      do position = position, len(text)
+         select case (text(position:position))
+         case (line_feed, carriage_return)
+            in_comment = .false.
+            line = line + 1
+            ! one line end of two bytes
+            if (text(position:min(position + 1, len(text))) == carriage_return//line_feed) &
+               line = line - 1
+         case (' ', tab)
+            continue
+         case ('!')
+            in_comment = .true.
+         case default
+            if (.not. in_comment .or. is_control(text(position:position))) return
+         end select
+      end do
+   end subroutine skip_blanks
+
+   !> Last byte before any of some others
+   pure function end_of(text, first, others) result(last)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> First byte that may be one of them
+      integer, intent(in) :: first
+      !> The others
+      character(len=*), intent(in) :: others
+      !> The last byte, `first - 1` where there is none
+      integer :: last
+
+      last = first - 1
+      do while (last < len(text))
+         if (index(others, text(last + 1:last + 1)) > 0) exit
+         last = last + 1
+      end do
+   end function end_of
+
+   !> Last byte of a text in quotes
+   pure function end_of_string(text, first) result(last)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> Where the quote is that it begins with
+      integer, intent(in) :: first
+      !> The closing quote, 0 where there is none in the line
+      integer :: last
+
+      last = first
+      do
+         last = end_of(text, last + 1, text(first:first)//line_ends) + 1
+         if (last > len(text)) exit
+         if (text(last:last) /= text(first:first)) exit
+         if (last == len(text)) return
+         ! a doubled quote is a quote in the text
+         if (text(last + 1:last + 1) /= text(first:first)) return
+         last = last + 1
+      end do
+      last = 0
+   end function end_of_string
 
    !> A place in the text, `case.nml:12`
    pure function place(self, line) result(text)
@@ -82,7 +245,7 @@ contains
       !> The place, for the beginning of a message
       character(len=:), allocatable :: text
 
-      text = printable(self%source)//":"//integer_text(line)
+      text = printable(self%source)//':'//integer_text(line)
    end function place
 
    !> Find the next group
@@ -95,28 +258,35 @@ contains
       integer, intent(out) :: line
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      type(token_t) :: token
+
       character(len=:), allocatable :: message
 
-      token = self%tokens(self%next)
-      line = token%line
-      select case (token%category)
-      case (end_token)
-         return
-      case (group_token)
-         name = self%text(token%first+1:token%last)
-         if (lower(name) == "end") then
-            message = "found &end outside of a group"
-         else if (name == "") then
-            message = "found & without a name, expected the name of a group at once after it"
+      associate (token => self%tokens(self%next))
+         line = token%line
+         message = ''
+         if (token%kind == '.') then
+            return
+         else if (token%kind == '&') then
+            name = self%text(token%first + 1:token%last)
+            if (lower(name) == 'end') message = 'found &end outside of a group'
+            if (name == '') &
+               message = 'found & without a name, expected the name of a group at once after it'
+            self%next = self%next + 1
+         else if (token%kind == '?') then
+            message = self%flaw
+         else
+            message = shown(self)//' outside of groups, expected &group'
+            if (self%text(token%first:token%first) == '$') then
+               message = message//' (a group begins with &, not with $)'
+            else if (self%next > 1) then
+               associate (before => self%tokens(self%next - 1))
+                  if (before%kind == '/' .and. before%line == line) message = message &
+                     //' (the / before it ends its group; a text with / needs quotes)'
+               end associate
+            end if
          end if
-         self%next = self%next + 1
-      case (bad_token)
-         message = flaw_message(self, token)
-      case default
-         message = outside_message(self, token)
-      end select
-      if (allocated(message)) call raise(error, error_input, self%place(line)//": "//message)
+      end associate
+      if (message /= '') call raise(error, error_input, self%place(line)//': '//message)
    end subroutine next_group
 
    !> Find the next statement of the group
@@ -131,163 +301,142 @@ contains
       logical, intent(out) :: found
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      type(token_t) :: token
-      character(len=:), allocatable :: message
-      integer :: last, line
 
-      found = .false.
-      token = self%tokens(self%next)
-      line = token%line
-      select case (token%category)
-      case (slash_token)
-         self%next = self%next + 1
-         return
-      case (group_token)
-         if (lower(self%text(token%first:token%last)) == "&end") then
+      character(len=:), allocatable :: message, place
+      integer :: line
+      logical :: is_end
+
+      place = ' in &'//shortened(group)
+      message = ''
+      associate (token => self%tokens(self%next))
+         line = token%line
+         found = is_assignment(self, self%next)
+         is_end = token%kind == '/'
+         if (token%kind == '&') is_end = lower(self%text(token%first:token%last)) == '&end'
+         if (is_end) then
             self%next = self%next + 1
             return
+         else if (token%kind == '&') then
+            message = shown(self)//place//', expected / to end it first'
+         else if (token%kind == '.') then
+            message = 'found the end of the file'//place//', expected / to end it'
+         else if (token%kind == '?') then
+            message = self%flaw
+         else if (token%kind /= 'w') then
+            message = shown(self)//place//', expected key = value or /'
+         else if (.not. found) then
+            message = shown(self)//place//', expected key = value'
+            ! what cannot be a token says more
+            if (self%tokens(self%next + 1)%kind == '?') message = self%flaw
+         else
+            statement%key = self%text(token%first:token%last)
+            statement%line = line
          end if
-         message = "found "//shown(self, token)//" in &"//shortened(group) &
-            & //", expected / to end it first"
-      case (end_token)
-         message = "found the end of the file in &"//shortened(group)//", expected / to end it"
-      case (bad_token)
-         message = flaw_message(self, token)
-      case (word_token)
-         if (.not. is_assignment(self%tokens, self%next)) then
-            message = "found "//shown(self, token)//" in &"//shortened(group) &
-               & //", expected key = value"
-            ! What cannot be a token says more
-            if (self%tokens(self%next+1)%category == bad_token) &
-               & message = flaw_message(self, self%tokens(self%next+1))
-         end if
-      case default
-         message = "found "//shown(self, token)//" in &"//shortened(group) &
-            & //", expected key = value or /"
-      end select
-      if (.not. allocated(message)) then
-         found = .true.
-         statement%key = self%text(token%first:token%last)
-         statement%line = token%line
-         if (self%tokens(self%next+1)%category == section_token) then
-            self%next = self%next + 1
-            token = self%tokens(self%next)
-            statement%section = self%text(token%first+1:token%last-1)
-         end if
-         call values_of(self%text, self%tokens, self%next + 2, statement%values, last, line, &
-            & message)
-         self%next = last + 1
-         if (.not. allocated(message)) then
-            ! What cannot be a token ends the values, but its own message says more
-            if (self%tokens(self%next)%category == bad_token) then
-               line = self%tokens(self%next)%line
-               message = flaw_message(self, self%tokens(self%next))
-            else if (size(statement%values) == 0) then
-               line = statement%line
-               message = "key '"//shortened(statement%key)//"' has no value"
-            end if
+      end associate
+      if (found) then
+         self%next = self%next + 1
+         associate (token => self%tokens(self%next))
+            if (token%kind == '(') statement%section = self%text(token%first + 1:token%last - 1)
+            if (token%kind == '(') self%next = self%next + 1
+         end associate
+         self%next = self%next + 1
+         call take_values(self, statement%values, line, message)
+         if (message == '' .and. size(statement%values) == 0) then
+            line = statement%line
+            message = "key '"//shortened(statement%key)//"' has no value"
          end if
       end if
-      if (allocated(message)) call raise(error, error_input, self%place(line)//": "//message)
+      if (message /= '') call raise(error, error_input, self%place(line)//': '//message)
    end subroutine next_statement
 
+   !> The values of a text that holds nothing else
+   pure subroutine values_in(text, values, message)
+      !> The text
+      character(len=*), intent(in) :: text
+      !> The values, shape (n)
+      type(value_t), allocatable, intent(out) :: values(:)
+      !> What is wrong; empty on success, and without values where there is something else
+      character(len=:), allocatable, intent(out) :: message
+
+      type(namelist_t) :: namelist
+      integer :: line
+
+      call new_namelist(namelist, text, '')
+      call take_values(namelist, values, line, message)
+      if (message == '' .and. namelist%tokens(namelist%next)%kind /= '.') values = values(:0)
+   end subroutine values_in
+
+   !> Take the values that come next
+   pure subroutine take_values(self, values, line, message)
+      !> The namelists; the token after the values comes next
+      class(namelist_t), intent(inout) :: self
+      !> The values, shape (n), n >= 0
+      type(value_t), allocatable, intent(out) :: values(:)
+      !> Line of what is wrong
+      integer, intent(out) :: line
+      !> What is wrong, empty on success
+      character(len=:), allocatable, intent(out) :: message
+
+      integer :: i, first, n
+      logical :: after_separator
+
+      message = ''
+      first = self%next
+      do while (scan(self%tokens(self%next)%kind, "w',(=") > 0)
+         if (is_assignment(self, self%next)) exit
+         self%next = self%next + 1
+      end do
+      allocate (values(self%next - first))
+      n = 0
+      after_separator = .true.
+      do i = first, self%next - 1
+         associate (token => self%tokens(i))
+            line = token%line
+            if (token%kind == ',') then
+               if (after_separator) &
+                  message = 'found an empty value before a comma, expected a value'
+            else if (token%kind == '=' .or. token%kind == '(') then
+               message = "found '"//shortened(self%text(token%first:token%last))//"' among values"
+            else
+               if (i > first .and. .not. after_separator) then
+                  if (self%tokens(i - 1)%last + 1 == token%first) message = "found '" &
+                     //shortened(self%text(self%tokens(i - 1)%first:token%last)) &
+                     //"', expected a blank or a comma between values (a quote is doubled in a " &
+                     //'text)'
+               end if
+               n = n + 1
+               values(n) = value_t(token%first, token%last, in_quotes=token%kind == "'")
+               if (token%kind == 'w') call split_repeats(self%text, values(n))
+               if (values(n)%last < values(n)%first) &
+                  message = 'found a repeat count without a value'
+            end if
+            after_separator = token%kind == ','
+         end associate
+         if (message /= '') return
+      end do
+      values = values(:n)
+      ! what cannot be a token ends the values
+      line = self%tokens(self%next)%line
+      if (self%tokens(self%next)%kind == '?') message = self%flaw
+   end subroutine take_values
+
    !> Whether a word, perhaps a section, and an equals sign follow each other
-   pure function is_assignment(tokens, i) result(yes)
-      !> The tokens, the last of which is bad or the end
-      type(token_t), intent(in) :: tokens(:)
-      !> Index of the first
+   pure function is_assignment(self, i) result(yes)
+      !> The namelists
+      class(namelist_t), intent(in) :: self
+      !> Number of the first token
       integer, intent(in) :: i
       !> True if they do
       logical :: yes
+
       integer :: after
 
-      yes = tokens(i)%category == word_token
+      yes = self%tokens(i)%kind == 'w'
       if (.not. yes) return
       after = i + 1
-      if (tokens(after)%category == section_token) after = after + 1
-      yes = tokens(after)%category == equals_token
+      if (self%tokens(after)%kind == '(') after = after + 1
+      yes = self%tokens(after)%kind == '='
    end function is_assignment
-
-   !> The values that begin at a token
-   pure subroutine values_of(text, tokens, first, values, last, line, message)
-      !> The text
-      character(len=*), intent(in) :: text
-      !> Its tokens, the last of which is bad or the end
-      type(token_t), intent(in) :: tokens(:)
-      !> Index of the first token
-      integer, intent(in) :: first
-      !> The values, shape (n), n >= 0
-      type(value_t), allocatable, intent(out) :: values(:)
-      !> Index of the last token of the values
-      integer, intent(out) :: last
-      !> Line of what is wrong
-      integer, intent(out) :: line
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-      type(value_t) :: value
-      integer :: i, n
-      logical :: after_separator, repeated
-
-      last = first - 1
-      do i = first, size(tokens)
-         if (is_assignment(tokens, i)) exit
-         if (.not. any(tokens(i)%category == [word_token, string_token, comma_token, &
-            & section_token, equals_token])) exit
-         last = i
-      end do
-      allocate(values(last - first + 1))
-      n = 0
-      line = tokens(first)%line
-      after_separator = .true.
-      repeated = .false.
-      do i = first, last
-         line = tokens(i)%line
-         select case (tokens(i)%category)
-         case (comma_token)
-            if (after_separator .or. repeated) &
-               & message = "found an empty value before a comma, expected a value"
-            after_separator = .true.
-         case (word_token, string_token)
-            if (repeated .neqv. is_glued(tokens, i)) message = "found '" &
-               & //shortened(text(tokens(max(first, i-1))%first:tokens(i)%last)) &
-               & //"', expected a blank or a comma between values (a quote is doubled in a text)"
-            if (.not. repeated) value%repeats = 1
-            value%first = tokens(i)%first
-            value%last = tokens(i)%last
-            value%in_quotes = tokens(i)%category == string_token
-            if (.not. value%in_quotes) call split_repeats(text, value)
-            ! A repeat count before a text in quotes is a word of its own
-            repeated = value%last < value%first .and. i < last
-            if (repeated) repeated = tokens(i+1)%category == string_token &
-               & .and. is_glued(tokens, i + 1)
-            if (.not. repeated) then
-               if (value%last < value%first) message = "found a repeat count without a value"
-               n = n + 1
-               values(n) = value
-            end if
-            after_separator = .false.
-         case default
-            message = "found '"//shortened(text(tokens(i)%first:tokens(i)%last))//"' among values"
-         end select
-         if (allocated(message)) return
-      end do
-      values = values(:n)
-   end subroutine values_of
-
-   !> Whether a value stands directly after another one
-   pure function is_glued(tokens, i) result(yes)
-      !> The tokens
-      type(token_t), intent(in) :: tokens(:)
-      !> Index of the later one
-      integer, intent(in) :: i
-      !> True if it does
-      logical :: yes
-
-      yes = i > 1
-      if (.not. yes) return
-      yes = tokens(i-1)%last + 1 == tokens(i)%first .and. &
-         & (tokens(i-1)%category == word_token .or. tokens(i-1)%category == string_token)
-   end function is_glued
 
    !> Split a word such as `3*1.0` into repeat count and value
    pure subroutine split_repeats(text, value)
@@ -295,77 +444,30 @@ contains
       character(len=*), intent(in) :: text
       !> The value; `first` is moved behind the count
       type(value_t), intent(inout) :: value
+
       integer, parameter :: most_digits = 9
       integer :: star
 
-      value%repeats = 1
-      star = index(text(value%first:value%last), "*")
-      if (star < 2) return
-      star = value%first + star - 1
-      if (verify(text(value%first:star-1), "0123456789") > 0) return
-      value%repeats = -1
-      ! Digits alone, and few enough of them: this cannot fail
-      if (star - value%first <= most_digits) read(text(value%first:star-1), "(i9)") value%repeats
+      star = index(text(value%first:value%last), '*') + value%first - 1
+      if (star <= value%first) return
+      if (verify(text(value%first:star - 1), '0123456789') > 0) return
+      value%repeats = 0
+      ! digits alone, and few enough of them, are read without fail
+      if (star - value%first <= most_digits) read (text(value%first:star - 1), '(i9)') value%repeats
       if (value%repeats == 0) value%repeats = -1
       value%first = star + 1
    end subroutine split_repeats
 
-   !> What to say about a bad token
-   pure function flaw_message(self, token) result(message)
+   !> What was found: the token that comes next, for messages
+   pure function shown(self) result(text)
       !> The namelists
       class(namelist_t), intent(in) :: self
-      !> The token
-      type(token_t), intent(in) :: token
-      !> The message
-      character(len=:), allocatable :: message
-
-      select case (token%flaw)
-      case (unclosed_quote)
-         message = "the text "//shortened(self%text(token%first:token%last)) &
-            & //" is cut off, expected a closing quote in its line"
-      case (unclosed_section)
-         message = "found "//shown(self, token)//" without its counterpart"
-      case (control_byte)
-         message = "found byte "//integer_text(ichar(self%text(token%first:token%first))) &
-            & //", a control character, expected a text file"
-      case default
-         message = "found "//shown(self, token)
-      end select
-   end function flaw_message
-
-   !> What to say about a token outside of groups
-   pure function outside_message(self, token) result(message)
-      !> The namelists
-      class(namelist_t), intent(in) :: self
-      !> The token
-      type(token_t), intent(in) :: token
-      !> The message
-      character(len=:), allocatable :: message
-      logical :: after_slash
-
-      message = "found "//shown(self, token)//" outside of groups, expected &group"
-      if (token%category == word_token .and. self%text(token%first:token%first) == "$") then
-         message = message//" (a group begins with &, not with $)"
-         return
-      end if
-      if (self%next == 1) return
-      associate (before => self%tokens(self%next-1))
-         after_slash = before%category == slash_token .and. before%line == token%line
-      end associate
-      if (after_slash) message = message &
-         & //" (the / before it ends its group; a text with / needs quotes)"
-   end function outside_message
-
-   !> A token in quotes, for messages
-   pure function shown(self, token) result(text)
-      !> The namelists
-      class(namelist_t), intent(in) :: self
-      !> The token
-      type(token_t), intent(in) :: token
-      !> The token
+      !> Such as `found 'velocity'`
       character(len=:), allocatable :: text
 
-      text = "'"//shortened(self%text(token%first:token%last))//"'"
+      associate (token => self%tokens(self%next))
+         text = "found '"//shortened(self%text(token%first:token%last))//"'"
+      end associate
    end function shown
 
 end module vcor_case_namelist

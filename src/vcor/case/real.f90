@@ -68,40 +68,37 @@ contains
       logical, intent(out) :: good
       !> Power of ten of its first digit that is not zero; 0 for zero
       integer, intent(out) :: power
-      integer :: i, first, point, after, leading, shift
-      integer, parameter :: most_digits = 6
 
+      integer, parameter :: most_digits = 6
+      integer :: first, last, point, leading, exponent, shift
+
+      ! the mantissa
       power = 0
       first = 1
-      if (scan(word, "+-") == 1) first = 2
-      ! The mantissa: digits first to after - 1, among them at most one point
-      after = verify(word(first:), digits//".") + first - 1
-      if (after < first) after = len(word) + 1
-      point = index(word(first:after-1), ".") + first - 1
-      if (point < first) point = after
-      good = scan(word(first:after-1), digits) > 0
-      if (good .and. point < after) good = index(word(point+1:after-1), ".") == 0
+      if (scan(word, '+-') == 1) first = 2
+      last = first + verify(word(first:)//' ', digits//'.') - 2
+      good = scan(word(first:last), digits) > 0
       if (.not. good) return
-
-      leading = scan(word(first:after-1), "123456789") + first - 1
+      point = first + index(word(first:last)//'.', '.') - 1
+      leading = first + scan(word(first:last), '123456789') - 1
       if (leading >= first) power = merge(point - leading - 1, point - leading, leading < point)
-      if (after > len(word)) return
+      if (point < last) good = index(word(point + 1:last), '.') == 0
+      if (.not. good .or. last == len(word)) return
 
-      good = scan(word(after:after), "eEdD") == 1 .and. after < len(word)
-      if (.not. good) return
-      i = after + 1
-      if (scan(word(i:i), "+-") == 1) i = i + 1
-      good = i <= len(word)
-      if (good) good = verify(word(i:), digits) == 0
+      ! the exponent, from its first digit that is not zero on
+      exponent = last + 2
+      good = scan(word(last + 1:last + 1), 'eEdD') == 1
+      if (good .and. scan(word(exponent:), '+-') == 1) exponent = exponent + 1
+      good = good .and. exponent <= len(word) .and. verify(word(exponent:), digits) == 0
       if (.not. good .or. leading < first) return
-      first = verify(word(i:), "0") + i - 1
-      if (first < i) return
-      if (len(word) - first + 1 > most_digits) then
-         power = merge(-huge(power), huge(power), word(after+1:after+1) == "-")
-      else
-         read(word(first:), *) shift
-         power = power + merge(-shift, shift, word(after+1:after+1) == "-")
+      shift = 0
+      exponent = exponent + verify(word(exponent:)//'.', '0') - 1
+      if (len(word) - exponent >= most_digits) then
+         shift = 10**most_digits
+      else if (exponent <= len(word)) then
+         read (word(exponent:), *) shift
       end if
+      power = power + merge(-shift, shift, word(last + 2:last + 2) == '-')
    end subroutine look_at_number
 
    !> Whether a word means infinity or not a number

@@ -1,14 +1,13 @@
-!> Values as they are written to values of a key's kind
+!> Values as they are written to values of a key's kind, and whether these are within its range
 module vcor_case_values
-   use vcor_case_namelist, only : value_t, values_of
-   use vcor_case_real, only : read_real
-   use vcor_case_scanner, only : end_token, scan_text, token_t
-   use vcor_kinds, only : wp
-   use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, &
-      & text_key, wanted
    use vcor_case_case, only : entry_t
+   use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
+      wanted
    use vcor_case_name, only : control_in
+   use vcor_case_namelist, only : value_t, values_in
+   use vcor_case_real, only : looks_numeric, read_real
    use vcor_interval, only : contains_number, is_computable
+   use vcor_kinds, only : wp
    use vcor_text, only : integer_text, is_utf8, lower, quoted, real_text, shortened
    use vcor_words, only : contains_word, nearest_name, spelled
    implicit none
@@ -20,9 +19,31 @@ module vcor_case_values
    integer, parameter :: longest_list = 1000000
    !> Longest text [bytes]
    integer, parameter :: longest_text = 4096
-   character(len=*), parameter :: digits = "0123456789"
+   character(len=*), parameter :: digits = '0123456789'
 
 contains
+
+   !> Convert the value of a command line option, where a text may stand without quotes
+   subroutine convert_text(key, text, entry, message)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> The value or values
+      character(len=*), intent(in) :: text
+      !> Entry whose value is set
+      type(entry_t), intent(inout) :: entry
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+
+      type(value_t), allocatable :: values(:)
+      character(len=:), allocatable :: quotes
+
+      quotes = text
+      if (key%value_kind == text_key .and. scan(text, "'""") /= 1) quotes = quoted(text)
+      call values_in(quotes, values, message)
+      if (message == '' .and. size(values) == 0) &
+         message = "found '"//shortened(text)//"', expected "//wanted(key)
+      if (message == '') call convert(key, quotes, values, entry, message)
+   end subroutine convert_text
 
    !> Convert the values of a statement
    subroutine convert(key, text, values, entry, message)
@@ -37,77 +58,41 @@ contains
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
+      integer :: odd
+
+      ! the first value that is in quotes and should not be, or the other way round
+      odd = findloc(values%in_quotes .neqv. key%value_kind == text_key, .true., dim=1)
       if (any(values%repeats < 1)) then
-         message = "found a repeat count that is not a positive number, expected such as 3*1.0"
-      else if (key%value_kind == list_key) then
-         call convert_list(key, text, values, entry%list, message)
-      else if (size(values) > 1 .or. values(1)%repeats > 1) then
+         message = 'found a repeat count that is not a positive number, expected such as 3*1.0'
+      else if (key%value_kind /= list_key .and. (size(values) > 1 .or. values(1)%repeats > 1)) then
          message = too_many(key, text, values)
+      else if (odd > 0) then
+         associate (word => text(values(odd)%first:values(odd)%last))
+            message = 'found a text in quotes, '//shortened(word)//', expected '//wanted(key)
+            if (key%value_kind == text_key) message = 'found '//shortened(word) &
+               //' without quotes, expected '//shortened(quoted(word))
+         end associate
       else
-         call convert_one(key, text, values(1), entry, message)
+         associate (word => text(values(1)%first:values(1)%last))
+            select case (key%value_kind)
+            case (real_key)
+               call read_real(word, wanted(key), entry%number, message)
+               if (allocated(message)) message = message//unit_behind(key, word)
+            case (integer_key)
+               call convert_integer(key, word, entry%number, message)
+            case (logical_key)
+               call convert_logical(word, entry%number, message)
+            case (list_key)
+               call convert_list(key, text, values, entry%list, message)
+            case default
+               call convert_string(key, word, entry%text, message)
+            end select
+         end associate
       end if
       if (allocated(message)) return
       entry%given = .true.
       entry%present = .true.
    end subroutine convert
-
-   !> Convert the value of a command line option, where a text may stand without quotes
-   subroutine convert_text(key, text, entry, message)
-      !> The key
-      type(key_t), intent(in) :: key
-      !> The value or values
-      character(len=*), intent(in) :: text
-      !> Entry whose value is set
-      type(entry_t), intent(inout) :: entry
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-      type(token_t), allocatable :: tokens(:)
-      type(value_t), allocatable :: values(:)
-      character(len=:), allocatable :: quotes
-      integer :: last, line
-
-      quotes = text
-      if (key%value_kind == text_key .and. scan(text, "'""") /= 1) quotes = quoted(text)
-      call scan_text(quotes, tokens)
-      call values_of(quotes, tokens, 1, values, last, line, message)
-      if (allocated(message)) return
-      if (size(values) == 0 .or. tokens(last+1)%category /= end_token) then
-         message = "found '"//shortened(text)//"', expected "//wanted(key)
-         return
-      end if
-      call convert(key, quotes, values, entry, message)
-   end subroutine convert_text
-
-   !> Convert the one value of a key that is not a list
-   subroutine convert_one(key, text, value, entry, message)
-      !> The key
-      type(key_t), intent(in) :: key
-      !> The text the value stands in
-      character(len=*), intent(in) :: text
-      !> The value
-      type(value_t), intent(in) :: value
-      !> Entry whose value is set
-      type(entry_t), intent(inout) :: entry
-      !> What is wrong, unallocated on success
-      character(len=:), allocatable, intent(out) :: message
-
-      associate (word => text(value%first:value%last))
-         if (key%value_kind /= text_key .and. value%in_quotes) then
-            message = "found a text in quotes, "//shortened(word)//", expected "//wanted(key)
-            return
-         end if
-         select case (key%value_kind)
-         case (real_key)
-            call read_real(word, wanted(key), entry%number, message)
-         case (integer_key)
-            call convert_integer(key, word, entry%number, message)
-         case (logical_key)
-            call convert_logical(word, entry%number, message)
-         case default
-            call convert_string(key, word, value%in_quotes, entry%text, message)
-         end select
-      end associate
-   end subroutine convert_one
 
    !> Convert a list of numbers
    subroutine convert_list(key, text, values, list, message)
@@ -121,32 +106,31 @@ contains
       real(wp), allocatable, intent(inout) :: list(:)
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
+
       character(len=:), allocatable :: expected
       real(wp) :: number
       integer :: i, n
 
-      expected = wanted(key)
       n = 0
       do i = 1, size(values)
          if (values(i)%repeats > longest_list - n) then
-            message = "found more than "//integer_text(longest_list)//" numbers"
+            message = 'found more than '//integer_text(longest_list)//' numbers'
             return
          end if
          n = n + values(i)%repeats
       end do
-      if (allocated(list)) deallocate(list)
-      allocate(list(n))
+      if (allocated(list)) deallocate (list)
+      allocate (list(n))
+      expected = wanted(key)
       n = 0
       do i = 1, size(values)
-         associate (word => text(values(i)%first:values(i)%last))
-            if (values(i)%in_quotes) then
-               message = "found a text in quotes, "//shortened(word)//", expected "//expected
-            else
-               call read_real(word, expected, number, message)
-            end if
+         associate (word => text(values(i)%first:values(i)%last), before => values(max(1, i - 1)))
+            call read_real(word, expected, number, message)
+            if (allocated(message)) message = message//unit_behind(key, word) &
+               //unit_hint(key, text(before%first:before%last), word)
          end associate
          if (allocated(message)) return
-         list(n+1:n+values(i)%repeats) = number
+         list(n + 1:n + values(i)%repeats) = number
          n = n + values(i)%repeats
       end do
    end subroutine convert_list
@@ -161,14 +145,15 @@ contains
       real(wp), intent(out) :: number
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
+
       integer :: first, status, whole
 
       number = 0.0_wp
       first = 1
-      if (scan(word, "+-") == 1) first = 2
+      if (scan(word, '+-') == 1) first = 2
       status = 1
       if (len(word) >= first .and. verify(word(first:), digits) == 0) &
-         & read(word, *, iostat=status) whole
+         read (word, *, iostat=status) whole
       if (status == 0) then
          number = real(whole, wp)
       else
@@ -188,9 +173,9 @@ contains
       flag = 0.0_wp
       ! Fortran takes anything that begins with t or f, `false_start` and `tru` too
       select case (lower(word))
-      case ("t", "true", ".t.", ".true.", ".t", ".true")
+      case ('t', 'true', '.t.', '.true.', '.t', '.true')
          flag = 1.0_wp
-      case ("f", "false", ".f.", ".false.", ".f", ".false")
+      case ('f', 'false', '.f.', '.false.', '.f', '.false')
          flag = 0.0_wp
       case default
          message = "found '"//shortened(word)//"', expected .true. or .false."
@@ -198,44 +183,19 @@ contains
    end subroutine convert_logical
 
    !> Convert a text
-   subroutine convert_string(key, word, in_quotes, string, message)
-      !> The key, for what is expected
+   subroutine convert_string(key, word, string, message)
+      !> The key, for its choices
       type(key_t), intent(in) :: key
-      !> The text as it is written
+      !> The text in quotes, a doubled quote in it for one
       character(len=*), intent(in) :: word
-      !> Whether it is in quotes
-      logical, intent(in) :: in_quotes
       !> The text without quotes; a choice as the catalogue has it
       character(len=:), allocatable, intent(inout) :: string
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
-      if (.not. in_quotes) then
-         message = "found "//shortened(word)//" without quotes, expected "//shortened(quoted(word))
-         return
-      end if
-      string = without_quotes(word)
-      if (key%choices /= "") string = spelled(key%choices, trim(adjustl(string)))
-      if (.not. is_utf8(string)) then
-         message = "found a text that is not UTF-8, '"//shortened(string)//"'"
-      else if (control_in(string) /= "") then
-         message = "found "//control_in(string)//" in '"//shortened(string) &
-            & //"', expected a text that can be read on one line"
-      else if (len(string) > longest_text) then
-         message = "found a text of "//integer_text(len(string))//" bytes, expected at most " &
-            & //integer_text(longest_text)
-      end if
-   end subroutine convert_string
-
-   !> A text without its quotes, and each doubled quote in it once
-   pure function without_quotes(word) result(string)
-      !> The text in quotes
-      character(len=*), intent(in) :: word
-      !> The text
-      character(len=:), allocatable :: string
       integer :: i, n
 
-      allocate(character(len=len(word)) :: string)
+      string = word
       n = 0
       i = 2
       do while (i < len(word))
@@ -245,7 +205,17 @@ contains
          i = i + 1
       end do
       string = string(:n)
-   end function without_quotes
+      if (key%choices /= '') string = spelled(key%choices, trim(adjustl(string)))
+      if (.not. is_utf8(string)) then
+         message = "found a text that is not UTF-8, '"//shortened(string)//"'"
+      else if (control_in(string) /= '') then
+         message = 'found '//control_in(string)//" in '"//shortened(string) &
+            //"', expected a text that can be read on one line"
+      else if (len(string) > longest_text) then
+         message = 'found a text of '//integer_text(len(string))//' bytes, expected at most ' &
+            //integer_text(longest_text)
+      end if
+   end subroutine convert_string
 
    !> What to say about more than one value where one is expected
    pure function too_many(key, text, values) result(message)
@@ -256,30 +226,74 @@ contains
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
       !> The message
-      character(len=:), allocatable :: message, value
-      integer :: n, i, shown_values
-      integer, parameter :: most_shown = 8
+      character(len=:), allocatable :: message
 
-      n = size(values)
-      if (n == 1) then
-         ! meant as arithmetic, which a namelist has not
-         value = shortened(text(values(1)%first:values(1)%last))
-         message = integer_text(values(1)%repeats)
-         message = "found more than one value: "//message//"*"//value//" is no product but " &
-            & //value//" given "//message//" times, expected "//wanted(key)
-         return
-      end if
-      shown_values = min(n, most_shown)
-      message = "found more than one value, '" &
-         & //shortened(text(values(1)%first:values(shown_values)%last))
-      if (shown_values < n) message = message//" ..."
-      message = message//"', expected "//wanted(key)
-      if (key%value_kind /= real_key .or. n /= 2) return
-      i = values(1)%last + 1
-      if (i + 1 /= values(2)%first) return
-      if (text(i:i) == "," .and. verify(text(values(1)%last:values(1)%last), digits) == 0) &
-         & message = message//" (with a decimal point, not a comma)"
+      integer, parameter :: most_shown = 8
+      integer :: n
+
+      n = min(size(values), most_shown)
+      associate (first => text(values(1)%first:values(1)%last), last => values(n)%last)
+         message = 'found more than one value'
+         if (n == 1) then
+            ! meant as arithmetic, which a namelist has not
+            message = message//': '//integer_text(values(1)%repeats)//'*'//shortened(first) &
+               //' is no product but '//shortened(first)//' given ' &
+               //integer_text(values(1)%repeats)//' times, expected '//wanted(key)
+            return
+         end if
+         message = message//", '"//shortened(text(values(1)%first:last))
+         if (n < size(values)) message = message//' ...'
+         message = message//"', expected "//wanted(key)
+         if (key%value_kind /= real_key .or. size(values) /= 2) return
+         message = message//unit_hint(key, first, text(values(2)%first:last))
+         n = values(1)%last + 1
+         if (text(n:n) == ',' .and. values(2)%first == n + 1 .and. verify(first, digits) == 0) &
+            message = message//' (with a decimal point, not a comma)'
+      end associate
    end function too_many
+
+   !> What to say about a word that is a number and a unit
+   pure function unit_behind(key, word) result(hint)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> Such as `70GPa`
+      character(len=*), intent(in) :: word
+      !> Such as `; give 70e9, in Pa`; empty where the word is something else
+      character(len=:), allocatable :: hint
+
+      integer :: last
+
+      last = scan(word, digits//'.', back=.true.)
+      hint = unit_hint(key, word(:last), word(last + 1:))
+   end function unit_behind
+
+   !> What to say about a number with a unit
+   pure function unit_hint(key, number, unit) result(hint)
+      !> The key
+      type(key_t), intent(in) :: key
+      !> The number as it is written
+      character(len=*), intent(in) :: number
+      !> What stands behind it
+      character(len=*), intent(in) :: unit
+      !> Such as `; give 70e9, in Pa`; empty where that is no unit for the key
+      character(len=:), allocatable :: hint
+
+      character(len=*), parameter :: prefixes = 'numckMGT'
+      integer, parameter :: powers(*) = [-9, -6, -3, -2, 3, 6, 9, 12]
+      integer :: place
+
+      hint = ''
+      if (.not. looks_numeric(number) .or. len(unit) == 0) return
+      associate (base => trim(key%unit))
+         place = index(prefixes, unit(1:1))
+         if (unit == base .or. index(base, unit//'/') == 1) then
+            hint = number
+         else if (place > 0 .and. unit(2:) == base .and. scan(number, 'eEdD') == 0) then
+            hint = number//'e'//integer_text(powers(place))
+         end if
+         if (hint /= '') hint = '; give '//shortened(hint)//', in '//base
+      end associate
+   end function unit_hint
 
    !> What is wrong with the value of an entry, as far as its range says
    pure function range_message(key, entry) result(message)
@@ -289,40 +303,40 @@ contains
       type(entry_t), intent(in) :: entry
       !> Found and expected; empty when nothing is wrong
       character(len=:), allocatable :: message
-      character(len=:), allocatable :: near
+
       integer :: i
 
-      message = ""
-      near = ""
+      message = ''
       select case (key%value_kind)
       case (real_key)
          if (.not. contains_number(key%range, entry%number)) message = real_text(entry%number)
       case (integer_key)
          if (.not. contains_number(key%range, entry%number)) &
-            & message = integer_text(nint(entry%number))
+            message = integer_text(nint(entry%number))
       case (list_key)
-         do i = 1, size(entry%list)
-            if (contains_number(key%range, entry%list(i))) cycle
-            message = real_text(entry%list(i))//" in value "//integer_text(i)
-            exit
+         do i = size(entry%list), 1, -1
+            if (.not. contains_number(key%range, entry%list(i))) &
+               message = real_text(entry%list(i))//' in value '//integer_text(i)
          end do
       case (text_key)
-         if (key%choices /= "" .and. .not. contains_word(key%choices, entry%text)) then
+         if (key%choices /= '' .and. .not. contains_word(key%choices, entry%text)) then
             message = "'"//shortened(entry%text)//"'"
-            ! a single letter is near to every other
-            if (len_trim(entry%text) > 1) near = nearest_name(entry%text, trim(key%choices))
-         else if (entry%text == "" .and. key%default /= "''") then
-            message = "an empty text"
+         else if (entry%text == '' .and. key%default /= "''") then
+            message = 'an empty text'
          end if
       case default
          continue
       end select
-      if (message /= "") message = "found "//message//", expected "//wanted(key)
-      if (message /= "" .and. key%value_kind == real_key) then
-         if (.not. is_computable(entry%number)) message = message//", between 1e-60 and 1e60 in " &
-            & //"magnitude: beyond that nothing can be computed"
+      if (message == '') return
+      message = 'found '//message//', expected '//wanted(key)
+      if (key%value_kind == real_key) then
+         if (.not. is_computable(entry%number)) message = message//', between 1e-60 and 1e60 in ' &
+            //'magnitude: beyond that nothing can be computed'
+      else if (key%choices /= '' .and. len_trim(entry%text) > 1) then
+         ! a single letter is near to every other
+         if (nearest_name(entry%text, trim(key%choices)) /= '') message = message &
+            //"; did you mean '"//nearest_name(entry%text, trim(key%choices))//"'?"
       end if
-      if (near /= "") message = message//"; did you mean '"//near//"'?"
    end function range_message
 
 end module vcor_case_values
