@@ -71,6 +71,9 @@ module vcor_impact_outcome
       real(wp) :: contact_radius = none
       !> It over the smaller one of Hertz' radius and the sphere's [-]
       real(wp) :: contact_ratio = none
+      !> It over the radius of the sphere, times the sphere's share of the compliance; the sum of
+      !> two spheres [-]
+      real(wp) :: sphere_ratio = none
       !> It over the thickness of the plate, times the plate's share of the compliance [-]
       real(wp) :: thickness_ratio = none
       !> Thickness times the number of the bending wave of frequency pi/t0 [-]
