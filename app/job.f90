@@ -60,7 +60,6 @@ contains
    !> Name of a file
    pure function file(self, i)
       class(job_t), intent(in) :: self
-      !> Number of its ending
       integer, intent(in) :: i
       !> The name; empty if the file is not written
       character(len=:), allocatable :: file
@@ -106,7 +105,6 @@ contains
    !> Read, override, validate and build one case
    subroutine read_job(request, filename, job, error)
       type(request_t), intent(in) :: request
-      !> The case file
       character(len=*), intent(in) :: filename
       !> The case, the names of its files left out
       type(job_t), intent(inout) :: job
