@@ -6,7 +6,7 @@ module vcor_app_previous
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : write_stdout
    use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, open_hdf5, read_dataset, reader_t
-   use vcor_io_identity, only : check_same, csv_rows, identity_t, read_csv_identity, read_identity
+   use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
    use vcor_io_path, only : plain_file_exists, quoted_path
    implicit none
    private
@@ -51,7 +51,7 @@ contains
       if (previous%has_hdf5) then
          call read_identity(previous%path, identity, is_ours, damage)
       else
-         call read_csv_identity(previous%path, identity, is_ours)
+         call read_csv(previous%path, identity, is_ours)
          identity%data = expected%data
       end if
       if (is_ours) then
@@ -101,13 +101,17 @@ contains
       !> Whether nothing is missing
       logical :: is_whole
 
+      type(identity_t) :: identity
       integer :: rows
+      logical :: is_ours
 
       is_whole = previous%has_hdf5 .or. .not. job%writes(3)
-      if (is_whole .and. job%writes(1)) &
-         is_whole = csv_rows(job%file(1)) == job%part%count()
+      if (is_whole .and. job%writes(1)) then
+         call read_csv(job%file(1), identity, is_ours, rows)
+         is_whole = rows == job%part%count()
+      end if
       if (.not. (is_whole .and. job%writes(2))) return
-      rows = csv_rows(job%file(2))
+      call read_csv(job%file(2), identity, is_ours, rows)
       is_whole = rows > 0
       if (previous%has_hdf5) is_whole = rows == history_rows(previous%path)
    end function is_whole

@@ -4,10 +4,10 @@
 !>     /summary      over the dimension `point`: what is swept, check, the columns of a summary with
 !>                   numbers for texts
 !>
-!> HDF5 writes the file once, as a whole, all points pending. Every dataset is in one piece and
-!> uncompressed, so its numbers have a fixed place in the file, and what makes the file an HDF5 file
-!> never changes again: outcomes are written to their places as bytes. The room is taken at the
-!> beginning: a disk that is too small is noticed then.
+!> HDF5 lays the file out, with room for all points. Every dataset is in one piece and uncompressed,
+!> so its numbers have a fixed place in the file, and what makes the file an HDF5 file never changes
+!> again: outcomes are written to their places as bytes. A disk that is too small is noticed at the
+!> beginning.
 !>
 !> A point is done if its check sum is right. It is written last; after a crash of the machine the
 !> disk may have any part of what was written, in any order, and the sum tells.
@@ -31,11 +31,11 @@ module vcor_io_checkpoint
       c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
    use vcor_io_results, only : axis_column, quantity_column
    use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
-      move_column, new_table, real_column, table_t, text_column, text_value
+      new_table, real_column, table_t, text_column, text_value
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
    use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t
-   use vcor_sweep_summary, only : summary_t, values_t
+   use vcor_sweep_summary, only : summary_t
    use vcor_text, only : shortened
    use vcor_words, only : join_words
    implicit none
@@ -86,7 +86,7 @@ contains
       type(identity_t), intent(in) :: identity
       !> Grid of the sweep
       type(grid_t), intent(in) :: grid
-      !> Outcomes of all places of the part; they move to a table and back
+      !> Outcomes of all places of the part; those that are pending become NaN
       type(summary_t), intent(inout) :: summary
       !> Set if the file cannot be written, or another process has begun it
       type(error_t), allocatable, intent(out) :: error
@@ -100,11 +100,11 @@ contains
       temporary = join_path(folder, 'part.h5')
       call remember(temporary)
       call summary%blank_pending()
-      call fill_table(table, identity, grid, summary)
+      call lay_out(table, identity, grid, summary%quantities)
       call write_hdf5(temporary, table, error=error, remarks=remarks_of(identity), &
          changing=size(summary%quantities) + 1)
-      if (.not. allocated(table%fault)) call empty_table(table, summary)
       if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
+      if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
       if (.not. allocated(error)) call name_file(self, path, error)
       if (allocated(error)) then
          call self%remove()
@@ -117,19 +117,18 @@ contains
       call remove_scratch(folder)
    end subroutine create_checkpoint
 
-   !> Points and outcomes of a part as a table
-   subroutine fill_table(table, identity, grid, summary)
+   !> Points of a part as a table, with columns that have no values yet
+   subroutine lay_out(table, identity, grid, quantities)
       !> The table
       type(table_t), intent(out) :: table
       !> What it is about
       type(identity_t), intent(in) :: identity
       !> Grid of the sweep
       type(grid_t), intent(in) :: grid
-      !> Outcomes; they move
-      type(summary_t), intent(inout) :: summary
+      !> Columns of the summary
+      type(quantity_t), intent(in) :: quantities(:)
 
-      type(column_t) :: column
-      type(values_t) :: status
+      type(column_t) :: check
       integer, allocatable :: points(:), places(:)
       real(wp), allocatable :: values(:)
       integer :: i, j
@@ -140,41 +139,20 @@ contains
          'number of the point in the sweep'))
       allocate (values(size(points)))
       do j = 1, size(grid%axes)
-         associate (axis => grid%axes(j))
-            do i = 1, size(points)
-               places = grid%places(points(i))
-               values(i) = axis%values(places(j))
-            end do
-            call add_column(table, axis_column(axis, values))
-         end associate
+         do i = 1, size(points)
+            places = grid%places(points(i))
+            values(i) = grid%axes(j)%values(places(j))
+         end do
+         call add_column(table, axis_column(grid%axes(j), values))
       end do
-      call add_column(table, column_of('check', checks_of(summary, 1, size(points)), '1', &
-         'CRC-32 of the numbers of the summary in this row and of its number; 0: pending'))
-      do i = 1, size(summary%values)
-         call quantity_column(column, summary%quantities(i), summary%values(i), as_numbers=.true.)
-         call move_column(table, column)
+      check = column_of('check', [integer ::], '1', &
+         'CRC-32 of the numbers of the summary in this row and of its number; 0: pending')
+      check%length = size(points)
+      call add_column(table, check)
+      do i = 1, size(quantities)
+         call add_column(table, quantity_column(quantities(i), size(points), as_numbers=.true.))
       end do
-      call move_alloc(summary%status, status%integers)
-      call quantity_column(column, summary%quantities(i), status, as_numbers=.true.)
-      call move_column(table, column)
-   end subroutine fill_table
-
-   !> Outcomes out of their table
-   subroutine empty_table(table, summary)
-      !> The table, as `fill_table` made it
-      type(table_t), intent(inout) :: table
-      !> Outcomes
-      type(summary_t), intent(inout) :: summary
-
-      integer :: i, before
-
-      before = size(table%columns) - size(summary%quantities)
-      do i = 1, size(summary%values)
-         call move_alloc(table%columns(before + i)%reals, summary%values(i)%reals)
-         call move_alloc(table%columns(before + i)%integers, summary%values(i)%integers)
-      end do
-      call move_alloc(table%columns(before + i)%integers, summary%status)
-   end subroutine empty_table
+   end subroutine lay_out
 
    !> Give a file its name
    subroutine name_file(self, path, error)
@@ -307,7 +285,7 @@ contains
 
       ! bytes of a number
       integer, parameter :: real_width = 8, integer_width = 4
-      integer, target :: checks(last - first + 1)
+      integer, allocatable, target :: checks(:)
       integer(c_int) :: reason
       integer :: i, n
 
@@ -323,7 +301,7 @@ contains
       end do
       call write_at(n + 1, c_loc(summary%status(first)), integer_width)
       ! last: a point is done if its check sum is right
-      checks = checks_of(summary, first, last)
+      allocate (checks, source=checks_of(summary, first, last))
       call write_at(n + 2, c_loc(checks), integer_width)
 
    contains
@@ -467,24 +445,27 @@ contains
 
       type(reader_t) :: reader
       type(dataset_t) :: dataset
-      integer :: i
+      integer :: i, kind
 
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
-      do i = 1, size(summary%values)
-         if (allocated(summary%values(i)%reals)) then
-            call read_column(reader, path_of(summary%quantities(i)%name), real_column, &
-               size(summary%status), dataset, error)
-            if (.not. allocated(error)) call move_alloc(dataset%column%reals, &
-               summary%values(i)%reals)
-         else
-            call read_wholes(reader, summary%quantities(i), .not. present(checks), &
-               summary%values(i)%integers, error)
-         end if
-         if (allocated(error)) exit
+      do i = 1, size(summary%quantities)
+         associate (quantity => summary%quantities(i), column => dataset%column)
+            kind = merge(integer_column, real_column, quantity%is_whole)
+            if (quantity%labels /= '' .and. .not. present(checks)) kind = text_column
+            call read_column(reader, path_of(quantity%name), kind, size(summary%status), dataset, &
+               error)
+            if (.not. allocated(error) .and. kind == text_column) &
+               call number_texts(column, quantity, reader%path, error)
+            if (allocated(error)) exit
+            if (i > size(summary%values)) then
+               call move_alloc(column%integers, summary%status)
+            else
+               call move_alloc(column%integers, summary%values(i)%integers)
+               call move_alloc(column%reals, summary%values(i)%reals)
+            end if
+         end associate
       end do
-      if (.not. allocated(error)) call read_wholes(reader, &
-         summary%quantities(size(summary%quantities)), .not. present(checks), summary%status, error)
       if (present(checks) .and. .not. allocated(error)) then
          call read_column(reader, path_of('check'), integer_column, size(checks), dataset, error)
          if (.not. allocated(error)) checks = dataset%column%integers
@@ -493,43 +474,33 @@ contains
       if (allocated(error)) error%code = error_file
    end subroutine read_columns
 
-   !> Read whole numbers, or the texts that they stand for
-   subroutine read_wholes(reader, quantity, as_texts, numbers, error)
-      !> Open file
-      type(reader_t), intent(in) :: reader
-      !> The column
+   !> Find the numbers that the texts of a column stand for
+   subroutine number_texts(column, quantity, path, error)
+      !> The column, of texts; its `integers` become the numbers
+      type(column_t), intent(inout) :: column
+      !> What it is
       type(quantity_t), intent(in) :: quantity
-      !> Whether the file has texts, if there are any
-      logical, intent(in) :: as_texts
-      !> The numbers
-      integer, intent(inout) :: numbers(:)
-      !> Set if they cannot be read
+      !> File that it is from, for messages
+      character(len=*), intent(in) :: path
+      !> Error of code `error_file` if a text is none of those that are known
       type(error_t), allocatable, intent(out) :: error
 
-      type(dataset_t) :: dataset
       character(len=label_length), allocatable :: labels(:)
-      logical :: has_texts
       integer :: i, k
 
-      has_texts = as_texts .and. quantity%labels /= ''
-      call read_column(reader, path_of(quantity%name), merge(text_column, integer_column, &
-         has_texts), size(numbers), dataset, error)
-      if (allocated(error)) return
-      numbers = dataset%column%integers
-      if (.not. has_texts) return
       allocate (labels, source=labels_of(quantity))
-      do i = 1, size(numbers)
+      do i = 1, column%length
+         ! findloc of gfortran 12 finds no text of another length
          do k = size(labels), 1, -1
-            if (labels(k) == text_value(dataset%column, i)) exit
+            if (labels(k) == text_value(column, i)) exit
          end do
-         numbers(i) = quantity%first - 1 + k
-         if (k > 0) cycle
-         call raise(error, error_file, reader%path//": found '" &
-            //shortened(text_value(dataset%column, i))//"' in 'summary/"//trim(quantity%name) &
+         if (k == 0) call raise(error, error_file, path//": found '" &
+            //shortened(text_value(column, i))//"' in 'summary/"//trim(quantity%name) &
             //"', expected one of "//join_words(trim(adjustl(quantity%labels))))
-         return
+         if (allocated(error)) return
+         column%integers(i) = quantity%first - 1 + k
       end do
-   end subroutine read_wholes
+   end subroutine number_texts
 
    !> Path of the dataset of a column
    pure function path_of(name) result(path)

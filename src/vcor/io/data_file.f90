@@ -9,7 +9,7 @@ module vcor_io_data_file
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
       & split, start_of, take_decimals, take_line
    use vcor_io_header, only : check_unit, header_t, longest_word, name_of, note_comment, &
-      & read_names, role_none, role_of, role_relaxation, role_time
+      & read_names, role_none, role_of, role_relaxation, role_time, unit_size
    use vcor_io_path, only : join_path
    use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
@@ -17,7 +17,6 @@ module vcor_io_data_file
    use vcor_material_table, only : modulus_rounding
    use vcor_case_case, only : case_t
    use vcor_text, only : has_control, integer_text, printable, real_text, shortened
-   use vcor_io_units, only : unit_size
    implicit none
    private
 

@@ -1,15 +1,15 @@
 !> From a figure to its file: script and data are written, gnuplot draws
 !>
-!> All is made in a private folder beside the file (`vcor_io_scratch`), and renamed when it is
+!> All is made in a private folder beside the file (`vcor_io_file`), and renamed when it is
 !> complete, so that no half figure is ever seen. Gnuplot runs without the settings of the user,
 !> which would make a figure look different from machine to machine.
 module vcor_io_drawing
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_figure, only : figure_t
-   use vcor_io_file, only : check_target, make_scratch, remember, remove_scratch, write_file
+   use vcor_io_file, only : check_target, make_scratch, move_file, remember, remove_scratch, &
+      & write_file
    use vcor_io_gnuplot, only : data_text, script_text
    use vcor_io_path, only : file_exists, for_shell, join_path, make_directory, quoted_path
-   use vcor_io_posix, only : c_rename, c_text, last_errno, system_reason
    implicit none
    private
 
@@ -81,10 +81,7 @@ contains
          character(len=*), intent(in) :: extension
 
          if (allocated(error)) return
-         if (c_rename(c_text(join_path(folder, name//"."//extension)), &
-            & c_text(path//"."//extension)) /= 0) &
-            & call raise(error, error_file, "cannot write "//quoted_path(path//"."//extension) &
-            & //": "//system_reason(last_errno()))
+         call move_file(join_path(folder, name//"."//extension), path//"."//extension, error)
       end subroutine take_over
    end subroutine draw
 

@@ -20,15 +20,16 @@ module vcor_io_hdf5
    use, intrinsic :: iso_c_binding, only : c_char, c_loc, c_null_char, c_ptr
    use, intrinsic :: iso_fortran_env, only : int64
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
-   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5dclose_f, h5dcreate_f, h5dwrite_f, &
-      h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, h5f_libver_v18_f, h5fclose_f, &
-      h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, h5p_crt_order_indexed_f, &
-      h5p_crt_order_tracked_f, h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, &
-      h5p_group_create_f, h5pclose_f, h5pcopy_f, h5pcreate_f, h5pset_fclose_degree_f, &
-      h5pset_fill_value_f, h5pset_libver_bounds_f, h5pset_link_creation_order_f, &
-      h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, h5screate_f, h5screate_simple_f, &
-      h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, h5t_native_integer, h5t_std_i32le, &
-      h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, hsize_t
+   use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5d_alloc_time_early_f, h5dclose_f, &
+      h5dcreate_f, h5dwrite_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
+      h5f_libver_v18_f, h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
+      h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, h5p_file_access_f, &
+      h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, h5pcreate_f, &
+      h5pset_alloc_time_f, h5pset_fclose_degree_f, h5pset_fill_value_f, h5pset_libver_bounds_f, &
+      h5pset_link_creation_order_f, h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, &
+      h5screate_f, h5screate_simple_f, h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, &
+      h5t_native_integer, h5t_std_i32le, h5t_string, h5tclose_f, h5tcopy_f, h5tset_cset_f, hid_t, &
+      hsize_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : commit, create_file, discard, output_file_t, put, reserve
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
@@ -82,8 +83,8 @@ contains
       type(remark_t), intent(in), optional :: remarks(:)
       !> Further tables
       type(table_t), intent(in), optional :: more(:)
-      !> Number of columns of the first table, the last ones, whose numbers will change where they
-      !> are in the file: they are no part of the seal
+      !> Number of columns of the first table, the last ones, that get their room in the file but no
+      !> numbers, which the caller puts there: they are no part of the seal
       integer, intent(in), optional :: changing
 
       type(output_file_t) :: file
@@ -230,11 +231,12 @@ contains
       type(writer_t), intent(inout) :: writer
       !> Table to write
       type(table_t), intent(in) :: table
-      !> Number of columns that the seal leaves out, the last ones
+      !> Number of columns that get their room only, the last ones
       integer, intent(in), optional :: changing
 
       integer(hid_t) :: dataset, group, scales(size(table%dimensions))
       integer :: i, j, status
+      logical :: is_room
 
       if (allocated(writer%fault)) return
       call h5gcreate_f(writer%file, table%name, group, status, gcpl_id=writer%group_creation)
@@ -247,24 +249,23 @@ contains
       end do
       do i = 1, size(scales)
          associate (coordinates => table%dimensions(i))
-            call put_column(writer, group, coordinates, [coordinates%length], scales(i))
+            call put_column(writer, group, coordinates, [coordinates%length], scales(i), .false.)
             if (allocated(writer%fault)) return
             call h5dsset_scale_f(scales(i), status, link_name(coordinates%name))
             call note(writer, status, "make '"//coordinates%name//"' a dimension scale")
          end associate
       end do
       do j = 1, size(table%columns)
-         call put_column(writer, group, table%columns(j), table%dimensions%length, dataset)
+         is_room = .false.
+         if (present(changing)) is_room = j > size(table%columns) - changing
+         call put_column(writer, group, table%columns(j), table%dimensions%length, dataset, is_room)
          if (allocated(writer%fault)) return
          do i = 1, size(scales)
             ! Numbers here count as in C but from 1: the slowest dimension first
             call h5dsattach_scale_f(dataset, scales(i), i, status)
             call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
          end do
-         if (present(changing)) then
-            if (j > size(table%columns) - changing) &
-               call leave_out(writer, table%columns(j), dataset)
-         end if
+         if (is_room) call leave_out(writer, table%columns(j), dataset)
          call h5dclose_f(dataset, status)
       end do
       do i = 1, size(scales)
@@ -274,7 +275,7 @@ contains
    end subroutine put_table
 
    !> Write a column as a dataset and leave it open
-   subroutine put_column(writer, group, column, lengths, dataset)
+   subroutine put_column(writer, group, column, lengths, dataset, is_room)
       !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> Group to write to
@@ -285,6 +286,8 @@ contains
       integer, intent(in) :: lengths(:)
       !> The dataset, open
       integer(hid_t), intent(out) :: dataset
+      !> Whether it gets its room in the file in one piece, but no numbers
+      logical, intent(in) :: is_room
 
       integer(hid_t) :: creation, space, type_id
       integer :: status
@@ -306,6 +309,7 @@ contains
       is_filled = is_uniform(column)
       call h5pcopy_f(writer%dataset_creation, creation, status)
       if (is_filled) call set_fill_text(column, type_id, creation, status)
+      if (is_room) call h5pset_alloc_time_f(creation, h5d_alloc_time_early_f, status)
       call note(writer, status, "set the fill value of '"//column%name//"'")
       call h5dcreate_f(group, link_name(column%name), type_id, space, dataset, status, &
          dcpl_id=creation)
@@ -315,7 +319,7 @@ contains
       if (allocated(writer%fault)) return
 
       ! An array without elements has no address
-      if (column%length > 0 .and. .not. is_filled) then
+      if (column%length > 0 .and. .not. (is_filled .or. is_room)) then
          select case (column%kind)
          case (real_column)
             call h5dwrite_f(dataset, h5t_native_double, c_loc(column%reals), status)

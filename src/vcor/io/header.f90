@@ -4,22 +4,31 @@
 !> fitting tools write it, and lines `# name [unit] ...` before the header, as vcor writes them, do
 !> as well.
 module vcor_io_header
+   use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
+   use vcor_kinds, only : wp
    use vcor_io_columns, only : split
    use vcor_words, only : nearest_name
    use vcor_text, only : lower, shortened
-   use vcor_io_units, only : frequency_units, modulus_units, time_units
    use vcor_words, only : contains_word, join_words
    implicit none
    private
 
    public :: header_t, column_name_t, roles, name_of, role_of, names_columns
    public :: read_names, read_units, note_comment
-   public :: check_unit
+   public :: check_unit, unit_size, time_units, frequency_units, angular_units, modulus_units
    public :: most_columns, longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
       role_tangent, role_complex
 
+   !> Units of time
+   character(len=*), parameter :: time_units = "ns us ms s min h"
+   !> Units of angular frequency
+   character(len=*), parameter :: angular_units = "rad/s krad/s"
+   !> Units of frequency, angular or not
+   character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
+   !> Units of modulus
+   character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
    !> Most columns of a file
    integer, parameter :: most_columns = 64
    !> Letters of the longest name or unit
@@ -306,7 +315,7 @@ contains
    pure function usual_unit(unit) result(usual)
       !> A unit as somebody wrote it
       character(len=*), intent(in) :: unit
-      !> The unit as `vcor_io_units` has it, where it is one of these
+      !> The unit as `unit_size` has it, where it is one of these
       character(len=longest_word) :: usual
 
       character(len=*), parameter :: micro = char(181), mu = char(206)//char(188)
@@ -391,6 +400,45 @@ contains
          end if
       end do
    end function names_shear
+
+   !> A unit in that of the SI: s, rad/s or Pa
+   pure function unit_size(unit) result(scale)
+      !> One of the units
+      character(len=*), intent(in) :: unit
+      !> In seconds, rad/s or Pa
+      real(wp) :: scale
+
+      select case (unit)
+      case ("ns")
+         scale = 1.0e-9_wp
+      case ("us")
+         scale = 1.0e-6_wp
+      case ("ms")
+         scale = 1.0e-3_wp
+      case ("min")
+         scale = 60.0_wp
+      case ("h")
+         scale = 3600.0_wp
+      case ("kPa", "krad/s")
+         scale = 1.0e3_wp
+      case ("MPa", "N/mm2")
+         scale = 1.0e6_wp
+      case ("GPa")
+         scale = 1.0e9_wp
+      case ("mHz")
+         scale = 2.0e-3_wp*pi
+      case ("Hz")
+         scale = 2.0_wp*pi
+      case ("kHz")
+         scale = 2.0e3_wp*pi
+      case ("MHz")
+         scale = 2.0e6_wp*pi
+      case ("GHz")
+         scale = 2.0e9_wp*pi
+      case default
+         scale = 1.0_wp
+      end select
+   end function unit_size
 
    !> Check that a unit is one of what a column holds
    subroutine check_unit(unit, role, place, error)

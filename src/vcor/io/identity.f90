@@ -16,8 +16,7 @@ module vcor_io_identity
    implicit none
    private
 
-   public :: identity_t, identity_of, read_identity, read_csv_identity, csv_rows, remarks_of, &
-      check_same, number_of
+   public :: identity_t, identity_of, read_identity, read_csv, remarks_of, check_same, number_of
 
    !> What a file is about
    type :: identity_t
@@ -171,19 +170,22 @@ contains
       end function number
    end subroutine read_identity
 
-   !> What a summary as text is about, from its head; its data are not known
-   subroutine read_csv_identity(path, identity, is_ours)
+   !> What a CSV file is about, from its head, and how many rows it has if that is asked for
+   subroutine read_csv(path, identity, is_ours, rows)
       !> Path of the file
       character(len=*), intent(in) :: path
-      !> What it is about
+      !> What it is about; its data are not known
       type(identity_t), intent(out) :: identity
       !> Whether the file is of this program
       logical, intent(out) :: is_ours
+      !> Number of complete rows below the names of the columns; 0 where there is no such file
+      integer, intent(out), optional :: rows
 
-      character(len=*), parameter :: program = '# vcor ', title = '# title: ', case = '# case:'
+      integer(int64), parameter :: length = 65536
+      character(len=length) :: block
       character(len=:), allocatable :: line
-      character(len=500) :: part
-      integer :: unit, status, length
+      integer(int64) :: bytes, at, first, last, n
+      integer :: unit, status, lines
       logical :: in_case
 
       identity%version = ''
@@ -191,64 +193,56 @@ contains
       identity%case_text = ''
       identity%data = ''
       in_case = .false.
-      open (newunit=unit, file=path, status='old', action='read', iostat=status)
-      is_ours = status == 0
-      if (.not. is_ours) return
-      do
-         line = ''
-         do
-            read (unit, '(a)', advance='no', size=length, iostat=status) part
-            line = line//part(:length)
-            if (status /= 0) exit
-         end do
-         if (is_iostat_end(status) .or. index(line, '#') /= 1) exit
-         if (in_case) then
-            identity%case_text = identity%case_text//line(3:)//new_line('a')
-         else if (index(line, program) == 1) then
-            identity%version = line(len(program) + 1:)
-         else if (index(line, title) == 1) then
-            identity%title = line(len(title) + 1:)
-         end if
-         in_case = in_case .or. line == case
-      end do
-      close (unit)
-      is_ours = in_case .and. len(identity%version) > 0
-   end subroutine read_csv_identity
-
-   !> Rows of a CSV file
-   function csv_rows(path) result(rows)
-      !> Path of the file
-      character(len=*), intent(in) :: path
-      !> Number of complete rows below the names of the columns; 0 where there is no such file
-      integer :: rows
-
-      integer, parameter :: length = 65536
-      character(len=length) :: block
-      integer(int64) :: bytes, at
-      integer :: unit, status, i, n
-      logical :: begins, counts
-
-      rows = 0
+      is_ours = .false.
+      ! below the head, the line of the names included
+      lines = 0
+      if (present(rows)) rows = 0
       open (newunit=unit, file=path, status='old', action='read', access='stream', &
          form='unformatted', iostat=status)
       if (status /= 0) return
       inquire (unit, size=bytes)
-      ! a line counts unless it begins as a remark
-      begins = .true.
-      counts = .false.
+      line = ''
       do at = 1, bytes, length
-         n = int(min(int(length, int64), bytes - at + 1))
+         n = min(length, bytes - at + 1)
          read (unit, pos=at, iostat=status) block(:n)
          if (status /= 0) exit
-         do i = 1, n
-            if (begins) counts = block(i:i) /= '#'
-            begins = block(i:i) == new_line('a')
-            if (begins .and. counts) rows = rows + 1
+         first = 1
+         do
+            last = first + index(block(first:n), new_line('a')) - 1
+            if (last < first) exit
+            line = line//block(first:last - 1)
+            call take(line)
+            line = ''
+            first = last + 1
          end do
+         line = line//block(first:n)
+         if (lines > 0 .and. .not. present(rows)) exit
       end do
       close (unit)
-      rows = max(0, rows - 1)
-   end function csv_rows
+      if (present(rows)) rows = max(0, lines - 1)
+      is_ours = in_case .and. len(identity%version) > 0
+
+   contains
+
+      !> Take a line: of the head, or one that counts
+      subroutine take(line)
+         !> The line, complete
+         character(len=*), intent(in) :: line
+
+         character(len=*), parameter :: program = '# vcor ', title = '# title: ', case = '# case:'
+
+         if (index(line, '#') /= 1) then
+            lines = lines + 1
+         else if (lines == 0 .and. in_case) then
+            identity%case_text = identity%case_text//line(3:)//new_line('a')
+         else if (lines == 0 .and. index(line, program) == 1) then
+            identity%version = line(len(program) + 1:)
+         else if (lines == 0 .and. index(line, title) == 1) then
+            identity%title = line(len(title) + 1:)
+         end if
+         in_case = in_case .or. line == case
+      end subroutine take
+   end subroutine read_csv
 
    !> Refuse a file that is not about the same; which of the shards it has does not matter
    subroutine check_same(path, found, expected, error)

@@ -4,8 +4,8 @@ module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
    use vcor_io_csv, only : write_csv
    use vcor_io_hdf5, only : remark_t, write_hdf5
-   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, move_column, &
-      new_table, table_t
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
+      move_column, new_table, real_column, table_t, text_column
    use vcor_kinds, only : wp
    use vcor_case_grid, only : axis_t, grid_t
    use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t
@@ -32,7 +32,6 @@ contains
       !> Their outcomes; they move to the table, so that there are not two of a million
       type(summary_t), intent(inout) :: summary
 
-      type(column_t) :: column
       type(values_t) :: status
       integer :: i
 
@@ -42,12 +41,28 @@ contains
       end do
       if (size(grid%axes) == 0) call add_dimension(table, 'impact', 1)
       do i = 1, size(summary%values)
-         call quantity_column(column, summary%quantities(i), summary%values(i))
-         call move_column(table, column)
+         call move_in(summary%quantities(i), summary%values(i))
       end do
       status%integers = summary%status
-      call quantity_column(column, summary%quantities(i), status)
-      call move_column(table, column)
+      call move_in(summary%quantities(i), status)
+
+   contains
+
+      !> Move the values of a quantity to a column
+      subroutine move_in(quantity, values)
+         !> The quantity
+         type(quantity_t), intent(in) :: quantity
+         !> Its values
+         type(values_t), intent(inout) :: values
+
+         type(column_t) :: column
+
+         column = quantity_column(quantity, size(summary%status))
+         call move_alloc(values%reals, column%reals)
+         call move_alloc(values%integers, column%integers)
+         if (column%kind == text_column) column%integers = column%integers - quantity%first + 1
+         call move_column(table, column)
+      end subroutine move_in
    end subroutine summary_table
 
    !> A column of what is swept
@@ -63,45 +78,37 @@ contains
       if (axis%unit == '') column%unit = '1'
    end function axis_column
 
-   !> A column of a summary
-   subroutine quantity_column(column, quantity, values, as_numbers)
-      !> The column
-      type(column_t), intent(out) :: column
+   !> A column of a summary, without values
+   function quantity_column(quantity, length, as_numbers) result(column)
       !> What it is
       type(quantity_t), intent(in) :: quantity
-      !> Its values, which move to the column
-      type(values_t), intent(inout) :: values
+      !> Number of its values
+      integer, intent(in) :: length
       !> Whether texts stay the numbers that stand for them; absent: false
       logical, intent(in), optional :: as_numbers
+      !> The column
+      type(column_t) :: column
 
       character(len=label_length), allocatable :: labels(:)
-      character(len=:), allocatable :: meaning
-      logical :: is_text
       integer :: i
 
-      meaning = trim(quantity%meaning)
-      is_text = quantity%labels /= ''
-      if (is_text) allocate (labels, source=labels_of(quantity))
-      if (present(as_numbers) .and. is_text) then
-         is_text = .not. as_numbers
-         do i = 1, merge(size(labels), 0, as_numbers)
-            meaning = meaning//merge(': ', ', ', i == 1)//integer_text(quantity%first + i - 1) &
-               //' '//trim(labels(i))
-         end do
-      end if
-      if (is_text) then
-         column = column_of(quantity%name, labels, '', meaning)
-      else if (allocated(values%reals)) then
-         column = column_of(quantity%name, [real(wp) ::], quantity%unit, meaning)
+      if (quantity%labels == '') then
+         column = column_of(quantity%name, [integer ::], quantity%unit, quantity%meaning)
+         if (.not. quantity%is_whole) column%kind = real_column
       else
-         column = column_of(quantity%name, [integer ::], '1', meaning)
+         allocate (labels, source=labels_of(quantity))
+         column = column_of(quantity%name, labels, '', quantity%meaning)
+         if (present(as_numbers)) then
+            column%kind = integer_column
+            column%unit = '1'
+            do i = 1, size(labels)
+               column%long_name = column%long_name//merge(': ', ', ', i == 1) &
+                  //integer_text(quantity%first + i - 1)//' '//trim(labels(i))
+            end do
+         end if
       end if
-      call move_alloc(values%reals, column%reals)
-      call move_alloc(values%integers, column%integers)
-      if (is_text) column%integers = column%integers - quantity%first + 1
-      if (allocated(column%reals)) column%length = size(column%reals)
-      if (allocated(column%integers)) column%length = size(column%integers)
-   end subroutine quantity_column
+      column%length = length
+   end function quantity_column
 
    !> History: a row per time
    subroutine history_table(table, title, case_text, trajectory)
