@@ -25,7 +25,6 @@ contains
    !> shows first
    subroutine warn_of_bands(job, summary)
       type(job_t), intent(in) :: job
-      !> Outcomes of its impacts
       type(summary_t), intent(in) :: summary
 
       character(len=:), allocatable :: name
@@ -42,9 +41,7 @@ contains
    !> Warn of one material
    subroutine warn_of_band(job, summary, item)
       type(job_t), intent(in) :: job
-      !> Outcomes of its impacts
       type(summary_t), intent(in) :: summary
-      !> Number of the material
       integer, intent(in) :: item
 
       type(reliance_t) :: reliance, worst
@@ -88,7 +85,6 @@ contains
 
       !> Change of cor by what is held constant
       pure function change(found)
-         !> What was found
          type(reliance_t), intent(in) :: found
          !> The change, large where the other impact has no result
          real(wp) :: change
@@ -99,11 +95,8 @@ contains
 
       !> What is said
       function message(found, point) result(text)
-         !> What was found
          type(reliance_t), intent(in) :: found
-         !> Number of the point
          integer, intent(in) :: point
-         !> One line
          character(len=:), allocatable :: text
 
          character(len=:), allocatable :: name, place, lead

@@ -2,14 +2,13 @@
 module vcor_app_cli
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_commands, only : commands, options_of
-   use vcor_case_name, only : control_in, name_flaw
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : time_range_t
    use vcor_sweep_part, only : most_threads
    use vcor_sweep_quantity, only : quantity_names
-   use vcor_text, only : integer_text, printable
+   use vcor_text, only : control_in, integer_text, name_flaw, printable
    use vcor_words, only : contains_word, suggestion
    implicit none
    private

@@ -27,7 +27,6 @@ contains
       type(table_t), intent(in) :: summary
       !> The trajectory of a single impact
       type(trajectory_t), intent(in) :: trajectory
-      !> Files written, one to a line
       character(len=:), allocatable, intent(out) :: files
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -68,7 +67,6 @@ contains
    !> Bare numbers for --print, a line per impact
    subroutine write_numbers(request, summary, error)
       type(request_t), intent(in) :: request
-      !> Outcomes
       type(table_t), intent(in) :: summary
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error

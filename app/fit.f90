@@ -84,10 +84,10 @@ contains
       fit%data%name = stem_of(source)
       tail = ''
       if (allocated(wish%source)) then
-         fit%data%name = sampled%name
-         if (.not. density > 0.0_wp) density = sampled%density
-         poisson_ratio = sampled%poisson_ratio
-         tail = sampled%notes//compare_impacts(sampled, fit%data)
+         fit%data%name = sampled%material%name
+         if (.not. density > 0.0_wp) density = sampled%material%density()
+         poisson_ratio = sampled%material%poisson_ratio()
+         tail = sampled%window%notes//compare_impacts(sampled, fit%data)
       end if
       if (allocated(wish%name)) fit%data%name = wish%name
       if (wish%reading%poisson_ratio < no_ratio) poisson_ratio = wish%reading%poisson_ratio
@@ -285,9 +285,9 @@ contains
          if (sampled%item == 0) then
             taken = same_file(name, source)
          else
-            taken = same_file(name, sampled%case%source)
-            do i = 1, sampled%case%count('material')
-               if (.not. taken) taken = same_file(name, data_file(sampled%case, i))
+            taken = same_file(name, sampled%window%case%source)
+            do i = 1, sampled%window%case%count('material')
+               if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i))
             end do
          end if
          if (taken) call raise(error, error_input, printable(source)//': the material would ' &

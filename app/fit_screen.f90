@@ -21,14 +21,12 @@ contains
    !> Report of a fit
    function fit_report(fit, source, note, samples, tail) result(text)
       type(fit_t), intent(in) :: fit
-      !> Data file, or case
       character(len=*), intent(in) :: source
       !> What was read
       character(len=*), intent(in) :: note
       type(samples_t), intent(in) :: samples
       !> Notes and files, one to a line
       character(len=*), intent(in) :: tail
-      !> Text of several lines
       character(len=:), allocatable :: text
 
       integer :: i
@@ -56,10 +54,8 @@ contains
    !> Remarks before a group: what it was fitted to and how well
    function fit_remarks(fit, source, samples) result(text)
       type(fit_t), intent(in) :: fit
-      !> Data file, or case
       character(len=*), intent(in) :: source
       type(samples_t), intent(in) :: samples
-      !> Lines that begin with an exclamation mark
       character(len=:), allocatable :: text
 
       integer :: i
@@ -95,7 +91,6 @@ contains
    !> Most that the first parameter can be, three standard errors above it
    pure function most_of(fit) result(value)
       type(fit_t), intent(in) :: fit
-      !> The value, in its unit
       real(wp) :: value
 
       value = fit%parameters(1)%value + 3.0_wp*fit%parameters(1)%error
@@ -117,7 +112,6 @@ contains
    pure function place_of(fit, samples) result(text)
       type(fit_t), intent(in) :: fit
       type(samples_t), intent(in) :: samples
-      !> In words
       character(len=:), allocatable :: text
 
       if (.not. samples%dynamic) then
@@ -188,7 +182,6 @@ contains
    function line(fit, i) result(text)
       type(fit_t), intent(in) :: fit
       integer, intent(in) :: i
-      !> The line
       character(len=:), allocatable :: text
 
       character(len=24) :: name

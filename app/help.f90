@@ -39,7 +39,6 @@ contains
       !> Topic, empty for the overview; also a group, a key or a choice of the input, a column or a
       !> status of the output
       character(len=*), intent(in) :: topic
-      !> The page
       character(len=:), allocatable, intent(out) :: text
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -78,7 +77,6 @@ contains
 
    !> Overview
    function overview() result(text)
-      !> The page
       character(len=:), allocatable :: text
 
       integer, parameter :: column = 30
@@ -110,9 +108,7 @@ contains
 
    !> Page of a command
    function command_page(page) result(text)
-      !> Its entries
       type(entry_t), intent(in) :: page(:)
-      !> Its page; empty without entries
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: words, before, kind
@@ -180,9 +176,7 @@ contains
 
    !> Whether a word is about a key
    pure function is_about(word, key) result(yes)
-      !> The word
       character(len=*), intent(in) :: word
-      !> The key
       type(key_t), intent(in) :: key
       !> True if it is its name, its group, both, or one of its choices or models
       logical :: yes
@@ -194,7 +188,6 @@ contains
 
    !> What a key means and takes
    function about(key) result(words)
-      !> The key
       type(key_t), intent(in) :: key
       !> Meaning, unit, range, default, models
       character(len=:), allocatable :: words
@@ -248,7 +241,6 @@ contains
       subroutine append(heading, part)
          !> Line above it
          character(len=*), intent(in) :: heading
-         !> Its lines
          character(len=*), intent(in) :: part
 
          if (part == "") return
@@ -258,9 +250,7 @@ contains
 
       !> Lines of the columns that are wanted
       function lines_of(list) result(lines)
-         !> Columns of a file
          type(quantity_t), intent(in) :: list(:)
-         !> A line for each
          character(len=:), allocatable :: lines
 
          character(len=:), allocatable :: unit
@@ -277,9 +267,7 @@ contains
 
       !> Whether a name is the word, or all are wanted
       pure function is_wanted(name) result(yes)
-         !> The name
          character(len=*), intent(in) :: name
-         !> Whether it is wanted
          logical :: yes
 
          yes = .true.
@@ -289,7 +277,6 @@ contains
 
    !> All words of the input and the output but GROUP.KEY, a blank before each
    function all_words() result(words)
-      !> The words
       character(len=:), allocatable :: words
 
       type(key_t), allocatable :: rows(:)
@@ -310,9 +297,7 @@ contains
    pure function item(term, words) result(text)
       !> The term, with the blanks before it
       character(len=*), intent(in) :: term
-      !> What it means
       character(len=*), intent(in) :: words
-      !> Its lines
       character(len=:), allocatable :: text
 
       character(len=max(margin, len_trim(term) + 2)) :: start
@@ -325,7 +310,6 @@ contains
    pure function wrapped(start, words, indent) result(text)
       !> What the first line begins with
       character(len=*), intent(in) :: start
-      !> The text
       character(len=*), intent(in) :: words
       !> Blanks before the other lines
       integer, intent(in) :: indent
@@ -352,9 +336,7 @@ contains
 
    !> A text without backquotes
    pure function plain(words) result(text)
-      !> Any text
       character(len=*), intent(in) :: words
-      !> The same without the backquotes
       character(len=:), allocatable :: text
 
       integer :: i

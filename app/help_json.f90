@@ -20,72 +20,63 @@ module vcor_app_help_json
 
 contains
 
-   !> The document
+   !> The document, UTF-8
    function help_json() result(text)
-      !> JSON, UTF-8, ends with a line feed
       character(len=:), allocatable :: text
 
-      type(key_t), allocatable :: rows(:)
-      character(len=:), allocatable :: list, words
-      integer :: i, j, first, last
+      character(len=:), allocatable :: list
+      integer :: i, first, last
 
-      allocate (rows, source=described_keys())
       text = "{"//member("program", "vcor")//", "//member("version", version)//","//nl
 
-      words = ""
+      list = ""
       first = 1
       do while (first <= len(commands))
          last = first - 2 + index(commands(first:)//" ", " ")
-         call add(words, command_object(commands(first:last)))
+         call add(list, command_object(commands(first:last)))
          first = last + 2
       end do
-      text = text//array("commands", words)//","//nl
+      text = text//array("commands", list)//","//nl
 
-      words = ""
+      list = ""
       do i = 1, size(groups)
-         list = ""
-         do j = 1, size(rows)
-            if (rows(j)%group == groups(i)%name) call add(list, key_object(rows(j)))
-         end do
-         call add(words, "{"//member("name", groups(i)%name)//", " &
-            //member("meaning", groups(i)%meaning)//", "//flag("required", groups(i)%required) &
-            //", "//flag("repeated", groups(i)%repeated)//", " &
-            //member("label", groups(i)%label)//", "//member("selector", groups(i)%selector) &
-            //","//nl//array("keys", list)//"}")
+         associate (group => groups(i))
+            call add(list, "{"//member("name", group%name)//", "//member("meaning", group%meaning) &
+               //", "//flag("required", group%required)//", "//flag("repeated", group%repeated) &
+               //", "//member("label", group%label)//", "//member("selector", group%selector) &
+               //","//nl//array("keys", keys_of(group%name))//"}")
+         end associate
       end do
-      text = text//array("groups", words)//","//nl
-
+      text = text//array("groups", list)//","//nl
       text = text//array("summary", columns(quantities()))//","//nl
       text = text//array("history", columns(history_quantities))//","//nl
 
-      words = ""
+      list = ""
       do i = 1, size(statuses)
-         call add(words, "{"//member("name", statuses(i)%name)//", " &
+         call add(list, "{"//member("name", statuses(i)%name)//", " &
             //member("meaning", statuses(i)%meaning)//", " &
             //member("advice", statuses(i)%advice)//"}")
       end do
-      text = text//array("statuses", words)//","//nl
+      text = text//array("statuses", list)//","//nl
 
-      words = ""
+      list = ""
       do i = 1, size(screen_words)
-         call add(words, "{"//array_of_words("words", screen_words(i))//", " &
+         call add(list, "{"//array_of_words("words", screen_words(i))//", " &
             //member("meaning", screen_meanings(i))//"}")
       end do
-      text = text//array("screen", words)//","//nl
+      text = text//array("screen", list)//","//nl
 
-      words = ""
+      list = ""
       do i = lbound(code_names, 1), ubound(code_names, 1)
-         call add(words, "{"//"""code"": "//integer_text(i)//", " &
+         call add(list, "{"//"""code"": "//integer_text(i)//", " &
             //member("name", code_names(i))//", "//member("meaning", code_meanings(i))//"}")
       end do
-      text = text//array("exit_codes", words)//"}"//nl
+      text = text//array("exit_codes", list)//"}"//nl
    end function help_json
 
    !> A command: how it is called, what it does, its options
    function command_object(command) result(text)
-      !> Its name
       character(len=*), intent(in) :: command
-      !> JSON
       character(len=:), allocatable :: text
 
       type(entry_t), allocatable :: page(:)
@@ -116,27 +107,36 @@ contains
       end associate
    end function command_object
 
-   !> A key of a group
-   function key_object(key) result(text)
-      !> The key
-      type(key_t), intent(in) :: key
-      !> JSON
-      character(len=:), allocatable :: text
+   !> The keys of a group
+   function keys_of(group) result(list)
+      character(len=*), intent(in) :: group
+      character(len=:), allocatable :: list
 
-      text = "{"//member("name", key%name)//", "//member("type", type_name(key%value_kind)) &
-         //", "//member("value", kind_name(key%value_kind))//", "//member("meaning", key%meaning) &
-         //", "//member("unit", key%unit)
-      text = text//", "//member("range", interval_text(key%range))//", " &
-         //array_of_words("choices", key%choices)//", "//array_of_words("models", key%models) &
-         //", "//flag("required", key%required)
-      if (key%instead /= "") text = text//", "//member("instead", key%instead)
-      if (key%default == "''") then
-         text = text//", "//member("default", "")
-      else if (key%default /= "") then
-         text = text//", "//member("default", key%default)
-      end if
-      text = text//"}"
-   end function key_object
+      type(key_t), allocatable :: rows(:)
+      character(len=:), allocatable :: text
+      integer :: i
+
+      allocate (rows, source=described_keys())
+      list = ""
+      do i = 1, size(rows)
+         associate (key => rows(i))
+            if (key%group /= group) cycle
+            text = "{"//member("name", key%name)//", "//member("type", type_name(key%value_kind)) &
+               //", "//member("value", kind_name(key%value_kind))//", " &
+               //member("meaning", key%meaning)//", "//member("unit", key%unit)//", " &
+               //member("range", interval_text(key%range))//", " &
+               //array_of_words("choices", key%choices)//", " &
+               //array_of_words("models", key%models)//", "//flag("required", key%required)
+            if (key%default == "''") then
+               text = text//", "//member("default", "")
+            else if (key%default /= "") then
+               text = text//", "//member("default", key%default)
+            end if
+            if (key%instead /= "") text = text//", "//member("instead", key%instead)
+            call add(list, text//"}")
+         end associate
+      end do
+   end function keys_of
 
    !> Name of the type of a key
    pure function type_name(value_kind) result(name)
@@ -160,47 +160,34 @@ contains
    end function type_name
 
    !> Columns of a file
-   function columns(list) result(text)
-      !> The columns
-      type(quantity_t), intent(in) :: list(:)
-      !> Objects with commas between them
-      character(len=:), allocatable :: text
+   function columns(quantities) result(list)
+      type(quantity_t), intent(in) :: quantities(:)
+      character(len=:), allocatable :: list
 
       integer :: i
 
-      text = ""
-      do i = 1, size(list)
-         call add(text, column_object(list(i)))
+      list = ""
+      do i = 1, size(quantities)
+         associate (quantity => quantities(i))
+            call add(list, "{"//member("name", quantity%name)//", " &
+               //member("symbol", quantity%symbol)//", "//member("unit", quantity%unit)//", " &
+               //member("meaning", quantity%meaning)//"}")
+         end associate
       end do
    end function columns
 
-   !> A column of a file
-   function column_object(quantity) result(text)
-      !> The column
-      type(quantity_t), intent(in) :: quantity
-      !> JSON
-      character(len=:), allocatable :: text
-
-      text = "{"//member("name", quantity%name)//", "//member("symbol", quantity%symbol)//", " &
-         //member("unit", quantity%unit)//", "//member("meaning", quantity%meaning)//"}"
-   end function column_object
-
-   !> Append an element to a list
+   !> Append an element to a list, which is elements with commas between them
    subroutine add(list, element)
-      !> Elements with commas between them
       character(len=:), allocatable, intent(inout) :: list
-      !> JSON
       character(len=*), intent(in) :: element
 
       if (list /= "") list = list//","//nl
       list = list//element
    end subroutine add
 
-   !> Texts as elements of a list
+   !> Texts as a list of strings
    function strings(texts) result(list)
-      !> Texts
       character(len=*), intent(in) :: texts(:)
-      !> Strings with commas between them
       character(len=:), allocatable :: list
 
       integer :: i
@@ -213,33 +200,25 @@ contains
 
    !> A member whose value is a list
    pure function array(name, list) result(text)
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Elements with commas between them
-      character(len=*), intent(in) :: list
-      !> JSON
+      character(len=*), intent(in) :: name, list
       character(len=:), allocatable :: text
 
       text = quoted(name)//": ["//list//"]"
    end function array
 
-   !> A member whose value is a list of words
-   function array_of_words(name, words) result(text)
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Words separated by blanks
-      character(len=*), intent(in) :: words
-      !> JSON
+   !> A member whose value is a list of words, given with single blanks between them
+   pure function array_of_words(name, words) result(text)
+      character(len=*), intent(in) :: name, words
       character(len=:), allocatable :: text
 
       integer :: i
 
       text = ""
       do i = 1, len_trim(words)
-         if (words(i:i) == " ") then
-            if (text /= "") text = text//""", """
-         else
+         if (words(i:i) /= " ") then
             text = text//words(i:i)
+         else if (text /= "") then
+            text = text//""", """
          end if
       end do
       if (text /= "") text = """"//text//""""
@@ -248,11 +227,7 @@ contains
 
    !> A member whose value is a text
    pure function member(name, value) result(text)
-      !> Name
-      character(len=*), intent(in) :: name
-      !> Value
-      character(len=*), intent(in) :: value
-      !> JSON
+      character(len=*), intent(in) :: name, value
       character(len=:), allocatable :: text
 
       text = quoted(name)//": "//quoted(value)
@@ -260,11 +235,8 @@ contains
 
    !> A member whose value is true or false
    pure function flag(name, value) result(text)
-      !> Name
       character(len=*), intent(in) :: name
-      !> Value
       logical, intent(in) :: value
-      !> JSON
       character(len=:), allocatable :: text
 
       text = quoted(name)//": "//trim(merge("true ", "false", value))
@@ -274,7 +246,6 @@ contains
    pure function quoted(words) result(text)
       !> Text without control characters; blanks at its ends do not count
       character(len=*), intent(in) :: words
-      !> The same in quotes
       character(len=:), allocatable :: text
 
       integer :: i

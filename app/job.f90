@@ -4,7 +4,6 @@ module vcor_app_job
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
-   use vcor_case_name, only : name_flaw
    use vcor_case_unread, only : refuse_unread
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_problem, only : impact_t
@@ -12,7 +11,7 @@ module vcor_app_job
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, same_file
-   use vcor_text, only : integer_text, printable
+   use vcor_text, only : integer_text, name_flaw, printable
    use vcor_words, only : contains_word, suggestion
    use vcor_solver, only : method_for
    use vcor_sweep_part, only : new_part, part_t
@@ -61,7 +60,6 @@ contains
    !> Name of a file
    pure function file(self, i)
       class(job_t), intent(in) :: self
-      !> Number of its ending
       integer, intent(in) :: i
       !> The name; empty if the file is not written
       character(len=:), allocatable :: file
@@ -107,7 +105,6 @@ contains
    !> Read, override, validate and build one case
    subroutine read_job(request, filename, job, error)
       type(request_t), intent(in) :: request
-      !> The case file
       character(len=*), intent(in) :: filename
       !> The case, the names of its files left out
       type(job_t), intent(inout) :: job

@@ -4,7 +4,7 @@ module vcor_app_material
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : directory_of, job_t
    use vcor_app_screen, only : heading, line, short, significant
-   use vcor_app_window, only : find_window, take_first_point, window_t
+   use vcor_app_window, only : find_window, window_t
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : material_of_case
@@ -35,31 +35,30 @@ contains
       !> Unallocated on success, with or without an impact that ends
       type(error_t), allocatable, intent(out) :: error
 
-      type(case_t) :: case
       type(specimen_t), allocatable :: materials(:)
       type(moduli_t) :: moduli
       type(table_t) :: summary
-      character(len=:), allocatable :: title, files, notes
+      character(len=:), allocatable :: title, files
       type(window_t) :: window
       integer :: i
 
-      call take_first_point(job, case, notes, error)
+      call find_window(job, window, error)
       if (allocated(error)) return
-      call find_window(job, window, notes)
-      allocate (materials(case%count('material')))
-      do i = 1, size(materials)
-         call case%get('material', 'model', materials(i)%model, i)
-         call material_of_case(case, i, materials(i)%material, error)
+      associate (case => window%case)
+         allocate (materials(case%count('material')))
+         do i = 1, size(materials)
+            call case%get('material', 'model', materials(i)%model, i)
+            call material_of_case(case, i, materials(i)%material, error)
+            if (allocated(error)) return
+         end do
+         call compute_moduli(moduli, materials, window%contact_time, window%reference, &
+            request%range, error)
          if (allocated(error)) return
-      end do
-      call compute_moduli(moduli, materials, window%contact_time, window%reference, request%range, &
-         error)
-      if (allocated(error)) return
-
-      call case%get('case', 'title', title)
-      call write_files(job, case, title, moduli, summary, files, error)
+         call case%get('case', 'title', title)
+         call write_files(job, case, title, moduli, summary, files, error)
+      end associate
       if (allocated(error) .or. request%quiet) return
-      call write_stdout(report(job%case%source, title, moduli)//notes//files//nl, error)
+      call write_stdout(report(job%case%source, title, moduli)//window%notes//files//nl, error)
    end subroutine show_materials
 
    !> Write the files
@@ -72,7 +71,6 @@ contains
       type(moduli_t), intent(in) :: moduli
       !> A row per material
       type(table_t), intent(out) :: summary
-      !> Files written, one to a line
       character(len=:), allocatable, intent(out) :: files
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -100,7 +98,6 @@ contains
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
       type(moduli_t), intent(in) :: moduli
-      !> Text of several lines
       character(len=:), allocatable :: text
 
       integer :: i, n

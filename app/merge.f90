@@ -4,8 +4,8 @@ module vcor_app_merge
    use vcor_app_files, only : write_files
    use vcor_app_job, only : job_t, name_files
    use vcor_app_previous, only : look_back, previous_t, remark, replaced
-   use vcor_case_axes, only : new_grid
    use vcor_case_checks, only : validate
+   use vcor_case_grid, only : new_grid
    use vcor_error, only : error_file, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : read_case_text

@@ -2,13 +2,13 @@
 module vcor_app_sampling
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : job_t, prepare
-   use vcor_app_window, only : find_window, take_first_point, window_t
+   use vcor_app_window, only : find_window, window_t
    use vcor_case_problem, only : material_of_case, solve_case
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : put_material
    use vcor_case_address, only : material_names
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_fit, only : samples_t
+   use vcor_fit, only : moduli_of, samples_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text, printable
@@ -27,18 +27,11 @@ module vcor_app_sampling
 
    !> What was sampled
    type :: sampled_t
-      type(case_t) :: case
-      !> Number of the material
-      integer :: item = 0
-      character(len=:), allocatable :: name
-      !> Its density [kg/m3]; 0: not given
-      real(wp) :: density = 0.0_wp
-      !> Its Poisson's ratio [-]
-      real(wp) :: poisson_ratio = 0.0_wp
-      !> The impact with it
+      !> The impact of the case
       type(window_t) :: window
-      !> Notes, one to a line
-      character(len=:), allocatable :: notes
+      !> Number of the material in the case
+      integer :: item = 0
+      class(material_t), allocatable :: material
    end type sampled_t
 
 contains
@@ -50,7 +43,6 @@ contains
       character(len=*), intent(in) :: source
       !> Whether storage and loss modulus are sampled
       logical, intent(in) :: dynamic
-      !> What was sampled
       type(sampled_t), intent(out) :: sampled
       type(samples_t), intent(out) :: samples
       !> What they are, in words
@@ -61,9 +53,8 @@ contains
       type(request_t) :: reading
       type(job_t), allocatable :: jobs(:)
       type(time_range_t) :: range
-      class(material_t), allocatable :: material
       character(len=:), allocatable :: filename, name
-      complex(wp), allocatable :: modulus(:)
+      real(wp), allocatable :: moduli(:)
       integer :: n
 
       call take_name(source, filename, name)
@@ -72,31 +63,15 @@ contains
       allocate (reading%files(1))
       reading%files(1)%text = filename
       call prepare(reading, jobs, error)
+      if (.not. allocated(error)) call find_window(jobs(1), sampled%window, error)
+      if (.not. allocated(error)) call find_material(sampled, filename, name, error)
       if (allocated(error)) return
-      call take_first_point(jobs(1), sampled%case, sampled%notes, error)
-      if (allocated(error)) return
-      call find_material(sampled, filename, name, error)
-      if (allocated(error)) return
-      call material_of_case(sampled%case, sampled%item, material, error)
-      if (allocated(error)) return
-      sampled%name = material%name
-      sampled%density = material%density()
-      sampled%poisson_ratio = material%poisson_ratio()
-      if (material%rigid .or. material%elastic()) then
-         call raise(error, error_input, filename//": the material '"//printable(material%name) &
-            //"' does not relax: nothing is there to be fitted")
-      else if (material%viscosity > 0.0_wp) then
-         call raise(error, error_input, filename//": the material '"//printable(material%name) &
-            //"' has a dashpot in parallel (viscosity), expected one that relaxes only")
-      end if
-      if (allocated(error)) return
-      call find_window(jobs(1), sampled%window, sampled%notes)
 
       range = request%range
-      if (.not. range%first > 0.0_wp) &
-         range%first = 10.0_wp**(floor(log10(sampled%window%reference)) - before)
-      if (.not. range%last > 0.0_wp) &
-         range%last = 10.0_wp**(ceiling(log10(sampled%window%reference)) + after)
+      associate (reference => log10(sampled%window%reference))
+         if (.not. range%first > 0.0_wp) range%first = 10.0_wp**(floor(reference) - before)
+         if (.not. range%last > 0.0_wp) range%last = 10.0_wp**(ceiling(reference) + after)
+      end associate
       if (.not. range%first < range%last) then
          call raise(error, error_usage, 'expected --from before --to')
          return
@@ -105,28 +80,24 @@ contains
       if (samples%dynamic) range = time_range_t(1.0_wp/range%last, 1.0_wp/range%first, range%points)
       samples%at = sampled_times(range)
       n = size(samples%at)
-      allocate (samples%modulus(n), samples%loss(merge(n, 0, samples%dynamic)))
-      note = integer_text(n)//' samples of '//printable(material%name)//', '
-      if (samples%dynamic) then
-         allocate (modulus(n))
-         modulus = material%complex_modulus(cmplx(0.0_wp, samples%at, wp))
-         samples%modulus = real(modulus, wp)
-         samples%loss = aimag(modulus)
+      allocate (samples%modulus(n), samples%loss(merge(n, 0, dynamic)))
+      moduli = moduli_of(sampled%material, samples)
+      samples%modulus = moduli(:n)
+      samples%loss = moduli(n + 1:)
+      note = integer_text(n)//' samples of '//printable(sampled%material%name)//', '
+      if (dynamic) then
          note = note//'angular frequency [rad/s], storage modulus [Pa], loss modulus [Pa]'
       else
-         samples%modulus = material%relaxation(samples%at)
          note = note//'time [s], relaxation modulus [Pa]'
       end if
-      if (.not. (all(samples%modulus > tiny(1.0_wp)) .and. all(samples%loss > tiny(1.0_wp)))) &
-         call raise(error, error_input, filename//': the modulus vanishes in the range of the ' &
-            //'samples, expected a narrower one (--from, --to)')
+      if (.not. all(moduli > tiny(1.0_wp))) call raise(error, error_input, filename//': the ' &
+         //'modulus vanishes in the range of the samples, expected a narrower one (--from, --to)')
    end subroutine sample_model
 
    !> Take CASE.nml:NAME apart; a file of this name is a case
    subroutine take_name(source, filename, name)
       !> What the user gave
       character(len=*), intent(in) :: source
-      !> The case file
       character(len=:), allocatable, intent(out) :: filename
       !> The material, empty where none is named
       character(len=:), allocatable, intent(out) :: name
@@ -146,34 +117,47 @@ contains
    subroutine find_material(sampled, filename, name, error)
       !> What is sampled, its case set
       type(sampled_t), intent(inout) :: sampled
-      !> Name of the case file
       character(len=*), intent(in) :: filename
       !> Name of the material, or empty
       character(len=*), intent(in) :: name
-      !> Error of code `error_usage`, unallocated on success
+      !> Error of code `error_usage` if there is none, `error_input` if it does not relax;
+      !> unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: other, model
 
-      other = name
-      if (name == '') then
-         call sampled%case%get('plate', 'material', other)
-         sampled%item = sampled%case%find_material(other)
-         call sampled%case%get('material', 'model', model, sampled%item)
-         if (model == 'rigid' .or. model == 'elastic') &
-            call sampled%case%get('sphere', 'material', other)
-      end if
-      sampled%item = sampled%case%find_material(other)
-      if (sampled%item == 0) call raise(error, error_usage, '--from-model: there is no material ' &
-         //"'"//printable(other)//"' in "//printable(filename)//'; ' &
-         //suggestion(other, material_names(sampled%case)))
+      associate (case => sampled%window%case)
+         other = name
+         if (name == '') then
+            call case%get('plate', 'material', other)
+            call case%get('material', 'model', model, case%find_material(other))
+            if (model == 'rigid' .or. model == 'elastic') &
+               call case%get('sphere', 'material', other)
+         end if
+         sampled%item = case%find_material(other)
+         if (sampled%item == 0) then
+            call raise(error, error_usage, "--from-model: there is no material '" &
+               //printable(other)//"' in "//printable(filename)//'; ' &
+               //suggestion(other, material_names(case)))
+            return
+         end if
+         call material_of_case(case, sampled%item, sampled%material, error)
+         if (allocated(error)) return
+      end associate
+      associate (material => sampled%material)
+         if (material%rigid .or. material%elastic()) then
+            call raise(error, error_input, filename//": the material '"//printable(material%name) &
+               //"' does not relax: nothing is there to be fitted")
+         else if (material%viscosity > 0.0_wp) then
+            call raise(error, error_input, filename//": the material '"//printable(material%name) &
+               //"' has a dashpot in parallel (viscosity), expected one that relaxes only")
+         end if
+      end associate
    end subroutine find_material
 
    !> The impact of the case with the material that was sampled and with the one that was found
    function compare_impacts(sampled, data) result(text)
-      !> What was sampled
       type(sampled_t), intent(in) :: sampled
-      !> The material that was found
       type(material_data_t), intent(in) :: data
       !> Line, or nothing where the impact has no result
       character(len=:), allocatable :: text
@@ -185,7 +169,7 @@ contains
 
       text = ''
       if (.not. sampled%window%contact_time > 0.0_wp) return
-      case = sampled%case
+      case = sampled%window%case
       call put_material(case, sampled%item, data)
       call solve_case(case, outcome, error)
       if (allocated(error)) then

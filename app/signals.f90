@@ -18,7 +18,6 @@ module vcor_app_signals
       !> Say who handles a signal
       function c_signal(number, handler) result(before) bind(c, name='signal')
          import :: c_funptr, c_int
-         !> Number of the signal
          integer(c_int), intent(in), value :: number
          !> The handler; null for the system's own (SIG_DFL)
          type(c_funptr), intent(in), value :: handler
@@ -29,7 +28,6 @@ module vcor_app_signals
       !> Send this process a signal
       function c_raise(number) result(status) bind(c, name='raise')
          import :: c_int
-         !> Number of the signal
          integer(c_int), intent(in), value :: number
          !> 0 on success
          integer(c_int) :: status
@@ -67,7 +65,6 @@ contains
 
    !> Let a signal end the program, unless who called it has the signal ignored (nohup)
    subroutine end_by(number)
-      !> Number of the signal
       integer(c_int), intent(in), value :: number
 
       integer(c_intptr_t), parameter :: ignoring = 1_c_intptr_t
@@ -87,9 +84,7 @@ contains
 
    !> Name of a signal
    pure function signal_name(number) result(name)
-      !> Its number
       integer, intent(in) :: number
-      !> Its name
       character(len=:), allocatable :: name
 
       name = 'SIGTERM'
@@ -98,7 +93,6 @@ contains
 
    !> Note a signal; does nothing that a handler may not do
    subroutine handle(number) bind(c)
-      !> Its number
       integer(c_int), intent(in), value :: number
 
       type(c_funptr) :: ignored
@@ -110,7 +104,6 @@ contains
 
    !> Remove what is not complete, and end as the signal does; does nothing that a handler may not
    subroutine clean_up(number) bind(c)
-      !> Its number
       integer(c_int), intent(in), value :: number
 
       type(c_funptr) :: ignored
@@ -124,7 +117,6 @@ contains
 
    !> Do nothing about a signal
    subroutine go_on(number) bind(c)
-      !> Its number
       integer(c_int), intent(in), value :: number
 
       if (number /= file_size) return

@@ -90,7 +90,6 @@ contains
    !> A law as a table
    function law_text(law, verdicts) result(text)
       type(law_t), intent(in) :: law
-      !> Verdicts of its rows
       type(verdict_t), intent(in) :: verdicts(:)
       character(len=:), allocatable :: text
 
@@ -211,7 +210,6 @@ contains
 
    !> The quantities by both methods
    function values_text(comparison) result(text)
-      !> The comparison, with numbers
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text
 
@@ -247,7 +245,6 @@ contains
 
    !> Distances of all solutions from the best value
    function differences_text(comparison) result(text)
-      !> The comparison, with numbers
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text
 
@@ -297,7 +294,6 @@ contains
    !> A number with two digits in a column
    pure function column(value, width) result(text)
       real(wp), intent(in) :: value
-      !> Characters
       integer, intent(in) :: width
       character(len=width) :: text
 

@@ -29,9 +29,7 @@ module vcor_app_watch
       logical :: keeps = .false.
       !> Whether the terminal shows how far it is
       logical :: shows = .false.
-      !> Path of the file
       character(len=:), allocatable :: path
-      !> What the sweep is about
       type(identity_t) :: identity
       !> Its grid
       type(grid_t) :: grid

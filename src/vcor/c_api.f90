@@ -7,11 +7,10 @@ module vcor_c_api
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
    use vcor_case_address, only : material_names, resolve, swept_addresses
-   use vcor_case_axes, only : new_grid
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group
    use vcor_case_checks, only : validate
-   use vcor_case_grid, only : grid_t
+   use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_printed, only : case_text, value_text
    use vcor_case_problem, only : material_of_case
    use vcor_case_unread, only : refuse_unread

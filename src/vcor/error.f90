@@ -21,15 +21,15 @@ module vcor_error
 
    !> What the program's exit codes are called, from 0 on
    character(len=*), parameter :: code_names(0:5) = [character(len=17) :: "success", &
-      & "internal error", "usage", "input", "file", "numerical failure"]
+      "internal error", "usage", "input", "file", "numerical failure"]
    !> What they mean, from 0 on
    character(len=*), parameter :: code_meanings(0:5) = [character(len=64) :: &
-      & "what was asked for is done", &
-      & "a fault of the program, please report it", &
-      & "the command line is wrong", &
-      & "a case or a data file is wrong", &
-      & "a file cannot be read or written", &
-      & "no result to be trusted, of one impact at least"]
+      "what was asked for is done", &
+      "a fault of the program, please report it", &
+      "the command line is wrong", &
+      "a case or a data file is wrong", &
+      "a file cannot be read or written", &
+      "no result to be trusted, of one impact at least"]
 
    !> One failure
    type :: error_t

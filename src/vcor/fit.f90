@@ -10,12 +10,12 @@ module vcor_fit
    use vcor_fit_law, only : fit_law
    use vcor_fit_result, only : estimate_t, fit_t, state_bound, state_fixed, state_free, &
       unseen_earlier, unseen_later
-   use vcor_fit_samples, only : samples_t
+   use vcor_fit_samples, only : moduli_of, samples_t
    use vcor_fit_prony, only : fit_prony
    implicit none
    private
 
-   public :: fit_t, estimate_t, samples_t, fit_material, check_fixed, fixable_parameters
+   public :: fit_t, estimate_t, samples_t, moduli_of, fit_material, check_fixed, fixable_parameters
    public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
 
    !> Relative change of the modulus below which nothing relaxes

@@ -36,7 +36,6 @@ contains
 
    !> Whether a number is within a range
    pure function contains_number(range, number) result(yes)
-      !> The range
       type(interval_t), intent(in) :: range
       !> The number, finite or not
       real(wp), intent(in) :: number
@@ -49,11 +48,9 @@ contains
 
    !> Whether a number is finite and within the bounds of a range
    pure function is_within(range, number) result(yes)
-      !> The range
       type(interval_t), intent(in) :: range
       !> The number, finite or not
       real(wp), intent(in) :: number
-      !> True if it is
       logical :: yes
 
       ! On its own, since comparing a NaN traps in a debug build
@@ -67,9 +64,7 @@ contains
 
    !> Whether a finite number is zero or of a magnitude that can be computed with
    pure function is_computable(number) result(yes)
-      !> The number
       real(wp), intent(in) :: number
-      !> True if it is
       logical :: yes
 
       yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
@@ -77,14 +72,12 @@ contains
 
    !> A range as text: `> 0`, `in (-1, 0.5]`; empty where it has no bounds
    pure function interval_text(range) result(text)
-      !> The range
       type(interval_t), intent(in) :: range
-      !> The text
       character(len=:), allocatable :: text
 
       if (range%lower > -largest .and. range%upper < largest) then
          text = "in "//merge("(", "[", range%lower_open)//bound_text(range%lower)//", " &
-            & //bound_text(range%upper)//merge(")", "]", range%upper_open)
+            //bound_text(range%upper)//merge(")", "]", range%upper_open)
       else if (range%lower > -largest) then
          text = trim(merge("> ", ">=", range%lower_open))//" "//bound_text(range%lower)
       else if (range%upper < largest) then

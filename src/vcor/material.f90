@@ -101,9 +101,7 @@ contains
 
    !> Place of a value
    pure function place_of(self, name) result(place)
-      !> The description
       class(material_data_t), intent(in) :: self
-      !> Name
       character(len=*), intent(in) :: name
       !> Place, 0 where there is none
       integer :: place
@@ -115,9 +113,7 @@ contains
 
    !> Find the place of a value, a new one where there is none yet
    pure subroutine find(self, name, place)
-      !> The description
       class(material_data_t), intent(inout) :: self
-      !> Name
       character(len=*), intent(in) :: name
       !> Place, 0 where no model has such a parameter
       integer, intent(out) :: place
@@ -135,7 +131,6 @@ contains
 
    !> Set a number by the name of its parameter
    pure subroutine set(self, name, value)
-      !> The description
       class(material_data_t), intent(inout) :: self
       !> `density`, or a parameter of any model; otherwise `new_material` fails
       character(len=*), intent(in) :: name
@@ -150,7 +145,6 @@ contains
 
    !> Set a list by the name of its parameter; the points of a table are lists `times` and `moduli`
    pure subroutine set_list(self, name, list)
-      !> The description
       class(material_data_t), intent(inout) :: self
       !> A parameter of any model; otherwise `new_material` fails
       character(len=*), intent(in) :: name
@@ -165,9 +159,7 @@ contains
 
    !> A number by the name of its parameter
    pure function number(self, name)
-      !> The description
       class(material_data_t), intent(in) :: self
-      !> Name
       character(len=*), intent(in) :: name
       !> Its value, 0 where none was set
       real(wp) :: number
@@ -181,9 +173,7 @@ contains
 
    !> A list by the name of its parameter
    pure function list(self, name)
-      !> The description
       class(material_data_t), intent(in) :: self
-      !> Name
       character(len=*), intent(in) :: name
       !> Its values, none where it was not set
       real(wp), allocatable :: list(:)
@@ -199,11 +189,8 @@ contains
 
    !> Whether two descriptions are of one and the same modulus, whatever their names and densities
    pure function deforms_as(self, other) result(is_same)
-      !> The description
       class(material_data_t), intent(in) :: self
-      !> The other one
       class(material_data_t), intent(in) :: other
-      !> Whether they are
       logical :: is_same
 
       is_same = self%model == other%model .and. has_all_of(self, other) &
@@ -212,11 +199,8 @@ contains
 
    !> Whether a description has all values of another but its density
    pure function has_all_of(self, other) result(yes)
-      !> The description
       class(material_data_t), intent(in) :: self
-      !> The other one
       class(material_data_t), intent(in) :: other
-      !> Whether it has
       logical :: yes
 
       integer :: i
@@ -235,9 +219,7 @@ contains
 
    !> Give a material the density and Poisson's ratio of a description, as far as it has them
    pure subroutine set_constants_of(material, data, error)
-      !> The material
       class(material_t), intent(inout) :: material
-      !> The description
       type(material_data_t), intent(in) :: data
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -320,7 +302,6 @@ contains
 
       !> Take a finished material over
       subroutine accept(built)
-         !> The material
          class(material_t), intent(in) :: built
 
          if (allocated(error)) return

@@ -7,7 +7,7 @@ module vcor_text
    private
 
    public :: lower, same_name, canonical_name, integer_text, real_text, logical_text, quoted
-   public :: printable, shortened, is_utf8, has_control, is_control
+   public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
 
    !> Longest part of somebody's text that a message repeats [bytes]
    integer, parameter :: shown_bytes = 60
@@ -18,7 +18,6 @@ contains
 
    !> A text in lower case (ASCII letters only)
    pure function lower(text) result(small)
-      !> Any text
       character(len=*), intent(in) :: text
       !> The same in lower case
       character(len=len(text)) :: small
@@ -50,7 +49,6 @@ contains
    pure function same_name(a, b) result(same)
       !> One name
       character(len=*), intent(in) :: a
-      !> The other
       character(len=*), intent(in) :: b
       !> True if they are the same
       logical :: same
@@ -60,7 +58,6 @@ contains
 
    !> An integer as text
    pure function integer_text(number) result(text)
-      !> The integer
       integer, intent(in) :: number
       !> Its digits
       character(len=:), allocatable :: text
@@ -82,7 +79,6 @@ contains
 
    !> A text in quotes, as a namelist has it
    pure function quoted(text) result(between)
-      !> Any text
       character(len=*), intent(in) :: text
       !> The text between single quotes, single quotes inside doubled
       character(len=:), allocatable :: between
@@ -158,7 +154,6 @@ contains
 
    !> Whether a text holds control characters
    pure function has_control(text) result(yes)
-      !> Any text
       character(len=*), intent(in) :: text
       !> True if it does; a tab does not count
       logical :: yes
@@ -174,7 +169,6 @@ contains
    pure function is_control(byte) result(yes)
       !> The byte
       character, intent(in) :: byte
-      !> True if it is
       logical :: yes
 
       yes = iachar(byte) < 32 .or. iachar(byte) == 127
@@ -228,7 +222,7 @@ contains
       if (width < 3) return
       i = ichar(text(2:2))
       if (first == 224 .and. i < 160 .or. first == 237 .and. i > 159 &
-         & .or. first == 240 .and. i < 144 .or. first == 244 .and. i > 143) width = 0
+         .or. first == 240 .and. i < 144 .or. first == 244 .and. i > 143) width = 0
    end function utf8_width
 
    !> A text as a message may show it: no control characters, nothing that is not UTF-8
@@ -272,10 +266,65 @@ contains
       ! Not in the middle of a UTF-8 character
       last = shown_bytes - 3
       do while (last > 1 .and. ichar(text(last+1:last+1)) >= 128 &
-         & .and. ichar(text(last+1:last+1)) < 192)
+         .and. ichar(text(last+1:last+1)) < 192)
          last = last - 1
       end do
       shown = printable(text(:last))//"..."
    end function shortened
+
+   !> The first control character of a text: C0, DEL, and C1 of UTF-8 (U+0080 to U+009F)
+   pure function control_in(text) result(what)
+      !> Any bytes
+      character(len=*), intent(in) :: text
+      !> Such as `a tab`; empty if there is none
+      character(len=:), allocatable :: what
+      integer :: i
+
+      what = ''
+      do i = 1, len(text)
+         select case (ichar(text(i:i)))
+         case (0)
+            what = 'a NUL character'
+         case (9)
+            what = 'a tab'
+         case (10, 13)
+            what = 'a line end'
+         case (1:8, 11:12, 14:31, 127)
+            what = 'the control character '//integer_text(ichar(text(i:i)))
+         case (128:159)
+            if (text(max(1, i - 1):max(1, i - 1)) == char(194)) &
+               what = 'the control character '//integer_text(ichar(text(i:i)))
+         case default
+            continue
+         end select
+         if (what /= '') return
+      end do
+   end function control_in
+
+   !> What is wrong with a name: the one rule for names of files, wherever they are written. A line
+   !> end leaves the comment of a script, an escape sequence goes to a terminal, and gnuplot, as
+   !> other programs, runs what follows `|` or `<` at the beginning of a name
+   pure function name_flaw(name) result(flaw)
+      !> Name of a file or a folder, or a path of such names
+      character(len=*), intent(in) :: name
+      !> Such as `holds a tab`, or `begins with '|', ...`; empty if nothing is wrong
+      character(len=:), allocatable :: flaw
+      integer :: i
+
+      flaw = control_in(name)
+      if (flaw /= '') then
+         flaw = 'holds '//flaw
+         return
+      end if
+      do i = 1, len(name)
+         if (scan(name(i:i), '|<') == 0) cycle
+         if (i > 1) then
+            if (name(i - 1:i - 1) /= '/') cycle
+         end if
+         flaw = "begins with '"//name(i:i)//"', which other programs take for a pipe"
+         if (index(name(:i), '/') > 0) flaw = 'has a part that '//flaw
+         return
+      end do
+   end function name_flaw
 
 end module vcor_text

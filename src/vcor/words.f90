@@ -18,7 +18,6 @@ contains
    pure function contains_word(words, word) result(yes)
       !> Words separated by blanks
       character(len=*), intent(in) :: words
-      !> The word
       character(len=*), intent(in) :: word
       !> True if it is there
       logical :: yes
@@ -31,7 +30,6 @@ contains
    pure function spelled(words, word) result(same)
       !> Words separated by blanks
       character(len=*), intent(in) :: words
-      !> The word
       character(len=*), intent(in) :: word
       !> The word of the list; in lower case when it is not there
       character(len=len(word)) :: same
@@ -117,7 +115,6 @@ contains
       character(len=*), intent(in) :: name
       !> The known one
       character(len=*), intent(in) :: word
-      !> True if it is
       logical :: yes
 
       yes = len_trim(name) >= shortest_beginning
@@ -129,9 +126,7 @@ contains
    pure function edit_distance(a, b) result(distance)
       !> One word
       character(len=*), intent(in) :: a
-      !> The other
       character(len=*), intent(in) :: b
-      !> The number
       integer :: distance
       ! Distances of the beginnings of a (first index) and b
       integer :: d(-1:len(a), -1:len(b))
@@ -155,9 +150,7 @@ contains
    pure function is_swap(a, b) result(yes)
       !> One word
       character(len=*), intent(in) :: a
-      !> The other
       character(len=*), intent(in) :: b
-      !> True if they do
       logical :: yes
 
       yes = len(a) > 1 .and. len(b) > 1

@@ -125,3 +125,26 @@ def test_alumina_on_glass(vcor):
         assert float(found[waves][0]) == pytest.approx(0.9942, abs=5e-5)
         assert float(found[waves][2]) == pytest.approx(1.97, abs=5e-3)
         assert found[waves][3:] == ["outside", "plate_wave_number"]
+
+
+# ------------------------------------------------------------------------------------ documents
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.nml")), ids=lambda p: p.stem)
+def test_examples_say_their_validity(vcor, data_files, path):
+    """The head of each example has the judgement of the program."""
+    said = re.search(r"^! validity: (\w+)(?: by (\w+))?", path.read_text(), re.MULTILINE)
+    out = vcor("run", path, "--print", "validity,validity_cause", "--quiet").out
+    assert out.split() == [said[1], said[2] or "none"]
+
+
+def test_the_table_of_the_page():
+    """docs/validity.md has the thresholds of the program."""
+    source = (ROOT / "src/vcor/impact/validity.f90").read_text(encoding="utf-8")
+    program = re.findall(r"threshold_t\('(\w+)', ([\d.]+)_wp, ([\d.]+)_wp\)", source)
+    page = (ROOT / "docs/validity.md").read_text(encoding="utf-8")
+    page = page.split("## Thresholds")[1].split("\n## ")[0]
+    table = re.findall(r"^\| `(\w+)`[^|]*\| ([\d.]+) \| ([\d.]+) \|", page, re.MULTILINE)
+    found = {(name, float(low), float(high)) for name, low, high in table}
+    assert found == {(name, float(low), float(high)) for name, low, high in program}
+    assert len(program) == 8

@@ -9,12 +9,11 @@ program test_sweep
    use vcor_interval, only : spaced
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
-   use vcor_case_axes, only : new_grid
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_checks, only : validate
    use vcor_sweep_failures, only : failures_t
-   use vcor_case_grid, only : axis_t, grid_t
+   use vcor_case_grid, only : axis_t, grid_t, new_grid
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, status_name, &
       values_of

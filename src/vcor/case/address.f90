@@ -16,7 +16,6 @@ contains
    !> Address that a path leads to: `group.key`, or `name.key` for the material of this name; of a
    !> list also `name.key(2)`
    pure subroutine resolve(case, path, address, message)
-      !> The case
       type(case_t), intent(in) :: case
       !> The path; the name of a material may be in quotes, its blanks may be underscores
       character(len=*), intent(in) :: path
@@ -81,7 +80,6 @@ contains
 
    !> Go from the address of a list to one of its numbers
    pure subroutine find_element(case, element, address, message)
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the element in parentheses
       character(len=*), intent(in) :: element
@@ -107,7 +105,6 @@ contains
 
    !> Addresses of what the &sweep groups vary, as far as their paths lead somewhere
    pure function swept_addresses(case) result(addresses)
-      !> The case
       type(case_t), intent(in) :: case
       !> Addresses, nowhere if a path leads nowhere, shape (number of &sweep groups)
       type(address_t), allocatable :: addresses(:)
@@ -124,11 +121,9 @@ contains
 
    !> What to say about a key that is not in the catalogue
    pure function unknown_key(key, group) result(message)
-      !> The key
       character(len=*), intent(in) :: key
       !> Index of the group it was found in
       integer, intent(in) :: group
-      !> The message
       character(len=:), allocatable :: message
 
       integer :: other
@@ -146,9 +141,7 @@ contains
 
    !> What to say about a group that is not in the catalogue
    pure function unknown_group(group) result(message)
-      !> The group
       character(len=*), intent(in) :: group
-      !> The message
       character(len=:), allocatable :: message
 
       message = "unknown group '&"//shortened(group)//"'; "//suggestion(group, group_names())
@@ -156,7 +149,6 @@ contains
 
    !> Names of the materials as they are in paths
    pure function material_names(case) result(names)
-      !> The case
       type(case_t), intent(in) :: case
       !> The names, separated by blanks
       character(len=:), allocatable :: names

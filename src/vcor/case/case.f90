@@ -6,7 +6,7 @@
 !> address is group, item, key and, in a list, element. A sweep sets the number at an address, and
 !> `vcor_case_problem` reads it there.
 module vcor_case_case
-   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       integer_key, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
    use vcor_interval, only : contains_number
@@ -133,11 +133,8 @@ contains
 
    !> Whether two addresses are the same
    elemental function same_address(a, b) result(same)
-      !> One
       type(address_t), intent(in) :: a
-      !> The other
       type(address_t), intent(in) :: b
-      !> Whether they are
       logical :: same
 
       same = a%row == b%row .and. a%item == b%item .and. a%element == b%element
@@ -145,7 +142,6 @@ contains
 
    !> Begin anew: no group is there, every key has its default
    pure subroutine start(self, source)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Name of the case file; the default of `output.stem` is made from it
       character(len=*), intent(in) :: source
@@ -172,7 +168,6 @@ contains
 
    !> An item with nothing but defaults
    pure subroutine default_item(item, group)
-      !> The item
       type(item_t), intent(out) :: item
       !> Index of its group
       integer, intent(in) :: group
@@ -187,7 +182,6 @@ contains
 
    !> Give a key its default
    pure subroutine set_default(entry, row)
-      !> Its entry
       type(entry_t), intent(out) :: entry
       !> Row of the key
       integer, intent(in) :: row
@@ -211,7 +205,6 @@ contains
 
    !> Add a group: a new item where it may be repeated, else the group is marked as being there
    pure subroutine add(self, group, line, item)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Index of the group
       integer, intent(in) :: group
@@ -240,11 +233,8 @@ contains
 
    !> Number of times a group is in the case
    pure function count_items(self, group) result(n)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
       character(len=*), intent(in) :: group
-      !> The number
       integer :: n
 
       integer :: g
@@ -257,7 +247,6 @@ contains
 
    !> Line of the case file a group begins in
    pure function line_of_item(self, group, item) result(line)
-      !> The case
       class(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
@@ -271,7 +260,6 @@ contains
 
    !> Counter of the changes of an item: as long as it stays the same, so does the item
    pure function revision(self, group, item)
-      !> The case
       class(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
@@ -285,7 +273,6 @@ contains
 
    !> Value of the selector of an item, such as the model of a material
    pure function model(self, group, item) result(word)
-      !> The case
       class(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
@@ -302,9 +289,7 @@ contains
 
    !> Item of the material of a name; case, and blanks against underscores, make no difference
    pure function find_material(self, name) result(item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the material
       character(len=*), intent(in) :: name
       !> Number of the first item of this name, 0 when there is none
       integer :: item
@@ -320,12 +305,8 @@ contains
 
    !> Address of a key
    pure function address(self, group, key, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: group, key
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
       !> The address, nowhere if there is no such key or item
@@ -346,9 +327,7 @@ contains
 
    !> Path of an address, `group.key`, `material_name.key` or `material_name.key(2)`
    pure function path(self, address) result(text)
-      !> The case
       class(case_t), intent(in) :: self
-      !> The address
       type(address_t), intent(in) :: address
       !> The path, without blanks; empty for nowhere
       character(len=:), allocatable :: text
@@ -370,9 +349,7 @@ contains
 
    !> Row of the catalogue for an address, which depends on the model
    pure function row(self, address)
-      !> The case
       class(case_t), intent(in) :: self
-      !> The address
       type(address_t), intent(in) :: address
       !> The row, 0 if the key does not belong to the model
       integer :: row
@@ -382,9 +359,7 @@ contains
 
    !> Entry at an address
    pure function entry_at(self, address) result(entry)
-      !> The case
       class(case_t), intent(in) :: self
-      !> The address
       type(address_t), intent(in) :: address
       !> The entry, with text and list, and without a value for nowhere
       type(entry_t) :: entry
@@ -399,9 +374,7 @@ contains
    !> Number at an address: of a real, integer or logical key, or in a list; a quiet NaN where there
    !> is none
    pure function number(self, address)
-      !> The case
       class(case_t), intent(in) :: self
-      !> The address
       type(address_t), intent(in) :: address
       !> The number, in the unit of the key
       real(wp) :: number
@@ -420,13 +393,9 @@ contains
 
    !> Value of a real key; a quiet NaN where there is none
    pure subroutine get_real(self, group, key, value, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The value, in the unit of the key
+      character(len=*), intent(in) :: group, key
+      !> In the unit of the key
       real(wp), intent(out) :: value
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
@@ -436,33 +405,21 @@ contains
 
    !> Value of an integer key; `-huge(1)` where there is none
    pure subroutine get_integer(self, group, key, value, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The value
+      character(len=*), intent(in) :: group, key
       integer, intent(out) :: value
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
 
-      type(entry_t) :: entry
-
-      entry = self%entry(self%address(group, key, item))
       value = -huge(value)
-      if (entry%present) value = nint(entry%number)
+      if (.not. ieee_is_nan(self%number(self%address(group, key, item)))) &
+         value = nint(self%number(self%address(group, key, item)))
    end subroutine get_integer
 
    !> Value of a logical key; false where there is none
    pure subroutine get_logical(self, group, key, value, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The value
+      character(len=*), intent(in) :: group, key
       logical, intent(out) :: value
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
@@ -475,13 +432,9 @@ contains
 
    !> Value of a text key; empty where there is none
    pure subroutine get_text(self, group, key, value, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The value; choices as the catalogue has them
+      character(len=*), intent(in) :: group, key
+      !> Choices as the catalogue has them
       character(len=:), allocatable, intent(out) :: value
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
@@ -494,13 +447,9 @@ contains
 
    !> Value of a list key; without elements where there is none
    pure subroutine get_list(self, group, key, value, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The values, in the unit of the key, shape (n)
+      character(len=*), intent(in) :: group, key
+      !> In the unit of the key, shape (n)
       real(wp), allocatable, intent(out) :: value(:)
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
@@ -513,15 +462,10 @@ contains
 
    !> Whether a key was given
    pure function given(self, group, key, item)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: group, key
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
-      !> True if it was
       logical :: given
 
       type(entry_t) :: entry
@@ -532,11 +476,8 @@ contains
 
    !> Set an entry as it is; of a number in a list only that number
    pure subroutine set_entry(self, address, entry)
-      !> The case
       class(case_t), intent(inout) :: self
-      !> The address
       type(address_t), intent(in) :: address
-      !> The entry
       type(entry_t), intent(in) :: entry
 
       real(wp), allocatable :: list(:)
@@ -554,7 +495,6 @@ contains
 
    !> Set a number as it is: cheap, for a sweep
    pure subroutine set_number(self, address, number)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Address of a real, integer or logical key, or of a number in a list
       type(address_t), intent(in) :: address
@@ -573,11 +513,9 @@ contains
 
    !> Set a text as it is
    pure subroutine set_text(self, address, text, given)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Address of a text key
       type(address_t), intent(in) :: address
-      !> The text
       character(len=*), intent(in) :: text
       !> Whether it counts as given by the user
       logical, intent(in) :: given
@@ -590,7 +528,6 @@ contains
 
    !> Set a list as it is
    pure subroutine set_list(self, address, list, given)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Address of a list key
       type(address_t), intent(in) :: address
@@ -607,7 +544,6 @@ contains
 
    !> Note that an entry has a new value; if it is given, the group counts as being in the case
    pure subroutine note_change(item, row, given)
-      !> The item
       type(item_t), intent(inout) :: item
       !> Row of the key
       integer, intent(in) :: row
@@ -622,7 +558,6 @@ contains
 
    !> Set a number if it is within its range
    subroutine put(self, address, number, error)
-      !> The case
       class(case_t), intent(inout) :: self
       !> Address of a real or integer key, or of a number in a list
       type(address_t), intent(in) :: address
@@ -659,9 +594,7 @@ contains
 
    !> Take a value back: the key has its default
    pure subroutine unset(self, address)
-      !> The case
       class(case_t), intent(inout) :: self
-      !> The address
       type(address_t), intent(in) :: address
 
       associate (item => self%group(address%group)%item(address%item))
@@ -672,12 +605,8 @@ contains
 
    !> Where a key was given, for messages
    pure function location_of_key(self, group, key, item) result(text)
-      !> The case
       class(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: group, key
       !> Number of the item; absent: 1
       integer, intent(in), optional :: item
       !> The place, for the beginning of a message
@@ -689,9 +618,7 @@ contains
    !> Where the value at an address was given, `case.nml:12`; the line of its group where it was
    !> not, or the file alone
    pure function location_of_address(self, address) result(text)
-      !> The case
       class(case_t), intent(in) :: self
-      !> The address
       type(address_t), intent(in) :: address
       !> The place, for the beginning of a message
       character(len=:), allocatable :: text

@@ -16,7 +16,7 @@ module vcor_case_catalogue
    private
 
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
-      & list_key
+      list_key
    public :: find_group, find_key, first_row, last_row, row_for_model
    public :: kind_name, range_text, wanted, keys_of, group_names, described_keys
 
@@ -80,114 +80,114 @@ module vcor_case_catalogue
 
    !> The groups, in the order they are printed in
    type(group_t), parameter :: groups(*) = [ &
-      & group_t("case", "Title of the case"), &
-      & group_t("impact", "How the sphere strikes the plate", required=.true.), &
-      & group_t("sphere", "The sphere", required=.true.), &
-      & group_t("plate", "The plate", required=.true.), &
-      & group_t("contact", "Law of the contact force"), &
-      & group_t("material", "A material used by the sphere or the plate", required=.true., &
-      &    repeated=.true., label="name", selector="model"), &
-      & group_t("solver", "How the equation of motion is solved"), &
-      & group_t("sweep", "A parameter to vary; several groups make a grid", repeated=.true.), &
-      & group_t("output", "Files to write, and their folder")]
+      group_t("case", "Title of the case"), &
+      group_t("impact", "How the sphere strikes the plate", required=.true.), &
+      group_t("sphere", "The sphere", required=.true.), &
+      group_t("plate", "The plate", required=.true.), &
+      group_t("contact", "Law of the contact force"), &
+      group_t("material", "A material used by the sphere or the plate", required=.true., &
+         repeated=.true., label="name", selector="model"), &
+      group_t("solver", "How the equation of motion is solved"), &
+      group_t("sweep", "A parameter to vary; several groups make a grid", repeated=.true.), &
+      group_t("output", "Files to write, and their folder")]
 
    integer :: i
    !> The keys, group by group in the order of `groups`
    type(key_t), parameter :: catalogue(*) = [ &
-      & key_t("case", "title", text_key, "Title, copied to the results", default="''"), &
+      key_t("case", "title", text_key, "Title, copied to the results", default="''"), &
       !
-      & key_t("impact", "velocity", real_key, "Approach velocity at first contact", "m/s", &
-      &    positive, required=.true., instead="drop_height"), &
-      & key_t("impact", "drop_height", real_key, &
-      &    "Height the sphere falls from, in place of velocity = sqrt(2 g drop_height)", "m", &
-      &    positive), &
+      key_t("impact", "velocity", real_key, "Approach velocity at first contact", "m/s", &
+         positive, required=.true., instead="drop_height"), &
+      key_t("impact", "drop_height", real_key, &
+         "Height the sphere falls from, in place of velocity = sqrt(2 g drop_height)", "m", &
+         positive), &
       !
-      & key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
-      & key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
-      & key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
-      &    positive), &
+      key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
+      key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
+      key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
+         positive), &
       !
-      & key_t("plate", "half_thickness", real_key, &
-      &    "Half the thickness; not needed without waves", "m", positive), &
-      & key_t("plate", "material", text_key, "Name of its material", required=.true.), &
-      & key_t("plate", "waves", text_key, "Model of the bending waves in the plate", &
-      &    choices="none constant relaxing frozen hereditary", default="relaxing"), &
-      & key_t("plate", "surface_radius", real_key, &
-      &    "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
-      & key_t("plate", "extent", real_key, &
-      &    "Distance to the nearest edge of the plate, for the measure needed_extent", "m", &
-      &    positive), &
+      key_t("plate", "half_thickness", real_key, &
+         "Half the thickness; not needed without waves", "m", positive), &
+      key_t("plate", "material", text_key, "Name of its material", required=.true.), &
+      key_t("plate", "waves", text_key, "Model of the bending waves in the plate", &
+         choices="none constant relaxing frozen hereditary", default="relaxing"), &
+      key_t("plate", "surface_radius", real_key, &
+         "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
+      key_t("plate", "extent", real_key, &
+         "Distance to the nearest edge of the plate, for the measure needed_extent", "m", &
+         positive), &
       !
-      & key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
-      &    choices="boltzmann receding", default="boltzmann"), &
-      & key_t("contact", "pair", text_key, "Rule that combines the moduli of two bodies", &
-      &    choices="eq1 series", default="eq1"), &
+      key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
+         choices="boltzmann receding", default="boltzmann"), &
+      key_t("contact", "pair", text_key, "Rule that combines the moduli of two bodies", &
+         choices="eq1 series", default="eq1"), &
       !
-      & key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
-      &    required=.true.), &
-      & key_t("material", "model", text_key, "Model of the relaxation modulus", &
-      &    choices=models, required=.true.), &
-      & key_t("material", density%name, real_key, density%meaning, density%unit, density%range), &
-      & key_t("material", "yield_strength", real_key, &
-      &    "Yield strength, for the validity by mean_pressure", "Pa", positive), &
-      & (key_t("material", model_parameters(i)%parameter%name, &
-      &    merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
-      &    model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &
-      &    model_parameters(i)%parameter%range, default=model_parameters(i)%parameter%default, &
-      &    models=model_parameters(i)%model, required=model_parameters(i)%parameter%required), &
-      &    i=1, size(model_parameters)), &
-      & key_t("material", "file", text_key, &
-      &    "File of times and moduli; relative to the folder of the case", models="table", &
-      &    required=.true.), &
-      & key_t("material", "time_unit", text_key, "Unit of the times in the file", &
-      &    choices="ns us ms s min h", models="table", default="s"), &
-      & key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
-      &    choices="Pa kPa MPa GPa", models="table", default="Pa"), &
-      & key_t("material", "valid_from", real_key, &
-      &    "First time of the data to which the model was fitted", "s", positive, &
-      &    models=identifiable_models), &
-      & key_t("material", "valid_to", real_key, &
-      &    "Last time of the data to which the model was fitted", "s", positive, &
-      &    models=identifiable_models), &
+      key_t("material", "name", text_key, "Name; blanks and underscores are the same", &
+         required=.true.), &
+      key_t("material", "model", text_key, "Model of the relaxation modulus", &
+         choices=models, required=.true.), &
+      key_t("material", density%name, real_key, density%meaning, density%unit, density%range), &
+      key_t("material", "yield_strength", real_key, &
+         "Yield strength, for the validity by mean_pressure", "Pa", positive), &
+      (key_t("material", model_parameters(i)%parameter%name, &
+         merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
+         model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &
+         model_parameters(i)%parameter%range, default=model_parameters(i)%parameter%default, &
+         models=model_parameters(i)%model, required=model_parameters(i)%parameter%required), &
+         i=1, size(model_parameters)), &
+      key_t("material", "file", text_key, &
+         "File of times and moduli; relative to the folder of the case", models="table", &
+         required=.true.), &
+      key_t("material", "time_unit", text_key, "Unit of the times in the file", &
+         choices="ns us ms s min h", models="table", default="s"), &
+      key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
+         choices="Pa kPa MPa GPa", models="table", default="Pa"), &
+      key_t("material", "valid_from", real_key, &
+         "First time of the data to which the model was fitted", "s", positive, &
+         models=identifiable_models), &
+      key_t("material", "valid_to", real_key, &
+         "Last time of the data to which the model was fitted", "s", positive, &
+         models=identifiable_models), &
       !
-      & key_t("solver", "method", text_key, &
-      &    "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
-      &    choices="auto ive direct", default="auto"), &
-      & key_t("solver", "scheme", text_key, "Scheme of the direct method", &
-      &    choices="product adams_bashforth", default="product"), &
-      & key_t("solver", "time_step", real_key, "Time step; default: chosen by the solver", &
-      &    "s", positive), &
-      & key_t("solver", "end_time", real_key, &
-      &    "Time at which the solver gives up; default: chosen by the solver", "s", positive), &
-      & key_t("solver", "accuracy", real_key, &
-      &    "Largest error of the COR; default: 1e-8 (ive) or 1e-6 (direct)", &
-      &    range=accuracy_range), &
-      & key_t("solver", "form", text_key, "Form of Eq. (8); adams_bashforth only", &
-      &    choices="a b", default="a"), &
-      & key_t("solver", "quadrature", text_key, "Quadrature of the sums; adams_bashforth only", &
-      &    choices="rectangle trapezoid", default="trapezoid"), &
-      & key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
-      &    range=order_range, default="1"), &
-      & key_t("solver", "volterra_coefficient", real_key, "Coefficient of the second term", &
-      &    "m^-1.5", default="1.0"), &
-      & key_t("solver", "continue_after_separation", logical_key, &
-      &    "Continue to end_time as if the sphere were glued to the plate", default=".false."), &
+      key_t("solver", "method", text_key, &
+         "auto: ive, but direct for scheme adams_bashforth or if ive fails", &
+         choices="auto ive direct", default="auto"), &
+      key_t("solver", "scheme", text_key, "Scheme of the direct method", &
+         choices="product adams_bashforth", default="product"), &
+      key_t("solver", "time_step", real_key, "Time step; default: chosen by the solver", &
+         "s", positive), &
+      key_t("solver", "end_time", real_key, &
+         "Time at which the solver gives up; default: chosen by the solver", "s", positive), &
+      key_t("solver", "accuracy", real_key, &
+         "Largest error of the COR; default: 1e-8 (ive) or 1e-6 (direct)", &
+         range=accuracy_range), &
+      key_t("solver", "form", text_key, "Form of Eq. (8); adams_bashforth only", &
+         choices="a b", default="a"), &
+      key_t("solver", "quadrature", text_key, "Quadrature of the sums; adams_bashforth only", &
+         choices="rectangle trapezoid", default="trapezoid"), &
+      key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
+         range=order_range, default="1"), &
+      key_t("solver", "volterra_coefficient", real_key, "Coefficient of the second term", &
+         "m^-1.5", default="1.0"), &
+      key_t("solver", "continue_after_separation", logical_key, &
+         "Continue to end_time as if the sphere were glued to the plate", default=".false."), &
       !
-      & key_t("sweep", "parameter", text_key, "Address of the parameter, as in --set: group.key", &
-      &    required=.true.), &
-      & key_t("sweep", "values", list_key, "Values; or give start, stop and count"), &
-      & key_t("sweep", "start", real_key, "First value"), &
-      & key_t("sweep", "stop", real_key, "Last value"), &
-      & key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
-      & key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
-      &    choices="linear log", default="linear"), &
+      key_t("sweep", "parameter", text_key, "Address of the parameter, as in --set: group.key", &
+         required=.true.), &
+      key_t("sweep", "values", list_key, "Values; or give start, stop and count"), &
+      key_t("sweep", "start", real_key, "First value"), &
+      key_t("sweep", "stop", real_key, "Last value"), &
+      key_t("sweep", "count", integer_key, "Number of values", range=at_least_one), &
+      key_t("sweep", "spacing", text_key, "Equal steps of the value or of its logarithm", &
+         choices="linear log", default="linear"), &
       !
-      & key_t("output", "csv", logical_key, "Write CSV files", default=".true."), &
-      & key_t("output", "hdf5", logical_key, "Write an HDF5 file", default=".true."), &
-      & key_t("output", "history", logical_key, "Write the time history", default=".true."), &
-      & key_t("output", "directory", text_key, "Folder of the files", default="."), &
-      & key_t("output", "stem", text_key, &
-      & "Start of the file names; default: the name of the case file")]
+      key_t("output", "csv", logical_key, "Write CSV files", default=".true."), &
+      key_t("output", "hdf5", logical_key, "Write an HDF5 file", default=".true."), &
+      key_t("output", "history", logical_key, "Write the time history", default=".true."), &
+      key_t("output", "directory", text_key, "Folder of the files", default="."), &
+      key_t("output", "stem", text_key, &
+      "Start of the file names; default: the name of the case file")]
 
 contains
 
@@ -198,11 +198,9 @@ contains
       !> Index, 0 when there is no such group
       integer :: group
 
-      character(len=len(groups%name)) :: small
+      character(len=len(name)) :: small
 
-      group = 0
-      if (len_trim(name) > len(small)) return
-      small = lower(name(:min(len(name), len(small))))
+      small = lower(name)
       do group = 1, size(groups)
          if (groups(group)%name == small) return
       end do
@@ -218,13 +216,13 @@ contains
       !> Row of `catalogue`, 0 when there is no such key
       integer :: row
 
-      character(len=len(catalogue%name)) :: small
+      character(len=len(name)) :: small
       integer :: owner
 
       row = 0
       owner = find_group(group)
-      if (owner == 0 .or. len_trim(name) > len(small)) return
-      small = lower(name(:min(len(name), len(small))))
+      if (owner == 0) return
+      small = lower(name)
       do row = first_row(owner), last_row(owner)
          if (catalogue(row)%name == small) return
       end do
@@ -274,7 +272,6 @@ contains
 
    !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
    pure function range_text(key) result(text)
-      !> The key
       type(key_t), intent(in) :: key
       !> Its range
       character(len=:), allocatable :: text
@@ -309,20 +306,17 @@ contains
 
    !> Whether two rows say the same of a key
    pure function says_the_same(one, other) result(yes)
-      !> One
       type(key_t), intent(in) :: one
-      !> The other
       type(key_t), intent(in) :: other
       !> Whether they do
       logical :: yes
 
       yes = one%group == other%group .and. one%name == other%name .and. one%unit == other%unit &
-         & .and. one%meaning == other%meaning .and. (one%required .eqv. other%required)
+         .and. one%meaning == other%meaning .and. (one%required .eqv. other%required)
    end function says_the_same
 
    !> What a key takes, in words: `a number > 0 [m]`
    pure function wanted(key) result(text)
-      !> The key
       type(key_t), intent(in) :: key
       !> Kind, range and unit
       character(len=:), allocatable :: text
@@ -360,7 +354,6 @@ contains
       integer, intent(in) :: group
       !> Only the keys of this model; absent: all
       character(len=*), intent(in), optional :: model
-      !> The names
       character(len=:), allocatable :: words
       integer :: row
 
@@ -377,7 +370,6 @@ contains
 
    !> Names of the groups, separated by blanks
    pure function group_names() result(words)
-      !> The names
       character(len=:), allocatable :: words
       integer :: group
 

@@ -3,11 +3,10 @@
 module vcor_case_checks
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
-   use vcor_case_axes, only : new_grid
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
       last_row, wanted
-   use vcor_case_grid, only : grid_t
+   use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : material_of_case
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
@@ -25,7 +24,6 @@ contains
    !> given, and its values are not checked here: a point that makes no sense is a point without
    !> result, not a case that is wrong
    subroutine validate(self, error)
-      !> The case
       type(case_t), intent(in) :: self
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -60,13 +58,11 @@ contains
 
    !> Check a material: its name, the band of its data, and that it can be built
    subroutine check_material(self, swept, item, error)
-      !> The case
       type(case_t), intent(in) :: self
       !> Addresses of what a sweep varies
       type(address_t), intent(in) :: swept(:)
       !> Number of the material
       integer, intent(in) :: item
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       class(material_t), allocatable :: material
@@ -102,11 +98,9 @@ contains
 
    !> Check that there is the material of a body
    subroutine check_body(self, body, error)
-      !> The case
       type(case_t), intent(in) :: self
       !> Group of the body
       character(len=*), intent(in) :: body
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: name
@@ -119,9 +113,7 @@ contains
 
    !> Check that the name of the files is no path
    subroutine check_stem(self, error)
-      !> The case
       type(case_t), intent(in) :: self
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: stem
@@ -151,7 +143,6 @@ contains
 
    !> Check each entry of a group by itself
    subroutine check_item(self, swept, group, item, error)
-      !> The case
       type(case_t), intent(in) :: self
       !> Addresses of what a sweep varies
       type(address_t), intent(in) :: swept(:)
@@ -159,7 +150,6 @@ contains
       integer, intent(in) :: group
       !> Number of the item
       integer, intent(in) :: item
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer :: row
@@ -178,13 +168,10 @@ contains
 
    !> Check one entry by itself: whether it belongs there, is there, and is within its range
    subroutine check_entry(self, swept, address, error)
-      !> The case
       type(case_t), intent(in) :: self
       !> Addresses of what a sweep varies
       type(address_t), intent(in) :: swept(:)
-      !> Where the entry stands
       type(address_t), intent(in) :: address
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(entry_t) :: entry
@@ -224,9 +211,7 @@ contains
 
       !> Whether a key of the item is given, or varied by a sweep
       pure function is_there(name) result(yes)
-         !> Name of the key
          character(len=*), intent(in) :: name
-         !> Whether it is
          logical :: yes
 
          yes = self%given(groups(address%group)%name, name, address%item) .or. name /= '' &
@@ -236,17 +221,12 @@ contains
 
    !> Raise an error about a key
    subroutine fail(self, group, key, item, message, error)
-      !> The case
       type(case_t), intent(in) :: self
-      !> Name of the group
-      character(len=*), intent(in) :: group
-      !> Name of the key
-      character(len=*), intent(in) :: key
+      character(len=*), intent(in) :: group, key
       !> Number of the item
       integer, intent(in) :: item
       !> Found and expected
       character(len=*), intent(in) :: message
-      !> The error
       type(error_t), allocatable, intent(inout) :: error
 
       call raise(error, error_input, self%location(group, key, item)//': '//message)

@@ -4,12 +4,26 @@
 !> as C and Python count. A grid without axes has one point. A list of points is a grid in which all
 !> axes go on together.
 module vcor_case_grid
-   use vcor_case_case, only : address_t
+   use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_interval, only : log_spacing, spaced
    use vcor_kinds, only : wp
+   use vcor_numeric_sorting, only : sort
+   use vcor_case_address, only : resolve
+   use vcor_case_case, only : address_t, case_t, operator(==)
+   use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
+      row_for_model
+   use vcor_text, only : integer_text, real_text, shortened
+   use vcor_case_unread, only : why_unread
+   use vcor_words, only : join_words
    implicit none
    private
 
-   public :: axis_t, grid_t
+   public :: axis_t, grid_t, new_grid
+
+   !> Most points of a grid
+   integer, parameter :: most_points = 100000000
+   !> Most parameters of a grid: each is a dimension in the HDF5 file, which has 32 at most
+   integer, parameter :: most_axes = 32
 
    !> One parameter and its values
    type :: axis_t
@@ -57,7 +71,6 @@ contains
 
    !> Which value of each parameter a point has
    pure function places(self, point)
-      !> The grid
       class(grid_t), intent(in) :: self
       !> Number of the point, from 1
       integer, intent(in) :: point
@@ -76,5 +89,215 @@ contains
          end associate
       end do
    end function places
+
+   !> Build the grid of a case; the values are not held against the ranges of their keys
+   subroutine new_grid(case, grid, error)
+      !> A case, each entry of which is within its range
+      type(case_t), intent(in) :: case
+      !> The grid; without axes where the case has no &sweep group
+      type(grid_t), intent(out) :: grid
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: points
+      integer :: item
+
+      allocate (grid%axes(case%count('sweep')))
+      if (size(grid%axes) > most_axes) then
+         call refuse(case, 'parameter', most_axes + 1, 'found '//integer_text(size(grid%axes)) &
+            //' &sweep groups, expected at most '//integer_text(most_axes) &
+            //', the dimensions that an HDF5 file may have', error)
+         return
+      end if
+      points = 1.0_wp
+      do item = 1, size(grid%axes)
+         call find_parameter(case, item, grid%axes(:item - 1), grid%axes(item), error)
+         if (allocated(error)) return
+         call find_values(case, item, points, grid%axes(item)%values, error)
+         if (allocated(error)) return
+         points = points*real(size(grid%axes(item)%values), wp)
+      end do
+   end subroutine new_grid
+
+   !> What a &sweep group varies
+   subroutine find_parameter(case, item, before, axis, error)
+      type(case_t), intent(in) :: case
+      !> Number of the group
+      integer, intent(in) :: item
+      !> Parameters of the groups before, shape (item - 1)
+      type(axis_t), intent(in) :: before(:)
+      !> Parameter without its values
+      type(axis_t), intent(out) :: axis
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: path, message, model, reason
+      integer :: group, row, i
+
+      call case%get('sweep', 'parameter', path, item)
+      call resolve(case, path, axis%address, message)
+      if (allocated(message)) then
+         call refuse(case, 'parameter', item, message, error)
+         return
+      end if
+
+      axis%name = case%path(axis%address)
+      group = axis%address%group
+      row = axis%address%row
+      model = case%model(group, axis%address%item)
+      if (groups(group)%name == 'sweep') then
+         message = "found '"//shortened(path)//"', but a sweep cannot vary a sweep"
+      else if (groups(group)%name == 'output') then
+         message = "found '"//shortened(path)//"', but a sweep cannot vary its own output"
+      else if (row_for_model(row, model) == 0) then
+         message = "key '"//trim(catalogue(row)%name)//"' does not belong to model '"//model &
+            //"', its keys are: "//join_words(keys_of(group, model))
+      else if (catalogue(row)%value_kind /= real_key .and. axis%address%element == 0) then
+         message = "found '"//shortened(path)//"', which is "//kind_of(catalogue(row)) &
+            //'; expected a single real number'
+      else
+         reason = why_unread(case, axis%address)
+         if (reason /= '') message = "found '"//shortened(path) &
+            //"', which the impact does not read: "//reason
+      end if
+      do i = 1, size(before)
+         if (.not. before(i)%address == axis%address) cycle
+         message = "'"//shortened(path)//"' is swept twice, the first at " &
+            //case%location('sweep', 'parameter', i)
+      end do
+      if (allocated(message)) then
+         call refuse(case, 'parameter', item, message, error)
+         return
+      end if
+      row = row_for_model(row, model)
+      axis%unit = trim(catalogue(row)%unit)
+      axis%meaning = trim(catalogue(row)%meaning)
+   end subroutine find_parameter
+
+   !> Kind of a key in words
+   pure function kind_of(key) result(words)
+      type(key_t), intent(in) :: key
+      !> Such as `a list`
+      character(len=:), allocatable :: words
+
+      character(len=*), parameter :: names(*) = [character(len=14) :: 'a number', &
+         'a whole number', 'a switch', 'a text', 'a list']
+
+      words = trim(names(key%value_kind))
+   end function kind_of
+
+   !> Values of a &sweep group
+   subroutine find_values(case, item, points, values, error)
+      type(case_t), intent(in) :: case
+      !> Number of the group
+      integer, intent(in) :: item
+      !> Points of the groups before
+      real(wp), intent(in) :: points
+      !> Values, shape (n), n >= 1
+      real(wp), allocatable, intent(out) :: values(:)
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=5), parameter :: ends(3) = [character(len=5) :: 'start', 'stop', 'count']
+      character(len=:), allocatable :: spacing
+      real(wp), allocatable :: room(:)
+      real(wp) :: start, stop
+      integer :: i, n, status
+
+      call case%get('sweep', 'spacing', spacing, item)
+      if (case%given('sweep', 'values', item)) then
+         do i = 1, size(ends)
+            if (case%given('sweep', trim(ends(i)), item)) call refuse(case, trim(ends(i)), item, &
+               'found both values and '//trim(ends(i))//', expected values, or start, stop and ' &
+               //'count', error)
+            if (allocated(error)) return
+         end do
+         call case%get('sweep', 'values', values, item)
+         n = size(values)
+         if (spacing == log_spacing) then
+            call refuse(case, 'spacing', item, "spacing = 'log' is for start, stop and count, " &
+               //'found values', error)
+         else if (n == 0) then
+            call refuse(case, 'values', item, 'the list is empty, expected one value or more', &
+               error)
+         end if
+      else
+         do i = 1, size(ends)
+            if (case%given('sweep', trim(ends(i)), item)) cycle
+            call refuse(case, trim(ends(i)), item, "key '"//trim(ends(i))//"' is missing in " &
+               //'&sweep, expected values, or start, stop and count', error)
+            return
+         end do
+         call case%get('sweep', 'start', start, item)
+         call case%get('sweep', 'stop', stop, item)
+         call case%get('sweep', 'count', n, item)
+         if (spacing == log_spacing .and. .not. start > 0.0_wp) then
+            call refuse(case, 'start', item, "found start = "//real_text(start) &
+               //", expected start > 0 with spacing = 'log'", error)
+         else if (spacing == log_spacing .and. .not. stop > 0.0_wp) then
+            call refuse(case, 'stop', item, "found stop = "//real_text(stop) &
+               //", expected stop > 0 with spacing = 'log'", error)
+         end if
+      end if
+      if (allocated(error)) return
+      if (points*real(n, wp) > real(most_points, wp)) then
+         call refuse(case, 'parameter', item, 'the grid has '//real_text(points*real(n, wp)) &
+            //' points, expected at most '//integer_text(most_points), error)
+         return
+      end if
+      if (.not. allocated(values)) then
+         ! they are copied and sorted, too
+         allocate (room(4*n), stat=status)
+         if (status /= 0) then
+            call raise(error, error_file, case%location('sweep', 'count', item)//': there is ' &
+               //'not enough memory for a sweep of '//integer_text(n)//' points: their values ' &
+               //'alone take '//integer_text(n/125000 + 1)//' MB')
+            return
+         end if
+         deallocate (room)
+         values = spaced(start, stop, n, spacing)
+      end if
+      call refuse_repeated(case, item, values, error)
+   end subroutine find_values
+
+   !> Refuse a value that stands twice: its points would be solved twice, and no file could tell
+   !> them apart
+   subroutine refuse_repeated(case, item, values, error)
+      type(case_t), intent(in) :: case
+      !> Number of the &sweep group
+      integer, intent(in) :: item
+      !> Its values, shape (n)
+      real(wp), intent(in) :: values(:)
+      !> Error, unallocated if no two are the same
+      type(error_t), allocatable, intent(inout) :: error
+
+      real(wp), allocatable :: sorted(:)
+      character(len=:), allocatable :: key
+      integer :: i, n
+
+      n = size(values)
+      if (all(values(2:) > values(:n - 1)) .or. all(values(2:) < values(:n - 1))) return
+      sorted = values
+      call sort(sorted)
+      do i = 2, n
+         if (sorted(i) > sorted(i - 1)) cycle
+         key = 'count'
+         if (case%given('sweep', 'values', item)) key = 'values'
+         call refuse(case, key, item, 'the value '//real_text(sorted(i))//' is there twice, ' &
+            //'expected different values', error)
+         return
+      end do
+   end subroutine refuse_repeated
+
+   !> Raise an error about a key of a &sweep group
+   subroutine refuse(case, key, item, message, error)
+      type(case_t), intent(in) :: case
+      character(len=*), intent(in) :: key
+      !> Number of the group
+      integer, intent(in) :: item
+      !> Found and expected
+      character(len=*), intent(in) :: message
+      type(error_t), allocatable, intent(inout) :: error
+
+      call raise(error, error_input, case%location('sweep', key, item)//': '//message)
+   end subroutine refuse
 
 end module vcor_case_grid

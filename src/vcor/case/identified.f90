@@ -9,7 +9,7 @@ module vcor_case_identified
    implicit none
    private
 
-   public :: put_material, put_points, put_solver, material_text
+   public :: put_material, material_text
 
 contains
 
@@ -20,51 +20,24 @@ contains
       type(case_t), intent(inout) :: case
       !> Number of the material
       integer, intent(in) :: item
-      !> The material
       type(material_data_t), intent(in) :: data
 
       type(parameter_t), allocatable :: parameters(:)
       integer :: i
 
-      call put(case, item, 'model', word=data%model)
+      call case%set(case%address('material', 'model', item), data%model, given=.true.)
       allocate (parameters, source=parameters_of(data%model))
       do i = 1, size(parameters)
          if (.not. parameters(i)%fitted .or. parameters(i)%is_list) cycle
-         call put_number(case, item, parameters(i)%name, data%number(parameters(i)%name))
+         associate (name => parameters(i)%name)
+            call case%set(case%address('material', name, item), data%number(name))
+         end associate
       end do
       if (data%model /= 'prony') return
-      call put(case, item, 'moduli', list=data%list('moduli'))
-      call put(case, item, 'times', list=1.0_wp/data%list('rates'))
+      call case%set(case%address('material', 'moduli', item), data%list('moduli'), given=.true.)
+      call case%set(case%address('material', 'times', item), 1.0_wp/data%list('rates'), &
+         given=.true.)
    end subroutine put_material
-
-   !> Make a material of a case one that is given by points
-   subroutine put_points(case, item, times, moduli)
-      !> The case; it need not be validated again
-      type(case_t), intent(inout) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      !> Times [s], shape (n)
-      real(wp), intent(in) :: times(:)
-      !> Moduli [Pa], shape (n)
-      real(wp), intent(in) :: moduli(:)
-
-      call put(case, item, 'model', word='table')
-      call put(case, item, 'times', list=times)
-      call put(case, item, 'moduli', list=moduli)
-   end subroutine put_points
-
-   !> Have the impact of a case solved by product integration, with steps as they are needed
-   subroutine put_solver(case, accuracy)
-      !> The case; it need not be validated again
-      type(case_t), intent(inout) :: case
-      !> Wanted error of the restitution [-]
-      real(wp), intent(in) :: accuracy
-
-      call case%set(case%address('solver', 'method'), 'direct', given=.true.)
-      call case%set(case%address('solver', 'scheme'), 'product', given=.true.)
-      call case%set(case%address('solver', 'accuracy'), accuracy)
-      call case%unset(case%address('solver', 'time_step'))
-   end subroutine put_solver
 
    !> A material as a &material group
    function material_text(data, density, poisson_ratio, valid_from, valid_to) result(text)
@@ -86,44 +59,13 @@ contains
 
       call case%start('fit')
       call case%add(find_group('material'), 0, item)
-      call put(case, item, 'name', word=data%name)
+      call case%set(case%address('material', 'name'), data%name, given=.true.)
       call put_material(case, item, data)
-      if (density > 0.0_wp) call put_number(case, item, 'density', density)
-      call put_number(case, item, 'poisson_ratio', poisson_ratio)
-      call put_number(case, item, 'valid_from', valid_from)
-      call put_number(case, item, 'valid_to', valid_to)
+      if (density > 0.0_wp) call case%set(case%address('material', 'density'), density)
+      call case%set(case%address('material', 'poisson_ratio'), poisson_ratio)
+      call case%set(case%address('material', 'valid_from'), valid_from)
+      call case%set(case%address('material', 'valid_to'), valid_to)
       text = case_text(case, complete=.false., remarks=.true.)
    end function material_text
-
-   !> Set a number
-   subroutine put_number(case, item, key, number)
-      !> The case
-      type(case_t), intent(inout) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The number
-      real(wp), intent(in) :: number
-
-      call case%set(case%address('material', key, item), number)
-   end subroutine put_number
-
-   !> Set a text or a list
-   subroutine put(case, item, key, word, list)
-      !> The case
-      type(case_t), intent(inout) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      !> Name of the key
-      character(len=*), intent(in) :: key
-      !> The text, where the key takes one
-      character(len=*), intent(in), optional :: word
-      !> The list, where the key takes one, shape (n)
-      real(wp), intent(in), optional :: list(:)
-
-      if (present(word)) call case%set(case%address('material', key, item), word, given=.true.)
-      if (present(list)) call case%set(case%address('material', key, item), list, given=.true.)
-   end subroutine put
 
 end module vcor_case_identified

@@ -79,7 +79,6 @@ contains
 
    !> Begin with a text
    pure subroutine new_namelist(self, text, source)
-      !> The namelists
       type(namelist_t), intent(out) :: self
       !> The text; lines end with line feed, carriage return, or both
       character(len=*), intent(in) :: text
@@ -113,7 +112,6 @@ contains
 
    !> Go on from a token to the next one
    pure subroutine go_on(text, token, flaw)
-      !> The text
       character(len=*), intent(in) :: text
       !> The token before; on return the next one
       type(token_t), intent(inout) :: token
@@ -168,7 +166,6 @@ contains
 
    !> Go on to what is neither blank nor comment
    pure subroutine skip_blanks(text, position, line)
-      !> The text
       character(len=*), intent(in) :: text
       !> Byte to look at next
       integer, intent(inout) :: position
@@ -198,7 +195,6 @@ contains
 
    !> Last byte before any of some others
    pure function end_of(text, first, others) result(last)
-      !> The text
       character(len=*), intent(in) :: text
       !> First byte that may be one of them
       integer, intent(in) :: first
@@ -216,7 +212,6 @@ contains
 
    !> Last byte of a text in quotes
    pure function end_of_string(text, first) result(last)
-      !> The text
       character(len=*), intent(in) :: text
       !> Where the quote is that it begins with
       integer, intent(in) :: first
@@ -238,7 +233,6 @@ contains
 
    !> A place in the text, `case.nml:12`
    pure function place(self, line) result(text)
-      !> The namelists
       class(namelist_t), intent(in) :: self
       !> The line
       integer, intent(in) :: line
@@ -351,7 +345,6 @@ contains
 
    !> The values of a text that holds nothing else
    pure subroutine values_in(text, values, message)
-      !> The text
       character(len=*), intent(in) :: text
       !> The values, shape (n)
       type(value_t), allocatable, intent(out) :: values(:)
@@ -422,11 +415,9 @@ contains
 
    !> Whether a word, perhaps a section, and an equals sign follow each other
    pure function is_assignment(self, i) result(yes)
-      !> The namelists
       class(namelist_t), intent(in) :: self
       !> Number of the first token
       integer, intent(in) :: i
-      !> True if they do
       logical :: yes
 
       integer :: after
@@ -440,7 +431,6 @@ contains
 
    !> Split a word such as `3*1.0` into repeat count and value
    pure subroutine split_repeats(text, value)
-      !> The text
       character(len=*), intent(in) :: text
       !> The value; `first` is moved behind the count
       type(value_t), intent(inout) :: value
@@ -460,7 +450,6 @@ contains
 
    !> What was found: the token that comes next, for messages
    pure function shown(self) result(text)
-      !> The namelists
       class(namelist_t), intent(in) :: self
       !> Such as `found 'velocity'`
       character(len=:), allocatable :: text

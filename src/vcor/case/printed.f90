@@ -3,7 +3,7 @@ module vcor_case_printed
    use vcor_kinds, only : wp
    use vcor_buffer, only : buffer_t
    use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
-      & last_row, list_key, logical_key, real_key, row_for_model
+      last_row, list_key, logical_key, real_key, row_for_model
    use vcor_case_case, only : address_t, case_t, entry_t
    use vcor_text, only : integer_text, logical_text, quoted, real_text
    implicit none
@@ -25,7 +25,6 @@ contains
    !> A case as namelists: groups in the order of the catalogue, of a material only the keys of its
    !> model
    pure function case_text(self, complete, remarks) result(text)
-      !> The case
       type(case_t), intent(in) :: self
       !> Whether what was not given is printed with its default; absent: no
       logical, intent(in), optional :: complete
@@ -51,13 +50,11 @@ contains
 
    !> Number of items of a group that are printed
    pure function items_to_print(self, group, all) result(n)
-      !> The case
       type(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
       !> Whether groups that are not in the case are printed
       logical, intent(in) :: all
-      !> The number
       integer :: n
 
       n = self%count(groups(group)%name)
@@ -68,7 +65,6 @@ contains
    pure subroutine print_group(buffer, self, group, item, all, remarks)
       !> Where the lines go
       type(buffer_t), intent(inout) :: buffer
-      !> The case
       type(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
@@ -104,7 +100,6 @@ contains
       character(len=:), allocatable, intent(inout) :: line
       !> The key, of the model of its item
       type(key_t), intent(in) :: key
-      !> Its entry
       type(entry_t), intent(in) :: entry
       integer :: last_line
 
@@ -117,9 +112,7 @@ contains
 
    !> A value as a namelist has it
    pure function value_text(key, entry) result(text)
-      !> The key
       type(key_t), intent(in) :: key
-      !> Its entry
       type(entry_t), intent(in) :: entry
       !> The value; a long list in lines of its own
       character(len=:), allocatable :: text

@@ -96,7 +96,6 @@ contains
 
    !> The impact and the solver of a case; what a sweep varies is as the case has it
    subroutine problem_of_case(self, case, error)
-      !> The problem
       type(problem_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
@@ -166,7 +165,6 @@ contains
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
-      !> The material
       class(material_t), allocatable, intent(out) :: material
       !> Error of code `error_input` that says where its cause stands, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -201,7 +199,6 @@ contains
 
    !> Say in terms of the case what is wrong: where it stands and what was found there
    subroutine explain(case, item, error)
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the material that the error is about, 0: none
       integer, intent(in) :: item
@@ -258,9 +255,7 @@ contains
 
    !> Address of an argument that is called like its key
    pure function address_of(case, name, item) result(address)
-      !> The case
       type(case_t), intent(in) :: case
-      !> Name of the key
       character(len=*), intent(in) :: name
       !> Number of the material it belongs to, 0: it belongs to another group
       integer, intent(in) :: item
@@ -284,7 +279,6 @@ contains
    subroutine describe(body, case, item)
       !> The material, not built
       type(body_t), intent(out) :: body
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
@@ -315,7 +309,6 @@ contains
    subroutine update(self, case, error)
       !> The problem, made of this case
       class(problem_t), intent(inout) :: self
-      !> The case
       type(case_t), intent(in) :: case
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -347,7 +340,6 @@ contains
 
    !> Solve the impact, and judge whether the model holds
    subroutine solve(self, trajectory, outcome, error)
-      !> The problem
       class(problem_t), intent(in) :: self
       !> Course of its impact
       type(trajectory_t), intent(inout) :: trajectory
@@ -366,7 +358,6 @@ contains
    subroutine look_around(self, case)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
-      !> The case
       type(case_t), intent(in) :: case
 
       real(wp) :: yield_strength(2)
@@ -404,7 +395,6 @@ contains
    subroutine launch(self, case, error)
       !> The problem, its contact built
       type(problem_t), intent(inout) :: self
-      !> The case
       type(case_t), intent(in) :: case
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -432,7 +422,6 @@ contains
    subroutine update_solver(self, case, error)
       !> The problem, its impact built
       type(problem_t), intent(inout) :: self
-      !> The case
       type(case_t), intent(in) :: case
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -457,11 +446,8 @@ contains
 
    !> Number at an address, 0 if there is none
    pure function number_or_zero(case, address) result(number)
-      !> The case
       type(case_t), intent(in) :: case
-      !> The address
       type(address_t), intent(in) :: address
-      !> The number
       real(wp) :: number
 
       number = case%number(address)
@@ -472,7 +458,6 @@ contains
    subroutine update_body(body, case, has_changed, error)
       !> The material, described
       type(body_t), intent(inout) :: body
-      !> The case
       type(case_t), intent(in) :: case
       !> Whether the material is another one than before
       logical, intent(out) :: has_changed
@@ -522,7 +507,6 @@ contains
       real(wp), intent(in) :: one(:)
       !> The other, shape (m)
       real(wp), intent(in) :: other(:)
-      !> Whether they are
       logical :: same
 
       same = size(one) == size(other)

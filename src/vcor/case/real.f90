@@ -24,7 +24,6 @@ contains
       character(len=*), intent(in) :: word
       !> What is expected, for the message
       character(len=*), intent(in) :: expected
-      !> The number
       real(wp), intent(out) :: number
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
@@ -41,18 +40,16 @@ contains
          if (is_not_finite(word)) message = message//", finite"
       else if (power > largest_power .or. abs(number) > largest) then
          message = "found "//shortened(word) &
-            & //", which is too large, expected at most 1e300 in magnitude"
+            //", which is too large, expected at most 1e300 in magnitude"
       else if (power < -largest_power .or. (abs(number) > 0.0_wp .and. abs(number) < smallest)) then
          message = "found "//shortened(word) &
-            & //", which is too small, expected 0 or at least 1e-300 in magnitude"
+            //", which is too small, expected 0 or at least 1e-300 in magnitude"
       end if
    end subroutine read_real
 
    !> Whether a word is a number, infinity or not a number
    pure function looks_numeric(word) result(yes)
-      !> The word
       character(len=*), intent(in) :: word
-      !> True if it is
       logical :: yes
       integer :: power
 
@@ -62,7 +59,6 @@ contains
 
    !> Whether a word is a number by Fortran's rules, and how large it is about
    pure subroutine look_at_number(word, good, power)
-      !> The word
       character(len=*), intent(in) :: word
       !> Whether it is sign, digits with or without a point, and perhaps an exponent with its letter
       logical, intent(out) :: good
@@ -103,9 +99,7 @@ contains
 
    !> Whether a word means infinity or not a number
    pure function is_not_finite(word) result(yes)
-      !> The word
       character(len=*), intent(in) :: word
-      !> True if it does
       logical :: yes
       integer :: first
 

@@ -14,7 +14,6 @@ module vcor_case_reliance
    use vcor_material_moduli, only : sampled_times, time_range_t
    use vcor_material_type, only : material_t
    use vcor_case_case, only : case_t
-   use vcor_case_identified, only : put_points, put_solver
    use vcor_case_problem, only : material_of_case, solve_case
    implicit none
    private
@@ -82,11 +81,16 @@ contains
       allocate (moduli(size(times)))
       moduli = material%relaxation(times)
       other = case
-      call put_solver(other, accuracy=0.1_wp*little)
+      call other%set(other%address('solver', 'method'), 'direct', given=.true.)
+      call other%set(other%address('solver', 'scheme'), 'product', given=.true.)
+      call other%set(other%address('solver', 'accuracy'), 0.1_wp*little)
+      call other%unset(other%address('solver', 'time_step'))
       call solve_case(other, free, error)
       if (allocated(error) .or. free%status /= contact_separated) return
       reliance%cor = free%cor
-      call put_points(other, item, times, moduli)
+      call other%set(other%address('material', 'model', item), 'table', given=.true.)
+      call other%set(other%address('material', 'times', item), times, given=.true.)
+      call other%set(other%address('material', 'moduli', item), moduli, given=.true.)
       call solve_case(other, held, error)
       reliance%solved = .not. allocated(error)
       if (reliance%solved) reliance%solved = held%status == contact_separated

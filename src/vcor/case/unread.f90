@@ -51,9 +51,7 @@ contains
 
    !> Why a value that was set has no effect: a sweep gives others
    pure function why_varied(case, address, origin) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
-      !> Where it stands
       type(address_t), intent(in) :: address
       !> Where it comes from; the number of an element stands in it
       character(len=*), intent(in) :: origin
@@ -78,9 +76,7 @@ contains
 
    !> Why a value that was set is not read
    pure function why_set_unread(case, address) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
-      !> Where it stands
       type(address_t), intent(in) :: address
       !> The reason, empty where it is read
       character(len=:), allocatable :: reason
@@ -99,7 +95,6 @@ contains
    pure function why_unread(case, address) result(reason)
       !> A case, each entry of which is within its range, and whose bodies have materials
       type(case_t), intent(in) :: case
-      !> Where it stands
       type(address_t), intent(in) :: address
       !> The reason, empty where the key is read
       character(len=:), allocatable :: reason
@@ -160,7 +155,6 @@ contains
 
    !> Group and key in one word
    pure function group_and_key(address) result(word)
-      !> The address
       type(address_t), intent(in) :: address
       !> Such as `sphere.radius`
       character(len=len(groups%name) + 1 + len(catalogue%name)) :: word
@@ -170,7 +164,6 @@ contains
 
    !> Why the plate stays where it is
    pure function why_plate_rests(case) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
       !> The reason, empty where the plate moves
       character(len=:), allocatable :: reason
@@ -188,7 +181,6 @@ contains
 
    !> Why there are no two bodies that combine in one way or another
    pure function why_no_pair(case) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
       !> The reason, empty where there are
       character(len=:), allocatable :: reason
@@ -208,7 +200,6 @@ contains
 
    !> Why a material has no part in an impact
    pure function why_material_is_unread(case, item) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
@@ -222,7 +213,6 @@ contains
 
    !> Why the density of the material of a body has no part in an impact
    pure function why_weightless(case, item) result(reason)
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
@@ -247,7 +237,6 @@ contains
 
    !> Number of the material of a body
    pure function body_item(case, body) result(item)
-      !> The case
       type(case_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: body
@@ -262,7 +251,6 @@ contains
 
    !> Model of the material of a body
    pure function body_model(case, body) result(model)
-      !> The case
       type(case_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: body

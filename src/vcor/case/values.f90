@@ -3,12 +3,11 @@ module vcor_case_values
    use vcor_case_case, only : entry_t
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
       wanted
-   use vcor_case_name, only : control_in
    use vcor_case_namelist, only : value_t, values_in
    use vcor_case_real, only : looks_numeric, read_real
    use vcor_interval, only : contains_number, is_computable
    use vcor_kinds, only : wp
-   use vcor_text, only : integer_text, is_utf8, lower, quoted, real_text, shortened
+   use vcor_text, only : control_in, integer_text, is_utf8, lower, quoted, real_text, shortened
    use vcor_words, only : contains_word, nearest_name, spelled
    implicit none
    private
@@ -25,7 +24,6 @@ contains
 
    !> Convert the value of a command line option, where a text may stand without quotes
    subroutine convert_text(key, text, entry, message)
-      !> The key
       type(key_t), intent(in) :: key
       !> The value or values
       character(len=*), intent(in) :: text
@@ -47,7 +45,6 @@ contains
 
    !> Convert the values of a statement
    subroutine convert(key, text, values, entry, message)
-      !> The key
       type(key_t), intent(in) :: key
       !> The text the values stand in
       character(len=*), intent(in) :: text
@@ -96,7 +93,6 @@ contains
 
    !> Convert a list of numbers
    subroutine convert_list(key, text, values, list, message)
-      !> The key
       type(key_t), intent(in) :: key
       !> The text the values stand in
       character(len=*), intent(in) :: text
@@ -141,7 +137,6 @@ contains
       type(key_t), intent(in) :: key
       !> The integer as it is written
       character(len=*), intent(in) :: word
-      !> The integer
       real(wp), intent(out) :: number
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message
@@ -219,13 +214,11 @@ contains
 
    !> What to say about more than one value where one is expected
    pure function too_many(key, text, values) result(message)
-      !> The key
       type(key_t), intent(in) :: key
       !> The text the values stand in
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
-      !> The message
       character(len=:), allocatable :: message
 
       integer, parameter :: most_shown = 8
@@ -254,7 +247,6 @@ contains
 
    !> What to say about a word that is a number and a unit
    pure function unit_behind(key, word) result(hint)
-      !> The key
       type(key_t), intent(in) :: key
       !> Such as `70GPa`
       character(len=*), intent(in) :: word
@@ -269,7 +261,6 @@ contains
 
    !> What to say about a number with a unit
    pure function unit_hint(key, number, unit) result(hint)
-      !> The key
       type(key_t), intent(in) :: key
       !> The number as it is written
       character(len=*), intent(in) :: number
@@ -299,7 +290,6 @@ contains
    pure function range_message(key, entry) result(message)
       !> The key, of the model of the entry's item
       type(key_t), intent(in) :: key
-      !> The entry
       type(entry_t), intent(in) :: entry
       !> Found and expected; empty when nothing is wrong
       character(len=:), allocatable :: message

@@ -45,7 +45,6 @@ module vcor_fit_law_problem
 
    !> The problem for MINPACK; its unknowns are the logarithms of the parameters that are free
    type, extends(least_squares_t) :: law_problem_t
-      !> Name of the model
       character(len=:), allocatable :: model
       type(samples_t) :: samples
       !> What the model states of its parameters, shape (parameters)

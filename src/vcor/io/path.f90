@@ -7,8 +7,7 @@ module vcor_io_path
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_posix, only : all_permissions, c_mkdir, c_text, file_at, file_id_t, folder, &
       last_errno, nothing_there, plain_file, same_file_id, system_reason
-   use vcor_case_name, only : name_flaw
-   use vcor_text, only : is_control, printable
+   use vcor_text, only : is_control, name_flaw, printable
    implicit none
    private
 
@@ -196,7 +195,7 @@ contains
    subroutine check_name(path, error)
       !> Path to check
       character(len=*), intent(in) :: path
-      !> Set if it may not, see `vcor_case_name`
+      !> Set if it may not, see `name_flaw`
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: flaw
 

@@ -15,9 +15,8 @@ module vcor_sweep_sweep
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
       trajectory_t
    use vcor_kinds, only : wp
-   use vcor_case_axes, only : new_grid
    use vcor_case_case, only : case_t
-   use vcor_case_grid, only : axis_t, grid_t
+   use vcor_case_grid, only : axis_t, grid_t, new_grid
    use vcor_interval, only : contains_number, interval_t
    use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_problem, only : problem_of_case, problem_t

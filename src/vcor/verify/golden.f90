@@ -111,7 +111,6 @@ contains
    pure function material(number) result(data)
       !> Number, 1 .. 4
       integer, intent(in) :: number
-      !> Description
       type(material_data_t) :: data
 
       select case (number)

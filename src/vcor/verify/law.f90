@@ -167,7 +167,6 @@ contains
    !> Outcomes of the impacts of a check; none if one of them fails or does not end in separation
    subroutine solve_check(check, method, outcomes)
       type(check_t), intent(in) :: check
-      !> Number of the method
       integer, intent(in) :: method
       type(outcome_t), allocatable, intent(out) :: outcomes(:)
 

@@ -139,7 +139,6 @@ contains
    !> Note what is wrong, the first time
    pure subroutine object(self, objection)
       type(comparison_t), intent(inout) :: self
-      !> One line
       character(len=*), intent(in) :: objection
 
       if (.not. allocated(self%objection)) self%objection = objection
