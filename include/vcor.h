@@ -66,6 +66,7 @@ typedef struct {
    char meaning[128];
    char labels[512];   /* words that the numbers of the column stand for, blanks between them; or empty */
    int first;          /* number of the first word */
+   int is_whole;       /* whether its numbers are whole */
 } vcor_column;
 
 /* Version of the library */
@@ -85,6 +86,10 @@ int vcor_set(vcor_case *self, const char *address, const char *value, vcor_error
 
 /* Value at an address as a namelist has it, given or by default; `*value` is NULL if there is none */
 int vcor_get(const vcor_case *self, const char *address, char **value, vcor_error *error);
+
+/* Path, unit and meaning of an address */
+int vcor_describe(const vcor_case *self, const char *address, vcor_column *column,
+                  vcor_error *error);
 
 /* The case as namelists; with `complete` also every default. The case is checked first. */
 int vcor_case_text(const vcor_case *self, int complete, char **text,

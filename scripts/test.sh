@@ -111,7 +111,10 @@ with_cmake debug -DVCOR_BENCHMARKS=OFF
 with_cmake mpi -DVCOR_BENCHMARKS=OFF -DCMAKE_Fortran_FLAGS_RELEASE=-O1
 with_fpm
 
-begin "linter"
+begin "linters"
 "$venv/bin/fortitude" check
+"$venv/bin/ruff" check python
+"$venv/bin/ruff" format --check python
+(cd python && "$venv/bin/mypy")
 
 begin "end"

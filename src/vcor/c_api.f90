@@ -37,8 +37,8 @@ module vcor_c_api
    private
 
    public :: c_error_t, c_column_t
-   public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_case_text, &
-      vcor_column_of, vcor_axis, vcor_solve, vcor_history, vcor_relaxation, vcor_complex_modulus, &
+   public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
+      vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, vcor_relaxation, vcor_complex_modulus, &
       vcor_verify
 
    !> `vcor_error`
@@ -63,6 +63,8 @@ module vcor_c_api
       character(kind=c_char) :: labels(512)
       !> Number of the first word
       integer(c_int) :: first
+      !> 1 if its numbers are whole
+      integer(c_int) :: is_whole
    end type c_column_t
 
    !> What `vcor_case` points at
@@ -77,6 +79,8 @@ module vcor_c_api
 
    !> Tables of `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
+   !> What ends each address of `built_for`
+   character(len=*), parameter :: line_end = new_line('a')
    !> The version for C
    character(kind=c_char), target :: version_text(len(version) + 1) = ' '
    !> Process that has solved on several threads, 0: none
@@ -186,7 +190,11 @@ contains
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call override(handle%case, fortran(address)//'='//fortran(value), trouble)
-      if (allocated(handle%built_for)) deallocate (handle%built_for)
+      if (allocated(handle%built_for)) then
+         ! points bring their own values of the addresses that it was built for
+         if (index(line_end//handle%built_for, line_end//fortran(address)//line_end) == 0) &
+            deallocate (handle%built_for)
+      end if
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
    end function vcor_set
@@ -227,6 +235,38 @@ contains
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
    end function vcor_get
+
+   !> Path, unit and meaning of an address
+   function vcor_describe(self, address, column, error) bind(c) result(code)
+      !> The case
+      type(c_ptr), value :: self
+      !> Where
+      type(c_ptr), value :: address
+      !> What it is
+      type(c_column_t), intent(out) :: column
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(handle_t), pointer :: handle
+      type(error_t), allocatable :: trouble
+      type(address_t) :: place
+      character(len=:), allocatable :: message
+
+      call c_f_pointer(self, handle)
+!$omp critical (vcor_c_api)
+      call resolve(handle%case, fortran(address), place, message)
+      if (allocated(message)) then
+         call raise(trouble, error_usage, shortened(fortran(address))//': '//message)
+      else
+         associate (key => catalogue(max(place%row, handle%case%row(place))))
+            call put_column(column, handle%case%path(place), key%unit, key%meaning)
+         end associate
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_describe
 
    !> The case as namelists
    function vcor_case_text(self, complete, text, error) bind(c) result(code)
@@ -283,9 +323,11 @@ contains
       if (found > 0) then
          associate (quantity => list(index + 1))
             call put_column(column, quantity%name, quantity%unit, quantity%meaning)
+            if (quantity%labels /= '') call put_text('', column%unit)
             call put_text(trim(quantity%symbol), column%symbol)
             call put_text(trim(adjustl(quantity%labels)), column%labels)
             column%first = quantity%first
+            column%is_whole = merge(1_c_int, 0_c_int, quantity%is_whole)
          end associate
       end if
 !$omp end critical (vcor_c_api)
@@ -362,14 +404,16 @@ contains
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
+      type(quantity_t), allocatable :: list(:)
       integer(c_int) :: current
       integer :: places(k), team, i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
+      allocate (list, source=quantities())
       do i = 1, k
-         places(i) = quantity_place(fortran(columns(i)))
+         places(i) = findloc(list%name == fortran(columns(i)), .true., dim=1)
          if (places(i) > 0) cycle
          call raise(trouble, error_usage, "unknown name '"//shortened(fortran(columns(i))) &
             //"'; "//suggestion(fortran(columns(i)), quantity_names()))
@@ -542,8 +586,10 @@ contains
       call build(handle, none, nothing, trouble)
       case = handle%case
       if (.not. allocated(trouble)) call read_data(case, trouble)
-      if (.not. allocated(trouble)) &
+      if (.not. allocated(trouble)) then
          call compare(case, handle%sweep%problem%impact, comparison, trouble)
+         if (allocated(trouble)) trouble%message = case%source//': '//trouble%message
+      end if
       if (.not. allocated(trouble)) then
          do i = 1, size(compared_names)
             if (.not. comparison%separated) exit
@@ -580,7 +626,7 @@ contains
 
       list = ''
       do i = 1, size(addresses)
-         list = list//fortran(addresses(i))//new_line('a')
+         list = list//fortran(addresses(i))//line_end
       end do
       if (allocated(handle%built_for)) then
          if (handle%built_for == list) return
@@ -590,7 +636,16 @@ contains
       allocate (own, source=swept_addresses(case))
       do i = 1, size(addresses)
          call resolve(case, fortran(addresses(i)), address, message)
-         if (any(own == address) .and. .not. allocated(message)) cycle
+         if (.not. allocated(message)) then
+            if (any(own == address)) cycle
+            ! a value that was set has no say in a point that brings its own
+            entry = case%entry(address)
+            if (allocated(entry%origin) .and. address%element == 0) then
+               deallocate (entry%origin)
+               call case%set(address, entry)
+            end if
+            entry = entry_t()
+         end if
          ! the &sweep group that a file would have; its values come later
          call case%add(find_group('sweep'), 0, item)
          entry%given = .true.
@@ -746,9 +801,11 @@ contains
       call put_text(trim(name), column%name)
       call put_text('', column%symbol)
       call put_text(trim(unit), column%unit)
+      if (unit == '') call put_text('1', column%unit)
       call put_text(trim(meaning), column%meaning)
       call put_text('', column%labels)
       column%first = 0
+      column%is_whole = 0
    end subroutine put_column
 
    !> A text into room of C, cut if it does not fit

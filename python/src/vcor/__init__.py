@@ -1,0 +1,30 @@
+"""Coefficient of restitution of viscoelastic spheres and plates.
+
+All numbers are in SI units; results are `xarray.Dataset` objects with units in their attributes.
+"""
+
+from ._library import (
+    Error,
+    FileError,
+    InputError,
+    NoResultWarning,
+    NumericalError,
+    UsageError,
+    __version__,
+)
+from .case import Case, Material, read
+from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
+
+__all__ = [
+    "Case",
+    "Error",
+    "FileError",
+    "InputError",
+    "Material",
+    "NoResultWarning",
+    "NumericalError",
+    "UsageError",
+    "__version__",
+    "open",
+    "read",
+]

@@ -1,0 +1,277 @@
+"""The shared library: its functions as include/vcor.h declares them, errors and columns."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+from collections.abc import Sequence
+from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Error(Exception):
+    """An error of vcor; its text is the line of the program, `code` the program's exit code."""
+
+    code = 1
+    #: What there is of a result: the summary of an impact that does not separate, else None
+    result: Any = None
+
+
+class InputError(Error, ValueError):
+    """The case or a data file is wrong."""
+
+    code = 3
+
+
+class UsageError(InputError, LookupError):
+    """An address, a column or a material of this name does not exist."""
+
+    code = 2
+
+
+class FileError(Error, OSError):
+    """A file cannot be read or written."""
+
+    code = 4
+
+
+class NumericalError(Error, ArithmeticError):
+    """There is no result to be trusted."""
+
+    code = 5
+
+
+_KINDS = {kind.code: kind for kind in (UsageError, InputError, FileError, NumericalError)}
+
+
+class NoResultWarning(UserWarning):
+    """Some points of a sweep have no result."""
+
+
+class _ErrorStruct(Structure):
+    _fields_ = [("code", c_int), ("message", c_char * 2048)]
+
+
+class _ColumnStruct(Structure):
+    _fields_ = [
+        ("name", c_char * 256),
+        ("symbol", c_char * 16),
+        ("unit", c_char * 32),
+        ("meaning", c_char * 128),
+        ("labels", c_char * 512),
+        ("first", c_int),
+        ("is_whole", c_int),
+    ]
+
+
+class Column(NamedTuple):
+    """A column of a table, or what an address is."""
+
+    name: str
+    symbol: str
+    unit: str
+    meaning: str
+    #: Words that the numbers stand for, empty for numbers
+    labels: tuple[str, ...]
+    #: Number of the first word
+    first: int
+    #: Whether the numbers are whole
+    is_whole: bool = False
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """Attributes of a variable."""
+        attrs = {"units": self.unit} if self.unit else {}
+        return attrs | {"long_name": self.meaning}
+
+    def values(self, numbers: Floats) -> NDArray[Any]:
+        """Values as they are shown: numbers, or the words that they stand for."""
+        if self.labels:
+            words: NDArray[Any] = np.array(self.labels)[numbers.astype(int) - self.first]
+            return words
+        return numbers.astype(np.int64) if self.is_whole else numbers
+
+
+def _find_library() -> Path:
+    """The library beside this file, or where the variable VCOR_LIBRARY says."""
+    if "VCOR_LIBRARY" in os.environ:
+        return Path(os.environ["VCOR_LIBRARY"])
+    path = Path(__file__).parent / "lib" / "libvcor.so"
+    if not path.exists():
+        raise ImportError(f"{path} is missing: install the package with pip, or set VCOR_LIBRARY")
+    return path
+
+
+_library = ctypes.CDLL(str(_find_library()))
+_free = ctypes.CDLL(None).free
+_free.argtypes = [c_void_p]
+_doubles = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
+_texts = POINTER(c_char_p)
+_ARGUMENTS: dict[str, list[Any]] = {
+    "vcor_read": [c_char_p, c_char_p, POINTER(c_void_p)],
+    "vcor_set": [c_void_p, c_char_p, c_char_p],
+    "vcor_get": [c_void_p, c_char_p, POINTER(c_void_p)],
+    "vcor_describe": [c_void_p, c_char_p, POINTER(_ColumnStruct)],
+    "vcor_case_text": [c_void_p, c_int, POINTER(c_void_p)],
+    "vcor_axis": [c_void_p, c_int, POINTER(_ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
+    "vcor_solve": [
+        c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
+    ],
+    "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
+    "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
+    "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
+    "vcor_verify": [c_void_p, _doubles],
+}  # fmt: skip
+for _name, _types in _ARGUMENTS.items():
+    getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]
+_library.vcor_free.argtypes = [c_void_p]
+_library.vcor_column_of.argtypes = [c_int, c_int, POINTER(_ColumnStruct)]
+_library.vcor_library_version.restype = c_char_p
+
+__version__: str = _library.vcor_library_version().decode()
+
+
+def _call(name: str, *arguments: Any) -> str:
+    """Call a function of the library; its remark, if it has one."""
+    error = _ErrorStruct()
+    code = getattr(_library, name)(*arguments, byref(error))
+    message: str = error.message.decode(errors="replace")
+    if code:
+        raise _KINDS.get(code, Error)(message)
+    return message
+
+
+def _column(struct: _ColumnStruct) -> Column:
+    return Column(
+        struct.name.decode(),
+        struct.symbol.decode(),
+        struct.unit.decode(),
+        struct.meaning.decode(),
+        tuple(struct.labels.decode().split()),
+        struct.first,
+        bool(struct.is_whole),
+    )
+
+
+def _take_text(pointer: c_void_p) -> str | None:
+    """A text of the library, which is released."""
+    if not pointer:
+        return None
+    try:
+        return ctypes.string_at(pointer).decode()
+    finally:
+        _free(pointer)
+
+
+def _take_numbers(pointer: c_void_p, n: int) -> Floats:
+    """Numbers of the library, which are released."""
+    try:
+        return np.array(ctypes.cast(pointer, POINTER(c_double))[:n])
+    finally:
+        _free(pointer)
+
+
+def _c_texts(texts: Sequence[str]) -> Any:
+    return (c_char_p * len(texts))(*[text.encode() for text in texts])
+
+
+@functools.cache
+def columns(table: int) -> dict[str, Column]:
+    """Columns of a table by name: 0 the summary, 1 a history, 2 what is compared by verify."""
+    found: dict[str, Column] = {}
+    struct = _ColumnStruct()
+    while _library.vcor_column_of(table, len(found), byref(struct)):
+        column = _column(struct)
+        found[column.name] = column
+    return found
+
+
+class Handle:
+    """A case of the library."""
+
+    def __init__(self, text: str | None, name: str) -> None:
+        self._case = c_void_p()
+        data = None if text is None else text.encode()
+        _call("vcor_read", data, os.fsencode(name), byref(self._case))
+
+    def __del__(self) -> None:
+        if getattr(self, "_case", None):
+            _library.vcor_free(self._case)
+            self._case = c_void_p()
+
+    def set(self, address: str, value: str) -> None:
+        """Set a value, written as in a namelist."""
+        _call("vcor_set", self._case, address.encode(), value.encode())
+
+    def get(self, address: str) -> str | None:
+        """Value as a namelist has it, None if there is none."""
+        text = c_void_p()
+        _call("vcor_get", self._case, address.encode(), byref(text))
+        return _take_text(text)
+
+    def describe(self, address: str) -> Column:
+        """Path, unit and meaning of an address."""
+        struct = _ColumnStruct()
+        _call("vcor_describe", self._case, address.encode(), byref(struct))
+        return _column(struct)
+
+    def text(self, complete: bool) -> str:
+        """The case as namelists."""
+        text = c_void_p()
+        _call("vcor_case_text", self._case, int(complete), byref(text))
+        return _take_text(text) or ""
+
+    def axes(self) -> dict[str, Floats]:
+        """Addresses that the case varies, with their values."""
+        axes: dict[str, Floats] = {}
+        struct, n, values = _ColumnStruct(), c_int(), c_void_p()
+        while True:
+            _call("vcor_axis", self._case, len(axes), byref(struct), byref(n), byref(values))
+            if not values:
+                return axes
+            axes[_column(struct).name] = _take_numbers(values, n.value)
+
+    def solve(
+        self, addresses: Sequence[str], values: Floats, names: Sequence[str], threads: int
+    ) -> tuple[Floats, str]:
+        """Columns of points, shape (points, names), and a remark on points without a result."""
+        results = np.empty((len(values), len(names)))
+        m, k = len(addresses), len(names)
+        remark = _call(
+            "vcor_solve", self._case, m, _c_texts(addresses), len(values),
+            np.ascontiguousarray(values), k, _c_texts(names), results, threads,
+        )  # fmt: skip
+        return results, remark
+
+    def history(self) -> Floats:
+        """Columns of the history, shape (columns, times)."""
+        rows, values = c_int(), c_void_p()
+        _call("vcor_history", self._case, byref(rows), byref(values))
+        k = len(columns(1))
+        return _take_numbers(values, rows.value * k).reshape(rows.value, k).T
+
+    def relaxation(self, material: str, times: Floats) -> Floats:
+        """Relaxation modulus [Pa]."""
+        moduli = np.empty_like(times)
+        _call("vcor_relaxation", self._case, material.encode(), times.size, times, moduli)
+        return moduli
+
+    def complex_modulus(self, material: str, frequencies: Floats) -> NDArray[np.complex128]:
+        """Complex modulus [Pa]."""
+        storage, loss = np.empty_like(frequencies), np.empty_like(frequencies)
+        n = frequencies.size
+        _call("vcor_complex_modulus", self._case, material.encode(), n, frequencies, storage, loss)
+        return storage + 1j * loss
+
+    def verify(self) -> Floats:
+        """Best value, internal variables, product integration, digits; shape (quantities, 4)."""
+        results = np.empty((len(columns(2)), 4))
+        _call("vcor_verify", self._case, results)
+        return results

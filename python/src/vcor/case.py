@@ -1,0 +1,505 @@
+"""Cases: read, changed and solved."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+import warnings
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from . import _library
+from ._library import Error, Floats, Handle, InputError, NoResultWarning, NumericalError
+
+Value = bool | int | float | str | Sequence[float]
+Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
+
+#: Time that a call of the library should take [s]: what Ctrl-C waits for
+_CHUNK_TIME = 0.3
+#: Status of a point whose values make no impact
+_INVALID = 3
+#: Sweeps that take longer show a progress bar in a terminal [s]
+_BAR_DELAY = 1.0
+
+
+def read(path: str | os.PathLike[str]) -> Case:
+    """Read a case file.
+
+    Parameters
+    ----------
+    path
+        The file; data files that it names are relative to its folder.
+
+    Returns
+    -------
+    Case
+        The case. What it says is checked when it is used, so that values can be set first.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read.
+    InputError
+        It is no case.
+    """
+    return Case(None, name=os.fspath(path))
+
+
+class Case:
+    """One impact, or a sweep, as a case file describes it.
+
+    `case["impact.velocity"]` is the value at an address, in SI units; addresses are those of
+    `--set`: `group.key`, `material_name.key`, `material_name.moduli(2)`.
+
+    Parameters
+    ----------
+    source
+        The text of a case file, or its groups as a mapping, such as
+        `{"impact": {"velocity": 10.0}, "material": [{"name": "steel", ...}, ...]}`.
+        A group of which there are several is a sequence. None: the file `name` is read.
+    name
+        Name for messages; data files are relative to its folder.
+
+    Raises
+    ------
+    InputError
+        The text is no case: an unknown key, say. The message names the line.
+    """
+
+    def __init__(self, source: str | Groups | None, *, name: str = "case.nml") -> None:
+        text = source if source is None or isinstance(source, str) else _namelists(source)
+        self.name = name
+        self._handle = Handle(text, name)
+        if text is None:
+            text = Path(name).read_text(encoding="utf-8", errors="surrogateescape")
+        self._text = text
+        self._settings: dict[str, str] = {}
+        self._numbers: dict[str, float] = {}
+
+    def __setitem__(self, address: str, value: Value) -> None:
+        """Set a value; what the impact does not read is refused when it is solved."""
+        written = _written(value) if not isinstance(value, str) else value
+        self._handle.set(address, written)
+        self._settings[address] = written
+        self._numbers.pop(address, None)
+        if isinstance(value, float):
+            self._numbers[address] = value
+
+    def __getitem__(self, address: str) -> Value | None:
+        """Value at an address, given or by default; None if there is none."""
+        text = self._handle.get(address)
+        return None if text is None else _value(text)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle: the text and what was set; data files stay where they are."""
+        return _restored, (self._text, str(Path(self.name).absolute()), self.name, self._settings)
+
+    def __str__(self) -> str:
+        """The case as namelists, what was given."""
+        return self.text()
+
+    def __repr__(self) -> str:
+        return f"<vcor.Case {self.name!r}>"
+
+    def copy(self) -> Case:
+        """Another case of the same values."""
+        return _restored(self._text, self.name, self.name, self._settings)
+
+    def text(self, *, complete: bool = False) -> str:
+        """The case as namelists, with `complete` also every default; the case is checked."""
+        return self._handle.text(complete)
+
+    def save(self, path: str | os.PathLike[str], *, complete: bool = False) -> None:
+        """Write the case to a file that the program reads."""
+        Path(path).write_text(self.text(complete=complete), encoding="utf-8")
+
+    def material(self, name: str) -> Material:
+        """Material of the case by its name."""
+        return Material(self, name)
+
+    def run(self, *, threads: int | None = None, progress: bool | None = None) -> xr.Dataset:
+        """Solve the case.
+
+        Parameters
+        ----------
+        threads
+            Threads for a case with &sweep groups; None: what the batch system, OMP_NUM_THREADS or
+            the affinity of the process allows.
+        progress
+            Whether to show a bar; None: in a terminal or notebook, if it takes more than a second.
+
+        Returns
+        -------
+        xarray.Dataset
+            The summary, as in the files of the program: numbers of a single impact, or an array
+            over the parameters that the case varies. `attrs["units"]` has the unit of each.
+
+        Raises
+        ------
+        NumericalError
+            A single impact has no result. If it sticks, or does not separate within end_time, the
+            summary is in the attribute `result`.
+        """
+        axes = self._handle.axes()
+        if axes:
+            return self.sweep(axes, threads=threads, progress=progress)
+        names = list(_library.columns(0))
+        try:
+            values, _ = self._handle.solve([], np.empty((1, 0)), names, 1)
+        except Error as error:
+            if isinstance(error, NumericalError):
+                error.result = self._without_result(names)
+            raise
+        return self._dataset(names, values, (), {}, ())
+
+    def solve(
+        self,
+        values: Mapping[str, float] | None = None,
+        quantities: Sequence[str] | None = None,
+    ) -> dict[str, float | str]:
+        """Solve one impact, for loops: plain numbers, about 30 us more than the solver takes.
+
+        Parameters
+        ----------
+        values
+            Values at some addresses for this time only, in SI units. Cheaper than setting them.
+        quantities
+            Columns of the summary; None: all.
+
+        Returns
+        -------
+        dict
+            Number of each quantity, in SI units; texts such as `status` as words.
+
+        Raises
+        ------
+        NumericalError
+            There is no result.
+        InputError
+            The values make no impact.
+        """
+        columns = _library.columns(0)
+        names = list(columns if quantities is None else quantities)
+        # numbers that were set go in as those of a point: nothing is checked and built anew then
+        point = self._numbers if values is None else values
+        remark = ""
+        if point:
+            row = np.array([[float(value) for value in point.values()]])
+            try:
+                found, remark = self._handle.solve(list(point), row, [*names, "status"], 1)
+            except Error:
+                if values is not None:
+                    raise
+                remark = "see the case itself"
+            if remark and values is not None:
+                kind = InputError if found[0, -1] == _INVALID else NumericalError
+                raise kind(f"{self.name}: {_reason(remark)}")
+        if not point or remark:
+            found, _ = self._handle.solve([], np.empty((1, 0)), names, 1)
+        return {name: columns[name].values(found[:, i])[0].item() for i, name in enumerate(names)}
+
+    def points(
+        self,
+        values: Mapping[str, ArrayLike],
+        quantities: Sequence[str] | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool | None = None,
+    ) -> xr.Dataset:
+        """Solve a list of points: point i has value i of each address.
+
+        Parameters
+        ----------
+        values
+            Values at addresses in SI units, each of shape (n,) or a number for all points.
+        quantities
+            Columns of the summary; None: all.
+        threads, progress
+            As for `run`.
+
+        Returns
+        -------
+        xarray.Dataset
+            The columns over the dimension `point`. A point without a result has nan and a `status`
+            that says why; a `NoResultWarning` says how many there are. Ctrl-C ends the computation.
+        """
+        arrays = np.broadcast_arrays(*[np.asarray(v, dtype=float) for v in values.values()])
+        if not arrays or arrays[0].ndim > 1:
+            raise InputError("expected at least one address, with values of one dimension")
+        columns = [np.atleast_1d(array) for array in arrays]
+        names = list(_library.columns(0) if quantities is None else quantities)
+        table = np.stack(columns, axis=1)
+        results = self._solve_all(list(values), table, names, threads, progress)
+        coords = {
+            address: ("point", column) for address, column in zip(values, columns, strict=True)
+        }
+        return self._dataset(names, results, ("point",), coords, (len(table),))
+
+    def sweep(
+        self,
+        values: Mapping[str, ArrayLike],
+        quantities: Sequence[str] | None = None,
+        *,
+        threads: int | None = None,
+        progress: bool | None = None,
+    ) -> xr.Dataset:
+        """Solve all combinations of values, a labelled cube.
+
+        Parameters
+        ----------
+        values
+            Values at addresses in SI units, each of shape (n_i,); the last one varies fastest.
+        quantities
+            Columns of the summary; None: all.
+        threads, progress
+            As for `run`.
+
+        Returns
+        -------
+        xarray.Dataset
+            The columns over a dimension for each address, named by it. Otherwise as `points`.
+        """
+        axes = {address: np.atleast_1d(np.asarray(v, dtype=float)) for address, v in values.items()}
+        if not axes or any(axis.ndim > 1 for axis in axes.values()):
+            raise InputError("expected at least one address, with values of one dimension")
+        grid = np.meshgrid(*axes.values(), indexing="ij")
+        table = np.stack([axis.ravel() for axis in grid], axis=1)
+        names = list(_library.columns(0) if quantities is None else quantities)
+        results = self._solve_all(list(axes), table, names, threads, progress)
+        coords = {address: (address, axis) for address, axis in axes.items()}
+        return self._dataset(names, results, tuple(axes), coords, grid[0].shape)
+
+    def history(self) -> xr.Dataset:
+        """History of a single impact.
+
+        Returns
+        -------
+        xarray.Dataset
+            Indentation, force and so on over `time`, as in the files of the program; also of an
+            impact that sticks or does not separate.
+
+        Raises
+        ------
+        NumericalError
+            The solution failed.
+        InputError
+            The case is wrong, or a sweep.
+        """
+        columns = list(_library.columns(1).values())
+        values = self._handle.history()
+        variables = {
+            column.name: ("time", row, column.attrs)
+            for column, row in zip(columns, values, strict=True)
+        }
+        time_axis = variables.pop("time")
+        return xr.Dataset(variables, coords={"time": time_axis}, attrs=self._attrs())
+
+    def verify(self) -> xr.Dataset:
+        """Solve the case by all methods and compare them, as `vcor verify CASE` does.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over the dimension `quantity`: the most accurate value (`best`), that by internal
+            variables (`ive`), that by product integration extrapolated (`direct`), and the number
+            of digits that can be trusted (`digits`).
+
+        Raises
+        ------
+        NumericalError
+            The methods contradict each other, or none has a result.
+        """
+        values = self._handle.verify()
+        columns = _library.columns(2)
+        names = ("best", "ive", "direct", "digits")
+        return xr.Dataset(
+            {name: ("quantity", values[:, i]) for i, name in enumerate(names)},
+            coords={
+                "quantity": list(columns),
+                "units": ("quantity", [column.unit for column in columns.values()]),
+            },
+            attrs=self._attrs(),
+        )
+
+    def _solve_all(
+        self,
+        addresses: list[str],
+        table: Floats,
+        names: list[str],
+        threads: int | None,
+        progress: bool | None,
+    ) -> Floats:
+        """Solve points in parts that take a moment each, for the bar and Ctrl-C."""
+        if threads is None:
+            threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
+        results = np.empty((len(table), len(names)))
+        remarks = []
+        length, start = 64, 0
+        with _bar(len(table), progress) as bar:
+            while start < len(table):
+                part = slice(start, start + length)
+                begin = time.perf_counter()
+                results[part], remark = self._handle.solve(addresses, table[part], names, threads)
+                elapsed = time.perf_counter() - begin
+                if remark:
+                    remarks.append(remark)
+                bar.update(min(length, len(table) - start))
+                start += length
+                length = max(16, min(4 * length, int(length * _CHUNK_TIME / max(elapsed, 1e-6))))
+        if remarks:
+            lost = sum(int(remark.split(" ", 1)[0]) for remark in remarks)
+            warnings.warn(
+                f"{self.name}: {lost} of {len(table)} points have no result, the first one: "
+                f"{_reason(remarks[0])}",
+                NoResultWarning,
+                stacklevel=3,
+            )
+        return results
+
+    def _dataset(
+        self,
+        names: list[str],
+        values: Floats,
+        dims: tuple[str, ...],
+        coords: Mapping[str, tuple[str, Floats]],
+        shape: tuple[int, ...],
+    ) -> xr.Dataset:
+        """Columns as a Dataset."""
+        columns = _library.columns(0)
+        variables = {
+            name: (
+                dims,
+                columns[name].values(values[:, i]).reshape(shape),
+                columns[name].attrs,
+            )
+            for i, name in enumerate(names)
+        }
+        described = {
+            address: (dim, axis, self._handle.describe(address).attrs)
+            for address, (dim, axis) in coords.items()
+        }
+        return xr.Dataset(variables, coords=described, attrs=self._attrs())
+
+    def _attrs(self) -> dict[str, str]:
+        """What the program writes at the root of a file."""
+        return {
+            "program": "vcor",
+            "version": _library.__version__,
+            "title": str(self["case.title"]),
+            "case": self.text(complete=True),
+        }
+
+    def _without_result(self, names: list[str]) -> xr.Dataset | None:
+        """Summary of an impact without a result: nan, and the status."""
+        address = "impact.velocity"
+        point = np.array([[self[address]]], dtype=float)
+        values, _ = self._handle.solve([address], point, names, 1)
+        return self._dataset(names, values, (), {}, ())
+
+
+class Material:
+    """A material of a case.
+
+    Parameters
+    ----------
+    case
+        The case; changes of its values count.
+    name
+        Name of the material.
+    """
+
+    def __init__(self, case: Case, name: str) -> None:
+        self._case = case
+        self.name = name
+        self.relaxation([])
+
+    def relaxation(self, times: ArrayLike) -> NDArray[np.float64]:
+        """Relaxation modulus E(t) [Pa] at times [s], in their shape."""
+        t = np.asarray(times, dtype=float)
+        return self._case._handle.relaxation(self.name, t.ravel()).reshape(t.shape)
+
+    def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
+        """Complex modulus E' + i E'' [Pa] at angular frequencies [rad/s], in their shape."""
+        w = np.asarray(frequencies, dtype=float)
+        return self._case._handle.complex_modulus(self.name, w.ravel()).reshape(w.shape)
+
+
+def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> Case:
+    """A case from its pickle; data files are found from the folder where it was."""
+    case = Case(text, name=path)
+    case.name = name
+    for address, value in settings.items():
+        case[address] = value
+    return case
+
+
+def _namelists(groups: Groups) -> str:
+    """Text of a case from its groups."""
+    lines: list[str] = []
+    for group, items in groups.items():
+        for item in [items] if isinstance(items, Mapping) else items:
+            lines.append(f"&{group}")
+            lines += [f"   {key} = {_written(value)}" for key, value in item.items()]
+            lines.append("/")
+    return "\n".join(lines) + "\n"
+
+
+def _written(value: Any) -> str:
+    """A value as a namelist has it."""
+    if isinstance(value, str):
+        return "'" + value.replace("'", "''") + "'"
+    if isinstance(value, (bool, np.bool_)):
+        return ".true." if value else ".false."
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if np.ndim(value) == 0:
+        return repr(float(value))
+    return ", ".join(repr(float(number)) for number in np.ravel(value))
+
+
+def _value(text: str) -> Value:
+    """A value from a namelist."""
+    if text.startswith("'"):
+        return text[1:-1].replace("''", "'")
+    if text in (".true.", ".false."):
+        return text == ".true."
+    numbers = [float(word) for word in text.replace(",", " ").split()]
+    if len(numbers) != 1:
+        return numbers
+    return int(text) if text.lstrip("+-").isdigit() else numbers[0]
+
+
+def _reason(remark: str) -> str:
+    """Why a point has no result, from `3 of 9 points have no result, the first is ...: why`."""
+    return remark.split(": ", 1)[1]
+
+
+class _NoBar:
+    """A progress bar that nobody sees."""
+
+    def __enter__(self) -> _NoBar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def update(self, _: int) -> None:
+        """Say nothing."""
+
+
+def _bar(total: int, progress: bool | None) -> Any:
+    """A progress bar, or none."""
+    shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
+    if progress is None:
+        progress = sys.stderr.isatty() or hasattr(shell, "kernel")
+    if not progress:
+        return _NoBar()
+    from tqdm.auto import tqdm
+
+    return tqdm(total=total, unit="impact", delay=_BAR_DELAY)

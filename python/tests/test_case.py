@@ -1,0 +1,317 @@
+"""Cases: the same bits as the program, its errors, threads, processes."""
+
+import concurrent.futures
+import multiprocessing
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import PAPER, ROOT, SWEEPS
+
+import vcor
+
+SINGLE = ["sls", "butyl_cerf", "butyl_power_law", "elastic", "butyl_prony_ghost", "sls_printed"]
+GROUPS = {
+    "case": {"title": "it's a ball"},
+    "impact": {"velocity": 10.0},
+    "sphere": {"radius": 0.01, "material": "steel"},
+    "plate": {"half_thickness": 0.02, "material": "rubber"},
+    "material": [
+        {"name": "steel", "model": "rigid", "density": 7800.0},
+        {
+            "name": "rubber",
+            "model": "prony",
+            "density": 1200.0,
+            "poisson_ratio": 0.4,
+            "equilibrium_modulus": 1e6,
+            "moduli": [1e6, np.float64(2e6)],
+            "times": np.array([1e-3, 1e-4]),
+        },
+    ],
+    "output": {"history": False},
+}
+
+
+def same(one, other):
+    """Whether two datasets are the same bits."""
+    assert set(one.variables) == set(other.variables)
+    for name in one.variables:
+        a, b = one[name], other[name]
+        assert a.dims == b.dims, name
+        assert a.attrs == b.attrs, name
+        if a.dtype.kind == "f":
+            assert np.array_equal(a.values, b.values, equal_nan=True), name
+        else:
+            assert (a.values == b.values).all(), name
+    assert one.attrs["title"] == other.attrs["title"]
+    return True
+
+
+@pytest.mark.parametrize("name", SINGLE)
+def test_a_single_impact(program, tmp_path, name):
+    program("run", PAPER / f"{name}.nml", "--output", tmp_path, "--quiet")
+    case = vcor.read(PAPER / f"{name}.nml")
+    stem = case["output.stem"]
+    assert same(case.run(), vcor.open(tmp_path / f"{stem}.h5"))
+    assert same(case.history(), vcor.open(tmp_path / f"{stem}.h5", "history"))
+    assert case.run().attrs == vcor.open(tmp_path / f"{stem}.h5").attrs
+    assert case.solve() == {name: v.item() for name, v in case.run().items()}
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_sweep(program, tmp_path, threads):
+    path = SWEEPS / "velocity_and_radius.nml"
+    words = ["--set", "output.stem=cube", "--output", tmp_path, "--quiet"]
+    program("run", path, *words)
+    cube = vcor.read(path).run(threads=threads, progress=False)
+    assert same(cube, vcor.open(tmp_path / "cube.h5"))
+    assert cube.cor.dims == ("impact.velocity", "sphere.radius")
+    assert cube["sphere.radius"].attrs["units"] == "m"
+
+
+def test_points_and_sweeps_are_single_impacts(sls):
+    velocities, betas = [2.5, 10.0], [600.0, 1200.0, 2400.0]
+    values = {"impact.velocity": velocities, "rubber.beta": betas}
+    cube = sls.sweep(values, ["cor", "max_force"])
+    points = sls.points({"impact.velocity": 10.0, "rubber.beta": betas})
+    assert cube.sizes == {"impact.velocity": 2, "rubber.beta": 3}
+    for beta, point in zip(betas, points.cor.values, strict=True):
+        case = sls.copy()
+        case["rubber.beta"] = beta
+        assert case["rubber.beta"] == beta
+        one = case.solve()
+        assert case.run().cor == point == one["cor"]
+        assert sls.solve({"rubber.beta": beta}, ["cor"]) == {"cor": point}
+        at = {"impact.velocity": 10.0, "rubber.beta": beta}
+        assert cube.cor.sel(at) == point
+        assert cube.max_force.sel(at) == one["max_force"]
+    assert points["rubber.beta"].dims == ("point",)
+    assert sls["rubber.beta"] == 1200.0
+
+
+def test_numbers_that_are_set_in_a_loop(sls, program):
+    """The quick way of solve gives what the case gives, texts and lists set in between too."""
+    for beta, waves in [(600.0, "none"), (1200.0, "relaxing"), (2400.0, "constant")]:
+        sls["rubber.beta"] = beta
+        sls["plate.waves"] = waves
+        sls["impact.velocity"] = 5
+        words = [f"rubber.beta={beta}", f"plate.waves={waves}", "impact.velocity=5"]
+        settings = [word for setting in words for word in ("--set", setting)]
+        cor = program("run", PAPER / "sls.nml", *settings, "--print", "cor")
+        assert sls.solve()["cor"] == float(cor) == sls.run().cor
+    # what was set may be varied all the same
+    assert sls.points({"rubber.beta": [2400.0]}).cor[0] == float(cor)
+
+
+def test_a_value_that_is_set_and_not_read(sls, program):
+    sls["solver.form"] = "b"
+    with pytest.raises(vcor.InputError) as caught:
+        sls.solve()
+    line = program("run", PAPER / "sls.nml", "--set", "solver.form=b", code=3)
+    assert line == f"vcor: error: {caught.value}\n"
+
+
+def test_a_case_from_a_mapping(tmp_path, program):
+    case = vcor.Case(GROUPS)
+    case.save(tmp_path / "c.nml")
+    again = vcor.read(tmp_path / "c.nml")
+    assert again["case.title"] == "it's a ball"
+    assert again["rubber.moduli"] == [1e6, 2e6]
+    assert again["rubber.moduli(2)"] == 2e6
+    assert again["output.history"] is False
+    assert again["solver.volterra_order"] == 1
+    assert again["solver.time_step"] is None
+    cor = float(program("run", "c.nml", "--print", "cor"))
+    assert case.run().cor == cor == again.solve()["cor"]
+    assert str(case) == str(again)
+    assert "accuracy" not in case.text()
+    assert "waves = 'relaxing'" in case.text(complete=True)
+
+
+def test_a_data_file_is_found_from_the_case(tmp_path):
+    case = vcor.read(ROOT / "examples/steel_on_measured_rubber.nml")
+    assert 0.0 < case.solve()["cor"] < 1.0
+    assert pickle.loads(pickle.dumps(case)).solve() == case.solve()
+
+
+def test_moduli(sls):
+    rubber = sls.material("rubber")
+    glassy, alpha, beta = (sls[f"rubber.{key}"] for key in ("glassy_modulus", "alpha", "beta"))
+    t = np.array([[0.0, 1e-4], [1e-3, 1e-2]])
+    ratio = alpha / beta
+    expected = glassy * (ratio + (1 - ratio) * np.exp(-beta * t))
+    np.testing.assert_allclose(rubber.relaxation(t), expected, rtol=1e-14)
+    w = 1e3
+    expected = glassy * (ratio + (1 - ratio) * 1j * w / (1j * w + beta))
+    np.testing.assert_allclose(rubber.complex_modulus(w), expected, rtol=1e-14)
+    assert rubber.complex_modulus(w).shape == ()
+    sls["rubber.glassy_modulus"] = 2 * glassy
+    np.testing.assert_allclose(rubber.relaxation(0.0), 2 * glassy)
+    with pytest.raises(vcor.UsageError, match="did you mean 'rubber'"):
+        sls.material("ruber")
+
+
+def test_verify(sls):
+    table = sls.verify()
+    assert float(table.best.sel(quantity="cor")) == pytest.approx(float(sls.run().cor), abs=1e-9)
+    assert float(table.digits.sel(quantity="cor")) >= 6
+    assert abs(float((table.ive - table.direct).sel(quantity="cor"))) < 1e-8
+
+
+# ---------------------------------------------------------------------------------- errors
+
+
+@pytest.mark.parametrize(
+    "setting, error, code",
+    [
+        ("impact.velocity=-1", vcor.InputError, 3),
+        ("impact.velocty=1", vcor.UsageError, 2),
+        ("rubber.beta=soft", vcor.UsageError, 2),
+        ("rubber.beta=nan", vcor.UsageError, 2),
+        ("solver.end_time=1e-5", vcor.NumericalError, 5),
+        ("plate.half_thickness=1e-4", vcor.NumericalError, 5),
+    ],
+)
+def test_errors_are_those_of_the_program(sls, program, setting, error, code):
+    line = program("run", PAPER / "sls.nml", "--set", setting, "--print", "cor", code=code)
+    with pytest.raises(error) as caught:
+        address, value = setting.split("=")
+        sls[address] = value
+        sls.run()
+    assert caught.value.code == code
+    if error is not vcor.NumericalError:
+        assert line == f"vcor: error: {caught.value}\n"
+        return
+    # the program explains at length why nothing comes back
+    assert line.startswith("vcor: error: ")
+    assert np.isnan(caught.value.result.cor)
+    assert str(caught.value.result.status.values) in ("no_separation", "sticks")
+    assert len(sls.history().time) > 2
+
+
+def test_errors_of_files(tmp_path, program):
+    with pytest.raises(vcor.FileError) as caught:
+        vcor.read(tmp_path / "gone.nml")
+    assert str(caught.value) in program("check", tmp_path / "gone.nml", code=4)
+    with pytest.raises(vcor.FileError):
+        vcor.open(tmp_path / "gone.h5")
+    (tmp_path / "bad.nml").write_text("&impact\n velocity = fast /\n")
+    with pytest.raises(vcor.InputError, match=r"bad\.nml:2: velocity: found 'fast'"):
+        vcor.read(tmp_path / "bad.nml")
+    with pytest.raises(vcor.InputError, match=r"^case\.nml:1: unknown group"):
+        vcor.Case("&impct velocity = 1.0 /")
+
+
+def test_points_without_a_result(sls):
+    with pytest.warns(vcor.NoResultWarning, match="2 of 3 points have no result"):
+        found = sls.points({"impact.velocity": [-1.0, 10.0, np.nan]})
+    assert list(found.status) == ["invalid", "separated", "invalid"]
+    assert np.isnan(found.cor[0]) and found.cor[1] == sls.run().cor
+    with pytest.raises(vcor.InputError, match="out of range"):
+        sls.solve({"impact.velocity": -1.0})
+    with pytest.raises(vcor.InputError, match=r"did you mean 'velocity'"):
+        sls.points({"impact.velocty": [1.0]})
+    with pytest.raises(vcor.InputError, match="does not belong to model"):
+        sls.points({"rubber.exponent": [1.0]})
+    with pytest.raises(vcor.UsageError, match="did you mean 'cor'"):
+        sls.points({"impact.velocity": [1.0]}, ["core"])
+    with pytest.raises(vcor.InputError):
+        sls.points({})
+
+
+def test_a_sweep_of_a_case_that_varies_something_else():
+    case = vcor.read(SWEEPS / "sls_velocity.nml")
+    with pytest.raises(vcor.InputError, match=r"sls_velocity\.nml:\d+: the case varies"):
+        case.points({"sphere.radius": [0.01]})
+    with pytest.raises(vcor.InputError):
+        case.history()
+    assert case.points({"impact.velocity": [1.0], "sphere.radius": [0.01]}).cor[0] > 0
+
+
+# ---------------------------------------------------------------------------------- threads
+
+
+def test_eight_threads_at_once(sls):
+    """One case and cases of their own, solved, set and read side by side."""
+    betas = np.linspace(600.0, 2400.0, 40)
+    expected = sls.points({"rubber.beta": betas}, threads=1)
+    alone = sls.solve()
+
+    def work(number):
+        own = vcor.read(PAPER / "sls.nml")
+        found = []
+        for beta in betas[number::8]:
+            own["rubber.beta"] = beta
+            found.append(own.solve()["cor"])
+            assert sls.solve() == alone
+        shared = sls.points({"rubber.beta": betas}, threads=1 + number % 2)
+        assert same(shared, expected)
+        with pytest.raises(vcor.InputError):
+            vcor.Case("&impact velocity = -1.0 /").text()
+        return found
+
+    with concurrent.futures.ThreadPoolExecutor(8) as pool:
+        results = list(pool.map(work, range(8)))
+    for number, found in enumerate(results):
+        assert np.array_equal(found, expected.cor.values[number::8])
+
+
+def solve_pickled(case, velocities):
+    return case.points({"impact.velocity": velocities}, threads=2).cor.values
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+def test_other_processes(sls, method):
+    """A case pickles with what was set; a child of fork solves though its parent had threads."""
+    sls["rubber.beta"] = 900.0
+    velocities = np.linspace(1.0, 20.0, 60)
+    expected = solve_pickled(sls, velocities)
+    context = multiprocessing.get_context(method)
+    with concurrent.futures.ProcessPoolExecutor(2, mp_context=context) as pool:
+        parts = pool.map(solve_pickled, [sls] * 3, np.split(velocities, 3))
+        assert np.array_equal(np.concatenate(list(parts)), expected)
+
+
+def test_ctrl_c_ends_a_sweep(sls):
+    """An interrupt comes through while the library works."""
+    threading.Timer(0.5, os.kill, [os.getpid(), signal.SIGINT]).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        sls.points({"impact.velocity": np.linspace(0.1, 50.0, 20_000_000)}, ["cor"], threads=1)
+    assert time.monotonic() - begin < 60
+    assert sls.solve()["status"] == "separated"
+
+
+def test_the_progress_bar(sls, capsys, monkeypatch):
+    monkeypatch.setattr("vcor.case._BAR_DELAY", 0.0)
+    sls.points({"impact.velocity": [1.0, 2.0]}, progress=True)
+    assert "2/2" in capsys.readouterr().err
+    sls.points({"impact.velocity": [1.0, 2.0]})
+    assert capsys.readouterr().err == ""
+
+
+def test_nothing_is_printed(tmp_path):
+    """Not by errors either."""
+    script = (
+        "import vcor, warnings; warnings.simplefilter('ignore')\n"
+        f"case = vcor.read({str(PAPER / 'sls.nml')!r})\n"
+        "case.points({'impact.velocity': [-1.0, 1.0]}); case.run(); case.verify()\n"
+        "try: case['impact.velocity'] = -1.0\n"
+        "except ValueError: pass\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True)
+    assert done.stdout == done.stderr == b""
+
+
+def test_results_are_xarray(sls):
+    assert isinstance(sls.run(), xr.Dataset)
+    assert sls.run().max_force.attrs["units"] == "N"
+    assert sls.run().cor.attrs["long_name"].startswith("coefficient of restitution")
+    assert "units" not in sls.run().status.attrs

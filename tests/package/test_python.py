@@ -1,0 +1,63 @@
+"""The Python package as users install it: a wheel made from the sources, in an environment of its own."""
+
+import os
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# What the package needs is taken from the environment of the tests
+SCRIPT = f"""
+import vcor
+case = vcor.read({str(ROOT / "examples/paper/sls.nml")!r})
+case["impact.velocity"] = 2.5
+print(vcor.__file__, vcor.__version__, case.solve()["cor"])
+"""
+
+
+def run(*words, **options):
+    """Run a command; what it prints."""
+    done = subprocess.run(
+        list(map(str, words)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        check=False,
+        **options,
+    )
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wheel")
+    words = ["--no-build-isolation", "--no-deps", "--no-index", "-w", folder, ROOT / "python"]
+    options = ["-C", f"build-dir={folder / 'build'}"]
+    run(sys.executable, "-m", "pip", "wheel", *words, *options)
+    (path,) = folder.glob("*.whl")
+    return path
+
+
+def test_what_is_in_the_wheel(wheel):
+    names = zipfile.ZipFile(wheel).namelist()
+    library = [name for name in names if ".so" in name]
+    assert library == ["vcor/lib/libvcor.so"]
+    assert "vcor/case.py" in names and "vcor/py.typed" in names
+    assert not [name for name in names if "test" in name or name.endswith((".mod", ".a"))]
+
+
+def test_the_wheel_in_an_empty_environment(wheel, tmp_path):
+    run(sys.executable, "-m", "venv", tmp_path / "env")
+    python = tmp_path / "env/bin/python"
+    run(python, "-m", "pip", "install", "--no-index", "--no-deps", wheel)
+    env = {"PATH": os.environ["PATH"], "PYTHONPATH": sysconfig.get_path("purelib")}
+    file, version, cor = run(python, "-c", SCRIPT, env=env, cwd=tmp_path).split()
+    assert Path(file).is_relative_to(tmp_path / "env")
+    assert f'version = "{version}"' in (ROOT / "fpm.toml").read_text()
+    words = ["run", "examples/paper/sls.nml", "--set", "impact.velocity=2.5", "--print", "cor"]
+    assert float(run(os.environ["VCOR"], *words, cwd=ROOT)) == float(cor)
