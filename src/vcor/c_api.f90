@@ -38,8 +38,8 @@ module vcor_c_api
 
    public :: c_error_t, c_column_t
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
-      vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, vcor_relaxation, vcor_complex_modulus, &
-      vcor_verify
+      vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
+      vcor_relaxation, vcor_complex_modulus, vcor_verify
 
    !> `vcor_error`
    type, bind(c) :: c_error_t
