@@ -271,19 +271,20 @@ contains
 
       character(len=*), parameter :: prefixes = 'numckMGT'
       integer, parameter :: powers(*) = [-9, -6, -3, -2, 3, 6, 9, 12]
+      ! no associate name of trim(): gfortran 12 frees that twice
+      character(len=:), allocatable :: base
       integer :: place
 
       hint = ''
       if (.not. looks_numeric(number) .or. len(unit) == 0) return
-      associate (base => trim(key%unit))
-         place = index(prefixes, unit(1:1))
-         if (unit == base .or. index(base, unit//'/') == 1) then
-            hint = number
-         else if (place > 0 .and. unit(2:) == base .and. scan(number, 'eEdD') == 0) then
-            hint = number//'e'//integer_text(powers(place))
-         end if
-         if (hint /= '') hint = '; give '//shortened(hint)//', in '//base
-      end associate
+      base = trim(key%unit)
+      place = index(prefixes, unit(1:1))
+      if (unit == base .or. index(base, unit//'/') == 1) then
+         hint = number
+      else if (place > 0 .and. unit(2:) == base .and. scan(number, 'eEdD') == 0) then
+         hint = number//'e'//integer_text(powers(place))
+      end if
+      if (hint /= '') hint = '; give '//shortened(hint)//', in '//base
    end function unit_hint
 
    !> What is wrong with the value of an entry, as far as its range says
