@@ -36,7 +36,7 @@ module vcor_c_api
    implicit none
    private
 
-   public :: c_error_t, c_column_t
+   public :: c_error_t, c_column_t, fortran, c_text, c_numbers, told
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
       vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
       vcor_relaxation, vcor_complex_modulus, vcor_verify

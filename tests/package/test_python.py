@@ -46,7 +46,7 @@ def wheel(tmp_path_factory):
 def test_what_is_in_the_wheel(wheel):
     names = zipfile.ZipFile(wheel).namelist()
     library = [name for name in names if ".so" in name]
-    assert library == ["vcor/lib/libvcor.so"]
+    assert library == ["vcor/lib/libvcor_python.so"]
     assert {"vcor/case.py", "vcor/py.typed", "vcor/vcor.mplstyle"} <= set(names)
     assert not [name for name in names if "test" in name or name.endswith((".mod", ".a"))]
 

@@ -13,18 +13,21 @@ from ._library import (
     __version__,
 )
 from .case import Case, Material, read
+from .fit import Fit, fit
 from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
 
 __all__ = [
     "Case",
     "Error",
     "FileError",
+    "Fit",
     "InputError",
     "Material",
     "NoResultWarning",
     "NumericalError",
     "UsageError",
     "__version__",
+    "fit",
     "open",
     "read",
 ]

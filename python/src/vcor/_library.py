@@ -103,7 +103,7 @@ def _find_library() -> Path:
     """The library beside this file, or where the variable VCOR_LIBRARY says."""
     if "VCOR_LIBRARY" in os.environ:
         return Path(os.environ["VCOR_LIBRARY"])
-    path = Path(__file__).parent / "lib" / "libvcor.so"
+    path = Path(__file__).parent / "lib" / "libvcor_python.so"
     if not path.exists():
         raise ImportError(f"{path} is missing: install the package with pip, or set VCOR_LIBRARY")
     return path
@@ -128,6 +128,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_verify": [c_void_p, _doubles],
+    "vcor_fit_data": [c_void_p],
 }  # fmt: skip
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]

@@ -1,0 +1,156 @@
+"""Identification of a material from measured moduli."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Mapping, Sequence
+from ctypes import Structure, c_char_p, c_double, c_int, c_void_p
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _library
+from ._library import InputError
+
+#: States of a parameter, by their number
+_STATES = ("free", "fixed", "bound")
+#: Largest Poisson's ratio; beyond it: not given
+_INCOMPRESSIBLE = 0.5
+
+
+class _Fit(Structure):
+    """`c_fit_t` of src/vcor/fit/c_api.f90."""
+
+    _fields_ = [
+        *[(name, c_char_p) for name in ("file", "model", "name")],
+        *[(name, c_int) for name in ("terms", "dynamic", "n", "fixed_count")],
+        *[(name, c_void_p) for name in ("at", "modulus", "loss")],
+        ("fixed_names", c_char_p),
+        ("fixed_values", c_void_p),
+        *[(name, c_double) for name in ("poisson_ratio", "density")],
+        *[(name, c_void_p) for name in ("group", "names", "values")],
+        *[(name, c_int) for name in ("count", "structured")],
+        ("rms", c_double),
+    ]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a fit, in SI units."""
+
+    name: str
+    unit: str
+    value: float
+    #: Standard error; 0 if the value was given
+    error: float
+    #: free, fixed (given) or bound (at the end of its range)
+    state: str
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A material that was found in data."""
+
+    #: Parameters; moduli and times of a Prony series alternate, the fastest term first
+    parameters: tuple[Parameter, ...]
+    #: The material as a &material group, to be put into a case
+    group: str
+    #: Root of the mean square of the relative misfits
+    rms: float
+    #: Whether the model follows the data: the misfits are noise
+    follows: bool
+
+    def __getitem__(self, name: str) -> float | list[float]:
+        """Value of a parameter, a list for the terms of a series."""
+        values = [one.value for one in self.parameters if one.name == name]
+        if not values:
+            raise KeyError(name)
+        return values if name in ("moduli", "times") else values[0]
+
+    def __str__(self) -> str:
+        return self.group
+
+
+def fit(
+    data: str | os.PathLike[str] | Sequence[ArrayLike],
+    *,
+    model: str = "prony",
+    terms: int | None = None,
+    fix: Mapping[str, float] | None = None,
+    poisson_ratio: float | None = None,
+    density: float | None = None,
+    name: str | None = None,
+) -> Fit:
+    """Fit a model to relaxation moduli, or to storage and loss moduli, as `vcor fit` does.
+
+    Parameters
+    ----------
+    data
+        A data file as `vcor fit` reads it, units and kind by its header; or arrays: times [s] and
+        relaxation moduli [Pa], or angular frequencies [rad/s], storage and loss moduli [Pa], each
+        of shape (n,).
+    model
+        Model of the relaxation modulus.
+    terms
+        Terms of a Prony series; None: as many as the data support.
+    fix
+        Parameters of the model that have a given value, in SI units.
+    poisson_ratio
+        Poisson's ratio; None: 0.5. Needed for a file of shear moduli.
+    density
+        Density [kg/m3], for the group of the result.
+    name
+        Name of the material; None: that of the file.
+
+    Returns
+    -------
+    Fit
+        Parameters with standard errors, and the material as a group of a case.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read.
+    InputError
+        The data cannot be fitted.
+    NumericalError
+        The fit fails, or the data do not determine the parameters.
+    """
+    fix = fix or {}
+    fixed = np.array([float(value) for value in fix.values()])
+    wish = _Fit(
+        model=model.encode(),
+        terms=terms or 0,
+        fixed_count=len(fix),
+        fixed_names=" ".join(fix).encode(),
+        fixed_values=fixed.ctypes.data,
+        poisson_ratio=2 * _INCOMPRESSIBLE if poisson_ratio is None else poisson_ratio,
+        density=density or 0.0,
+    )
+    if isinstance(data, (str, os.PathLike)):
+        wish.file = os.fsencode(data)
+        name = name or Path(data).stem
+        arrays = np.empty((0, 0))
+    else:
+        arrays = np.array([np.ravel(np.asarray(column, dtype=float)) for column in data])
+        if len(arrays) not in (2, 3) or not (np.isfinite(arrays) & (arrays > 0)).all():
+            raise InputError(
+                "expected two or three arrays of one length with numbers > 0: times and moduli, "
+                "or angular frequencies, storage and loss moduli"
+            )
+        arrays = np.ascontiguousarray(arrays[:, np.argsort(arrays[0], kind="stable")])
+        wish.n, wish.dynamic = arrays.shape[1], len(arrays) == 3
+        wish.at, wish.modulus, wish.loss = (row.ctypes.data for row in (*arrays, arrays[-1])[:3])
+    wish.name = (name or "material").encode()
+    _library._call("vcor_fit_data", ctypes.addressof(wish))
+    group = _library._take_text(c_void_p(wish.group)) or ""
+    lines = (_library._take_text(c_void_p(wish.names)) or "").splitlines()
+    numbers = _library._take_numbers(c_void_p(wish.values), 3 * wish.count).reshape(-1, 3)
+    parameters = tuple(
+        Parameter(*line.partition(" ")[::2], float(value), float(error), _STATES[int(state)])
+        for line, (value, error, state) in zip(lines, numbers, strict=True)
+    )
+    return Fit(parameters, group, float(wish.rms), not wish.structured)
