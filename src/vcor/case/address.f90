@@ -98,7 +98,9 @@ contains
          message = 'found '//shortened(element)//', but it is a single value, not a list'
       else if (status /= 0 .or. address%element < 1 .or. address%element > size(entry%list)) then
          message = 'found '//shortened(element)//' of a list of '//integer_text(size(entry%list)) &
-            //' numbers, expected such as (1)'
+            //' numbers'
+         if (size(entry%list) > 0) &
+            message = message//', expected (1) to ('//integer_text(size(entry%list))//')'
       end if
       if (allocated(message)) address = address_t()
    end subroutine find_element

@@ -89,6 +89,8 @@ module vcor_case_case
       procedure :: model
       !> Item of the material of a name
       procedure :: find_material
+      !> Item of the material of a body
+      procedure :: material_of
       !> Address of a key
       procedure :: address
       !> Path of an address
@@ -302,6 +304,20 @@ contains
       end do
       item = 0
    end function find_material
+
+   !> Item of the material of a body
+   pure function material_of(self, body) result(item)
+      class(case_t), intent(in) :: self
+      !> sphere or plate
+      character(len=*), intent(in) :: body
+      !> Number of the material, 0 when there is none of this name
+      integer :: item
+
+      character(len=:), allocatable :: name
+
+      call self%get(body, 'material', name)
+      item = self%find_material(name)
+   end function material_of
 
    !> Address of a key
    pure function address(self, group, key, item)

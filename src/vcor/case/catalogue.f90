@@ -134,7 +134,8 @@ module vcor_case_catalogue
          merge(list_key, real_key, model_parameters(i)%parameter%is_list), &
          model_parameters(i)%parameter%meaning, model_parameters(i)%parameter%unit, &
          model_parameters(i)%parameter%range, default=model_parameters(i)%parameter%default, &
-         models=model_parameters(i)%model, required=model_parameters(i)%parameter%required), &
+         models=model_parameters(i)%model, required=model_parameters(i)%parameter%required, &
+         instead=model_parameters(i)%parameter%instead), &
          i=1, size(model_parameters)), &
       key_t("material", "file", text_key, &
          "File of times and moduli; relative to the folder of the case", models="table", &

@@ -80,11 +80,8 @@ contains
       end if
       call self%get('material', 'valid_from', first, item)
       call self%get('material', 'valid_to', last, item)
-      if (self%given('material', 'rates', item) .and. self%given('material', 'times', item)) then
-         call fail(self, 'material', 'times', item, &
-            'found both rates and times, expected one of them', error)
-      else if (self%given('material', 'valid_from', item) &
-               .and. self%given('material', 'valid_to', item)) then
+      if (self%given('material', 'valid_from', item) &
+          .and. self%given('material', 'valid_to', item)) then
          if (.not. first < last) call fail(self, 'material', 'valid_to', item, &
             'found valid_from = '//real_text(first)//' and valid_to = '//real_text(last) &
             //', expected valid_from < valid_to', error)

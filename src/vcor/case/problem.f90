@@ -26,7 +26,7 @@ module vcor_case_problem
       set_constants_of
    use vcor_material_parameter, only : density, parameter_t
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_text, only : integer_text, quoted
+   use vcor_text, only : integer_text, quoted, shortened
    implicit none
    private
 
@@ -148,10 +148,8 @@ contains
       self%second_term = order == 2
       call case%get('solver', 'continue_after_separation', self%settings%ghost)
 
-      call case%get('sphere', 'material', text)
-      call describe(self%sphere, case, case%find_material(text))
-      call case%get('plate', 'material', text)
-      call describe(self%plate, case, case%find_material(text))
+      call describe(self%sphere, case, case%material_of('sphere'))
+      call describe(self%plate, case, case%material_of('plate'))
       self%at%yield_strength = [ &
          case%address('material', 'yield_strength', self%sphere%address%item), &
          case%address('material', 'yield_strength', self%plate%address%item)]
@@ -209,11 +207,12 @@ contains
       type(entry_t) :: entry
       character(len=:), allocatable :: names, paths, place, found, name
       integer :: first, last
+      logical :: is_given
 
       place = ''
       if (item > 0) then
          call case%get('material', 'name', name, item)
-         place = ' in &material '//quoted(name)
+         place = ' in &material '//quoted(shortened(name))
       end if
       names = ''
       ! who builds a material and says nothing may mean all of it
@@ -221,6 +220,7 @@ contains
       if (allocated(error%about)) names = error%about
       paths = ''
       found = ''
+      is_given = .false.
       first = 1
       do while (first <= len(names))
          last = first + index(names(first:)//' ', ' ') - 2
@@ -232,12 +232,14 @@ contains
          if (address%group == 0) cycle
          entry = case%entry(address)
          ! the first that was given, else the first
-         if (cause%group == 0 .or. entry%given .and. found == '') cause = address
+         if (cause%group == 0 .or. entry%given .and. .not. is_given) cause = address
+         is_given = is_given .or. entry%given
          associate (key => catalogue(address%row))
             if (key%value_kind == list_key .and. entry%given) then
                found = found//' and '//integer_text(size(entry%list))//' '//trim(key%name)
             else if (key%value_kind /= list_key .and. entry%present) then
-               found = found//' and '//trim(key%name)//' = '//value_text(key, entry)
+               found = found//' and '//trim(key%name)//' = ' &
+                  //shortened(value_text(key, entry))
             end if
          end associate
       end do

@@ -190,7 +190,7 @@ contains
          reason = 'the sphere is rigid'
       else if (body_model(case, 'plate') == 'rigid') then
          reason = 'the plate is rigid'
-      else if (body_item(case, 'sphere') == body_item(case, 'plate')) then
+      else if (case%material_of('sphere') == case%material_of('plate')) then
          reason = 'sphere and plate are of one material'
       else if (body_model(case, 'sphere') == 'elastic' .and. &
                body_model(case, 'plate') == 'elastic') then
@@ -207,7 +207,7 @@ contains
       character(len=:), allocatable :: reason
 
       reason = ''
-      if (item /= body_item(case, 'sphere') .and. item /= body_item(case, 'plate')) &
+      if (item /= case%material_of('sphere') .and. item /= case%material_of('plate')) &
          reason = 'neither the sphere nor the plate is of this material'
    end function why_material_is_unread
 
@@ -224,30 +224,16 @@ contains
       reason = ''
       has_mass = case%given('sphere', 'mass') &
          .or. any(swept_addresses(case) == case%address('sphere', 'mass'))
-      if (item == body_item(case, 'sphere')) then
+      if (item == case%material_of('sphere')) then
          if (.not. has_mass) return
          reason = 'sphere.mass gives the mass of the sphere'
       end if
-      if (item == body_item(case, 'plate')) then
+      if (item == case%material_of('plate')) then
          if (len(reason) > 0) reason = reason//', and '
          reason = reason//why_plate_rests(case)
          if (why_plate_rests(case) == '') reason = ''
       end if
    end function why_weightless
-
-   !> Number of the material of a body
-   pure function body_item(case, body) result(item)
-      type(case_t), intent(in) :: case
-      !> sphere or plate
-      character(len=*), intent(in) :: body
-      !> Number, 0 where there is no such material
-      integer :: item
-
-      character(len=:), allocatable :: name
-
-      call case%get(body, 'material', name)
-      item = case%find_material(name)
-   end function body_item
 
    !> Model of the material of a body
    pure function body_model(case, body) result(model)
@@ -260,7 +246,7 @@ contains
       integer :: item
 
       model = ''
-      item = body_item(case, body)
+      item = case%material_of(body)
       if (item > 0) call case%get('material', 'model', model, item)
    end function body_model
 

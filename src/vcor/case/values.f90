@@ -271,20 +271,17 @@ contains
 
       character(len=*), parameter :: prefixes = 'numckMGT'
       integer, parameter :: powers(*) = [-9, -6, -3, -2, 3, 6, 9, 12]
-      ! no associate name of trim(): gfortran 12 frees that twice
-      character(len=:), allocatable :: base
       integer :: place
 
       hint = ''
-      if (.not. looks_numeric(number) .or. len(unit) == 0) return
-      base = trim(key%unit)
+      if (.not. looks_numeric(number) .or. len(unit) == 0 .or. key%unit == '') return
       place = index(prefixes, unit(1:1))
-      if (unit == base .or. index(base, unit//'/') == 1) then
+      if (unit == key%unit .or. index(key%unit, unit//'/') == 1) then
          hint = number
-      else if (place > 0 .and. unit(2:) == base .and. scan(number, 'eEdD') == 0) then
+      else if (place > 0 .and. unit(2:) == key%unit .and. scan(number, 'eEdD') == 0) then
          hint = number//'e'//integer_text(powers(place))
       end if
-      if (hint /= '') hint = '; give '//shortened(hint)//', in '//base
+      if (hint /= '') hint = '; give '//shortened(hint)//', in '//trim(key%unit)
    end function unit_hint
 
    !> What is wrong with the value of an entry, as far as its range says

@@ -38,6 +38,8 @@ module vcor_material_parameter
       logical :: fitted = .false.
       !> Whether it is a list of numbers
       logical :: is_list = .false.
+      !> Parameter that may be given in its place, and not beside it; blank: none
+      character(len=26) :: instead = ''
    end type parameter_t
 
    !> Ranges

@@ -33,7 +33,7 @@ module vcor_material_prony
       parameter_t('moduli', 'Moduli of the relaxing terms', 'Pa', positive, required=.false., &
       fitted=.true., is_list=.true.), &
       parameter_t('rates', 'Rates of the relaxing terms; or give times', '1/s', positive, &
-      required=.false., is_list=.true.), &
+      required=.false., is_list=.true., instead='times'), &
       parameter_t('times', 'Relaxation times of the terms; or give rates', 's', positive, &
       required=.false., fitted=.true., is_list=.true.), &
       parameter_t('viscosity', 'Viscosity of a dashpot in parallel', 'Pa s', not_negative, &
