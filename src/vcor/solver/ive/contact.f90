@@ -27,12 +27,13 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, few_panels, &
-      first_growth_fast, first_growth_slow, first_longest, first_receding, &
+   use vcor_solver_ive_tuning, only : cut_at_end, early_yield, error_of_kernel, fast, &
+      few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_receding_growth, first_short, first_slow, first_three, force_share, frozen_first, &
-      harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, most_steps, &
-      next_to_branch, panel_share, peak_share, rounding_of_force, rounding_per_panel, &
-      shallow_end, shallow_factor, solution_share, tolerable, usual_accuracy, usually_better
+      grown_alpha, harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, &
+      most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
+      rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
+      usual_accuracy, usually_better
    implicit none
    private
 
@@ -162,7 +163,37 @@ contains
          if (continuous .and. impact%plate%frozen()) &
             self%step%length = frozen_first*self%step%length
       end associate
+      do while (yields_early(self))
+         self%step%length = 0.5_wp*self%step%length
+      end do
    end subroutine start
+
+   !> Whether a plate whose alpha grows may take up the motion within the first step: the contact
+   !> may end in it, between its stages. A plate at rest would have given way by the share
+   !> alpha K u/s of s = v0 t, K the integral of the kernel, a share that only grows with time
+   function yields_early(self) result(yields)
+      !> The contact, its first step chosen
+      type(contact_t), intent(in) :: self
+      !> Whether it may
+      logical :: yields
+
+      real(wp) :: time, way, alpha, largest
+
+      associate (impact => self%problem%impact)
+         time = self%step%duration()
+         way = impact%velocity*time
+         yields = .false.
+         if (impact%plate%hereditary()) return
+         alpha = impact%plate%alpha(time)
+         if (.not. alpha > grown_alpha*self%start%alpha) return
+         ! that of the whole time scale T is more, and known: K = m v0 T/u(v0 T)
+         largest = impact%mass*impact%velocity*self%time_scale &
+            /impact%law%u(impact%velocity*self%time_scale)
+         yields = alpha*largest*impact%law%u(way) > early_yield*way
+         if (yields) yields = alpha*self%problem%modes%contact%integral(time) &
+            *impact%law%u(way) > early_yield*way
+      end associate
+   end function yields_early
 
    !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
    !> collocation does not resolve the internal variables that settle within the step
@@ -190,8 +221,8 @@ contains
          self%ends = .false.
          if (self%panel%converged .and. self%recedes) then
             self%turns = is_turning(problem%impact, self%panel)
-            if (self%turns) call land_on_largest(problem, self%start, self%velocity, self%step, &
-               self%panel, self%inverse)
+            if (self%turns) call land_on_largest(problem, self%start, self%velocity, &
+               self%accuracy, self%step, self%panel, self%inverse)
          else if (self%panel%converged .and. trajectory%status /= contact_separated) then
             self%ends = first_without_force(self%panel) > 0
             if (self%ends) call land_on_zero(problem, self%start, self%accuracy, &
@@ -268,6 +299,9 @@ contains
       ! what a shorter panel did not reduce has been handed down by the panels before
       is_refused = .not. (self%excess <= 1.0_wp &
          .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
+      ! away from branch points where the motion is known, its end may not be
+      if (is_refused .and. self%ends .and. .not. (self%branches .or. self%shallow) &
+          .and. self%growth <= panel_share*self%accuracy) is_refused = .not. self%is_best_end()
       if (.not. is_refused) then
          self%refused = huge(1.0_wp)
          return

@@ -6,8 +6,9 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_ive_tuning, only : best_time, longest_growth, time_share, &
-      time_share_continuous, time_share_power, time_share_receding, usual_accuracy
+   use vcor_solver_ive_tuning, only : best_time, enough_closings, longest_growth, &
+      time_share, time_share_continuous, time_share_power, time_share_receding, tolerable_end, &
+      usual_accuracy
    implicit none
    private
 
@@ -35,6 +36,9 @@ module vcor_solver_ive_course
       real(wp) :: end_time = 0.0_wp
       !> Error of the panel over what it may be, and that of the one refused before
       real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp)
+      !> Excess of the last panel that was to end the contact and was refused, and how often one was
+      real(wp) :: refused_end = huge(1.0_wp)
+      integer :: closings = 0
       !> Whether the contact ends with the panel, and whether the computation does
       logical :: ends = .false., last = .false.
    contains
@@ -42,6 +46,8 @@ module vcor_solver_ive_course
       procedure :: motion_error
       !> By how much a difference grows over it
       procedure :: growth_of
+      !> Whether an end does not become better
+      procedure :: is_best_end
       !> Factor by which the next panel can be longer
       procedure :: growth_of_step
       !> Error that the contact time may have
@@ -80,6 +86,20 @@ contains
             error = error + self%growth_of(panel%drift, coarse%drift)/impact%velocity
       end associate
    end function motion_error
+
+   !> Whether an end does not become better: rounding in the force of stiff internal variables, or
+   !> what is handed down, keeps its time from being known better
+   function is_best_end(self) result(best)
+      !> The course, its panel judged
+      class(course_t), intent(inout) :: self
+      !> Whether it does not
+      logical :: best
+
+      self%closings = self%closings + 1
+      best = self%excess <= tolerable_end .and. (self%excess > 0.5_wp*self%refused_end &
+         .or. self%closings >= enough_closings)
+      self%refused_end = self%excess
+   end function is_best_end
 
    !> Factor by which the next panel can be longer than an accepted one
    pure function growth_of_step(self) result(factor)

@@ -32,14 +32,16 @@ contains
       stage = 0
    end function first_without_force
 
-   !> Cut a panel in which the indentation has its maximum so that it ends there. Where that is by
-   !> the polynomial of the panel is good enough: the two laws of the force part with the fourth
-   !> power of the time since the maximum
-   subroutine land_on_largest(problem, start, start_velocity, step, panel, inverse)
+   !> Cut a panel in which the indentation has its maximum so that it ends there: first where that
+   !> is by the polynomial of the panel, then by Newton's method. It need not be close to the last
+   !> digit: the two laws of the force part with the fourth power of the time since the maximum
+   subroutine land_on_largest(problem, start, start_velocity, accuracy, step, panel, inverse)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       !> Rate of the indentation there [m/s]
       real(wp), intent(in) :: start_velocity
+      !> Wanted accuracy of the coefficient of restitution
+      real(wp), intent(in) :: accuracy
       !> The step, on return the one that ends at the maximum
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the maximum; not converged on failure
@@ -48,24 +50,45 @@ contains
       real(wp), intent(inout) :: inverse(width, width)
 
       real(wp), parameter :: closest = 1.0e-8_wp
-      type(panel_t) :: longer
-      real(wp) :: velocity(0:width), theta
-      integer :: j
+      type(panel_t) :: last
+      real(wp) :: velocity(0:width), theta, time, fall
+      integer :: j, iteration
 
-      longer = panel
       velocity = 0.0_wp
       velocity(0) = start_velocity
-      do j = 1, panel%stages
-         velocity(j) = relative_velocity(problem%impact, panel, j)
-      end do
+      call find_velocity()
       do j = 1, panel%stages - 1
          if (velocity(j) < 0.0_wp) exit
       end do
       associate (rule => problem%collocator%rule)
          theta = rule%crossing(velocity, rule%point(j - 1), rule%point(j), closest)
+         time = theta*(panel%map(1) + panel%map(2)*theta)
+         do iteration = 1, most_iterations
+            last = panel
+            step = step_to(start%time, time)
+            call solve_cut(problem, last, start, step, panel, inverse)
+            if (.not. panel%converged) return
+            call find_velocity()
+            if (abs(velocity(panel%stages)) <= sqrt(accuracy)*problem%impact%velocity) return
+            fall = -slope_at_end(rule, panel, velocity)
+            panel%converged = fall > 0.0_wp .and. fall*time > -velocity(panel%stages)
+            if (.not. panel%converged) return
+            time = time + velocity(panel%stages)/fall
+         end do
       end associate
-      step = step_to(start%time, theta*(panel%map(1) + panel%map(2)*theta))
-      call solve_cut(problem, longer, start, step, panel, inverse)
+      panel%converged = .false.
+
+   contains
+
+      !> Rate of the indentation at the stages
+      subroutine find_velocity()
+
+         integer :: stage
+
+         do stage = 1, panel%stages
+            velocity(stage) = relative_velocity(problem%impact, panel, stage)
+         end do
+      end subroutine find_velocity
    end subroutine land_on_largest
 
    !> Solve a panel that is cut from another one

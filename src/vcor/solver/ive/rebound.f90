@@ -18,11 +18,10 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       cut_most, end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, &
-      end_slow, enough_closings, expected_rebound, farthest_rebound, fast, first_rate, &
-      largest_share, margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, &
-      rebound_growth, rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, &
-      slowest_fall, smallest_share, solution_share, tolerable, tolerable_end, unreliable_kernel, &
-      usual_accuracy
+      end_slow, expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
+      margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, rebound_growth, &
+      rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, slowest_fall, &
+      smallest_share, solution_share, sure_growth, tolerable, unreliable_kernel, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
    private
@@ -45,10 +44,10 @@ module vcor_solver_ive_rebound
       real(wp) :: end_found = 0.0_wp
       !> Rate of t1 and its rate [1/s], for a guess
       real(wp) :: rate = 0.0_wp, bend = 0.0_wp
-      !> Length of the panel refused before [s], and excess of the last panel refused before
-      real(wp) :: refused_length = huge(1.0_wp), refused_end = huge(1.0_wp)
-      !> How often the last panel was solved
-      integer :: closings = 0
+      !> Length of the panel refused before [s]
+      real(wp) :: refused_length = huge(1.0_wp)
+      !> The longest panel from here on in which t1 rises [s]
+      real(wp) :: longest_growing = 0.0_wp
       !> Whether the panel only said where the contact ends
       logical :: misled = .false.
       !> Errors of the coefficients of restitution, by the relative velocity and of the sphere, that
@@ -86,6 +85,7 @@ contains
          call judge(rebound)
          if (is_refused(rebound)) cycle
          if (is_growing(rebound)) then
+            if (is_crude(rebound)) cycle
             ! it may be the error of the kernel that makes it grow
             if (rebound%problem%modes%contact%error > unreliable_kernel) exit
             call refuse_growth(rebound%problem%impact, error)
@@ -269,9 +269,7 @@ contains
          .and. self%excess > 0.5_wp*self%refused)
       order = real(2*self%panel%stages - 2, wp)
       if (self%ends) then
-         self%closings = self%closings + 1
-         is_refused = is_refused .and. .not. (self%excess <= tolerable_end .and. &
-            (self%excess > 0.5_wp*self%refused_end .or. self%closings >= enough_closings))
+         if (is_refused) is_refused = .not. self%is_best_end()
          order = order_at_end
       end if
       if (.not. is_refused) then
@@ -285,7 +283,6 @@ contains
       end if
       cut = min(cut_least, max(cut_most, (self%excess/aim)**(-1.0_wp/order)))
       if (self%ends) then
-         self%refused_end = self%excess
          self%end_length = cut*self%taken
       else
          self%length = cut*self%taken
@@ -323,12 +320,28 @@ contains
       end associate
    end function is_growing
 
+   !> Whether t1 may rise because the panel is crude: while it has not been cut for that. What rises
+   !> within a small part of it, does
+   function is_crude(self)
+      !> The rebound, t1 rising in its panel
+      type(rebound_t), intent(inout) :: self
+      !> Whether it may; the panel is cut then
+      logical :: is_crude
+
+      self%longest_growing = max(self%longest_growing, self%taken)
+      is_crude = self%taken > sure_growth*self%longest_growing
+      if (.not. is_crude) return
+      self%length = 0.5_wp*self%taken
+      self%end_length = min(self%end_length, self%length)
+   end function is_crude
+
    !> Make the panel a part of the course
    subroutine accept(self, trajectory)
       type(rebound_t), intent(inout) :: self
       type(trajectory_t), intent(inout) :: trajectory
 
       if (self%ends) self%panel%force(self%panel%stages) = 0.0_wp
+      self%longest_growing = 0.0_wp
       self%error_sum = self%error_sum + self%error
       call record(self%problem%collocator%rule, self%problem%impact, self%panel, trajectory)
       trajectory%last = trajectory%final

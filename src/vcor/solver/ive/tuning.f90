@@ -76,6 +76,10 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: first_receding_growth = 0.1_wp ! tested
    !> Share of it where alpha' of a frozen plate is infinite at first contact
    real(wp), parameter :: frozen_first = 0.5_wp ! tested
+   !> Share of its way that a sphere may lose to the plate in the first step, at most, where alpha
+   !> grows by more than this factor from first contact to its end
+   real(wp), parameter :: early_yield = 0.3_wp ! tested
+   real(wp), parameter :: grown_alpha = 2.0_wp ! time
    !> With a continuous spectrum what the first panel adds to the error falls by `levels_base` with
    !> each halving from `levels_error` on
    real(wp), parameter :: levels_error = 3.3e-7_wp ! tested
@@ -211,6 +215,8 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: farthest_back = 1.0e3_wp ! guard
    !> exp(-this) is nothing
    real(wp), parameter :: gone = 42.0_wp ! time
+   !> Part of a panel in which t1 rises, from its start, that is short enough to be sure of that
+   real(wp), parameter :: sure_growth = 0.1_wp ! tested
    !> Error of a sum of exponentials with which a growing contact may be its error
    real(wp), parameter :: unreliable_kernel = 1.0e-6_wp ! guard
 
