@@ -11,6 +11,7 @@ module vcor_app_driver
    use vcor_app_plot, only : plot
    use vcor_app_run, only : run_job
    use vcor_app_screen, only : short
+   use vcor_app_validity, only : warn_of_slips
    use vcor_app_verify, only : verify_case, verify_program
    use vcor_case_printed, only : case_text
    use vcor_error, only : error_numerical, error_t
@@ -74,6 +75,7 @@ contains
          case ('run')
             call run_job(request, jobs(i), trouble)
          case ('check')
+            call warn_of_slips(jobs(i))
             call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
                //chosen(jobs(i)), trouble)
          case ('material')

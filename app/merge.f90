@@ -4,6 +4,7 @@ module vcor_app_merge
    use vcor_app_files, only : write_files
    use vcor_app_job, only : job_t, name_files
    use vcor_app_previous, only : look_back, previous_t, remark, replaced
+   use vcor_app_validity, only : points_report
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : new_grid
    use vcor_error, only : error_file, error_numerical, error_t, raise
@@ -210,7 +211,7 @@ contains
       type(previous_t) :: previous
       type(table_t) :: table
       type(trajectory_t) :: none
-      character(len=:), allocatable :: files
+      character(len=:), allocatable :: files, validity
       integer :: i
 
       call name_files(request, job, error)
@@ -222,13 +223,15 @@ contains
          return
       end do
       call look_back(job, identity, previous)
+      validity = points_report(job%sweep%grid, summary)
+      if (len(validity) > 0) validity = validity//new_line('a')
       call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
       call write_files(job, identity, table, none, files, error)
       if (allocated(error)) return
       call remark(replaced(previous))
       if (.not. request%quiet) call write_stdout(integer_text(size(request%files))//' shards, ' &
-         //integer_text(job%sweep%grid%count())//' impacts'//new_line('a')//new_line('a')//files, &
-         error)
+         //integer_text(job%sweep%grid%count())//' impacts'//new_line('a')//new_line('a') &
+         //validity//files, error)
    end subroutine write_merged
 
 end module vcor_app_merge

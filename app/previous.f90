@@ -5,8 +5,10 @@ module vcor_app_previous
    use vcor_app_job, only : job_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : write_stdout
-   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, open_hdf5, read_dataset, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, open_hdf5, &
+      read_dataset, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
+   use vcor_sweep_quantity, only : quantities
    use vcor_io_path, only : plain_file_exists, quoted_path
    implicit none
    private
@@ -106,6 +108,7 @@ contains
       logical :: is_ours
 
       is_whole = previous%has_hdf5 .or. .not. job%writes(3)
+      if (previous%has_hdf5) is_whole = has_columns(previous%path)
       if (is_whole .and. job%writes(1)) then
          call read_csv(job%file(1), identity, is_ours, rows)
          is_whole = rows == job%part%count()
@@ -115,6 +118,26 @@ contains
       is_whole = rows > 0
       if (previous%has_hdf5) is_whole = rows == history_rows(previous%path)
    end function is_whole
+
+   !> Whether the summary in an HDF5 file has all columns: that of an earlier version has fewer
+   function has_columns(path)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> Whether it has
+      logical :: has_columns
+
+      type(reader_t) :: reader
+      type(member_t), allocatable :: members(:)
+      type(error_t), allocatable :: error
+
+      has_columns = .false.
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      call list_members(reader, 'summary', members, error)
+      has_columns = .not. allocated(error)
+      if (has_columns) has_columns = size(members) >= size(quantities())
+      call close_hdf5(reader)
+   end function has_columns
 
    !> Number of times of the history in an HDF5 file
    function history_rows(path) result(rows)

@@ -7,6 +7,8 @@ module vcor_app_run
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : report, short, significant
    use vcor_app_sweep, only : run_sweep
+   use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
+      solve_exact, warn_of_slips
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
@@ -21,6 +23,7 @@ module vcor_app_run
    use vcor_sweep_summary, only : new_summary, summary_t
    use vcor_sweep_quantity, only : values_of
    use vcor_sweep_sweep, only : solve_point, worker_t
+   use vcor_verify_comparison, only : model_t
    implicit none
    private
 
@@ -36,6 +39,7 @@ contains
       !> unallocated on success. All ranks have the same
       type(error_t), allocatable, intent(out) :: error
 
+      if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(job)
       if (job%sweep%is_grid()) then
          call run_sweep(request, job, error)
       else if (this_rank() == 0) then
@@ -89,20 +93,42 @@ contains
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, table, trouble)
-         if (.not. request%quiet .and. len(inexact(outcome)) > 0) &
-            call remark(job%case%source//': '//inexact(outcome))
+         if (.not. request%quiet) call remark(about_numbers(job, inexact(outcome), &
+            measures_remark(outcome, worker%problem%around)))
       else if (.not. request%quiet) then
-         call write_stdout(report(job%case%source, identity%title, &
-            method_of(job, worker%trajectory), outcome, &
-            worker%trajectory%state(1, worker%trajectory%last), &
-            kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
-            //as_line(replaced(previous))), trouble)
+         call write_screen()
       end if
       if (allocated(trouble)) then
          call move_alloc(trouble, error)
       else if (request%quiet .or. size(request%names) > 0) then
          call remark(replaced(previous))
       end if
+
+   contains
+
+      !> The report, with what the exact mechanics give
+      subroutine write_screen()
+         type(model_t) :: exact
+         character(len=:), allocatable :: lines
+         logical :: is_shown
+
+         lines = as_line('mechanics: '//mechanics_of(job))
+         is_shown = .false.
+         if (outcome%status == contact_separated) then
+            call solve_exact(job, outcome, exact, is_shown)
+            if (is_shown) lines = as_line('mechanics: '//mechanics_of(job)//'; exact: ' &
+               //mechanics_of(job, exact))
+            if (allocated(exact%failure)) lines = lines &
+               //as_line('note: no result with exact mechanics: '//exact%failure)
+            lines = lines//measures_report(outcome, worker%problem%around)
+         end if
+         if (.not. is_shown) exact%outcome = outcome_t()
+         call write_stdout(report(job%case%source, identity%title, &
+            method_of(job, worker%trajectory), outcome, exact%outcome, &
+            worker%trajectory%state(1, worker%trajectory%last), lines &
+            //kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
+            //as_line(replaced(previous))), trouble)
+      end subroutine write_screen
    end subroutine run_impact
 
    !> The method that solved an impact
@@ -147,21 +173,11 @@ contains
       type(outcome_t), intent(in) :: outcome
       character(len=:), allocatable :: text
 
-      real(wp) :: radius, half_thickness
-
       text = ''
       if (outcome%status /= contact_separated) return
       if (len(inexact(outcome)) > 0) call add(inexact(outcome))
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
-      call job%case%get('sphere', 'radius', radius)
-      if (outcome%max_indentation > radius) call add("the indentation exceeds the sphere's " &
-         //"radius: Hertz's contact does not apply")
-      if (job%case%given('plate', 'half_thickness')) then
-         call job%case%get('plate', 'half_thickness', half_thickness)
-         if (outcome%max_indentation > 2.0_wp*half_thickness) &
-            call add('the indentation exceeds the thickness of the plate')
-      end if
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it')
       call remark_on_data('sphere')

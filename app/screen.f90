@@ -1,6 +1,6 @@
 !> What the screen shows: headings, lines of a name, a number and a unit; an impact
 module vcor_app_screen
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
@@ -23,7 +23,7 @@ module vcor_app_screen
 contains
 
    !> Report of one impact
-   function report(filename, title, method, outcome, time, files) result(text)
+   function report(filename, title, method, outcome, exact, time, files) result(text)
       !> Case file
       character(len=*), intent(in) :: filename
       !> Title of the case
@@ -31,6 +31,8 @@ contains
       !> Method that solved it
       character(len=*), intent(in) :: method
       type(outcome_t), intent(in) :: outcome
+      !> The same with exact mechanics; without numbers where there is nothing to be said of it
+      type(outcome_t), intent(in) :: exact
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
       !> Remarks and files written, one to a line
@@ -52,6 +54,9 @@ contains
                text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &
                   remark(shown(i)))
+               if (i <= 2 .and. .not. ieee_is_nan(exact%cor)) text = text &
+                  //line('    with exact mechanics', 50, quantity%symbol, &
+                  quantity_value(exact, shown(i)), '', '')
             end associate
          end do
          text = text//nl//budget(outcome)//nl//'  '//method//', ' &
@@ -79,8 +84,9 @@ contains
          character(len=:), allocatable :: remark
 
          remark = ''
-         if (name == 'cor') remark = '+- '//short(outcome%cor_error)
-         if (name == 'cor_sphere') remark = '+- '//short(outcome%cor_sphere_error)
+         if (name == 'cor') remark = '+- '//short(outcome%cor_error)//' numerical'
+         if (name == 'cor_sphere') remark = '+- '//short(outcome%cor_sphere_error) &
+            //' numerical; a drop test reads this'
       end function remark
    end function report
 

@@ -10,6 +10,7 @@ module vcor_app_sweep
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
    use vcor_app_sweep_screen, only : coordinates, inexact, shard_report, sweep_report
+   use vcor_app_validity, only : about_numbers, points_remark, points_report
    use vcor_app_watch, only : watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : trajectory_t
@@ -247,9 +248,14 @@ contains
 
       type(table_t) :: table
       type(trajectory_t) :: none
-      character(len=:), allocatable :: files
+      character(len=:), allocatable :: files, validity, less
 
       call warn_of_bands(job, summary)
+      if (size(request%names) > 0) then
+         validity = points_remark(job%sweep%grid, summary)
+      else
+         validity = points_report(job%sweep%grid, summary)
+      end if
       associate (identity => watch%identity)
          call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
          call write_files(job, identity, table, none, files, error)
@@ -258,10 +264,13 @@ contains
          call watch%file%remove()
          if (size(request%names) > 0) then
             call write_numbers(request, table, error)
-            if (failures%inexact%count > 0 .and. .not. request%quiet) &
-               call remark(job%case%source//': '//inexact(job, failures))
+            if (request%quiet) return
+            less = ''
+            if (failures%inexact%count > 0) less = inexact(job, failures)
+            call remark(about_numbers(job, less, validity))
          else if (.not. request%quiet) then
-            call write_stdout(sweep_report(job, identity%title, table, failures, files), error)
+            call write_stdout(sweep_report(job, identity%title, table, failures, validity, &
+               files), error)
          end if
       end associate
    end subroutine finish_whole

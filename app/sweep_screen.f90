@@ -20,13 +20,15 @@ module vcor_app_sweep_screen
 contains
 
    !> Report of a sweep: what is swept, between what the outcomes lie, what has none and why
-   function sweep_report(job, title, summary, failures, files) result(text)
+   function sweep_report(job, title, summary, failures, validity, files) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
       !> Outcomes
       type(table_t), intent(in) :: summary
       !> What has no result
       type(failures_t), intent(in) :: failures
+      !> What is said of the validity, one to a line
+      character(len=*), intent(in) :: validity
       !> Files written, one to a line
       character(len=*), intent(in) :: files
       !> Text of several lines
@@ -38,6 +40,7 @@ contains
          //method_shown(job)//nl &
          //nl//ranges(summary)
       if (failures%count > 0) text = text//nl//reasons(job, failures)
+      if (len(validity) > 0) text = text//nl//validity
       if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
       if (history .and. any(job%writes)) text = text//nl &

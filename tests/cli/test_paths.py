@@ -96,7 +96,7 @@ def test_program_through_a_link(vcor):
     (vcor.folder / "bin").mkdir()
     (vcor.folder / "bin" / "restitution").symlink_to(program())
     done = subprocess.run(
-        ["restitution", "run", "case.nml", "--print", "cor"],
+        ["restitution", "run", "case.nml", "--print", "cor", "--quiet"],
         cwd=vcor.folder,
         env={"PATH": str(vcor.folder / "bin")},
         capture_output=True,

@@ -1,9 +1,11 @@
 """Whether the model holds: the measures of validity, what is said of them, and the notes on input."""
 
 import math
+import re
 
+import h5py
 import pytest
-from program import INPUT, ROOT, TEXTS
+from program import EXAMPLES, FILE, INPUT, ROOT, SWEEPS, TEXTS, complaint
 
 GLASS = (ROOT / "examples" / "steel_on_glass.nml").read_text(encoding="utf-8")
 BEADS = (ROOT / "examples" / "granular_pair.nml").read_text(encoding="utf-8")
@@ -122,3 +124,231 @@ def test_drop_height_or_velocity(vcor):
 def test_levels(vcor, key, value, measure, level):
     row = numbers(vcor, GLASS, "--set", f"{key}={value}")
     assert (row["validity"], row["validity_cause"]) == (level, measure)
+
+
+# Screen
+
+
+def screen(vcor, text, *words):
+    vcor.write(text)
+    return vcor.succeeds("run", "case.nml", "--output", "out", *words)
+
+
+def test_screen_of_the_paper(vcor):
+    """The mechanics, what the exact ones give, and a sentence for each measure that is not good."""
+    out = screen(vcor, SLS)
+    assert "  mechanics: waves relaxing, law boltzmann; exact: waves hereditary, law receding\n" in out
+    values = re.findall(r"^ .*(?: e| e_a) +([0-9.]+).*$", out, re.MULTILINE)
+    exact = ["--set", "plate.waves=hereditary", "--set", "contact.law=receding"]
+    rows = [numbers(vcor, SLS), numbers(vcor, SLS, *exact)]
+    expected = [row[name] for name in ("cor", "cor_sphere") for row in rows]
+    assert [float(value) for value in values] == pytest.approx(expected, abs=1e-8)
+    assert "numerical\n" in out and "numerical; a drop test reads this\n" in out
+    said = re.findall(r"^    (outside|caution): (\w+) (\S+): .{30,100}$", out, re.MULTILINE)
+    names = [name for _, name, _ in said]
+    assert names == ["plate_wave_number", "contact_ratio", "thickness_ratio"]
+    assert [level for level, *_ in said] == ["outside", "caution", "caution"]
+    for _, name, value in said:
+        assert float(value) == pytest.approx(rows[0][name], rel=0.01)
+    assert "  validity: outside\n" in out
+
+
+@pytest.mark.parametrize("text", [GLASS, BEADS, DROPPED])
+def test_silent_where_it_is_sound(vcor, text):
+    out = screen(vcor, text)
+    assert "  validity: good\n" in out and "caution" not in out and "outside" not in out
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.err == ""
+
+
+def test_exact_mechanics(vcor):
+    """Shown where they differ: not of elastic bodies, nor where they are the case's own."""
+    assert "exact" not in screen(vcor, GLASS)
+    own = (ROOT / "examples" / "sls_exact.nml").read_text(encoding="utf-8")
+    assert "exact mechanics  " not in screen(vcor, own)
+    assert "with exact mechanics" in screen(vcor, BEADS)
+    pair = BEADS.replace("material = 'cellulose acetate'\n   waves", "material = 'other'\n   waves")
+    pair += """&material name = 'other', model = 'sls', poisson_ratio = 0.3, glassy_modulus = 3e9,
+       alpha = 1e4, beta = 2e4 /\n"""
+    out = screen(vcor, pair, "--set", "contact.pair=series")
+    assert "law boltzmann, pair series; exact: waves none, law receding, pair series" in out
+
+
+def test_exact_mechanics_without_result(vcor):
+    out = screen(vcor, SLS, "--set", "solver.volterra_order=2")
+    assert "note: no result with exact mechanics: " in out and "    with exact" not in out
+
+
+def test_every_sentence(vcor):
+    words = ["--set", "plate.extent=0.02", "--set", "rubber.yield_strength=1e6"]
+    out = screen(vcor, SLS, *words, "--set", "impact.velocity=100")
+    for name in ["contact_ratio", "thickness_ratio", "plate_wave_number", "needed_extent",
+                 "mean_pressure", "half_space_loss"]:
+        assert f"    outside: {name} " in out
+    slow = ["--set", "impact.velocity=1e-2", "--set", "plate.half_thickness=2e-3"]
+    out = screen(vcor, SLS, *slow)
+    assert re.search(r"^    \w+: weight_ratio .*gravity", out, re.MULTILINE)
+    thin = ["--set", "plate.half_thickness=5e-4", "--set", "impact.velocity=100"]
+    out = screen(vcor, GLASS, *thin)
+    assert re.search(r"^    \w+: deflection_ratio .*thicker plate$", out, re.MULTILINE)
+
+
+def test_bare_numbers(vcor):
+    """One line on stderr, none with --quiet."""
+    vcor.write(SLS)
+    done = vcor("run", "case.nml", "--print", "validity")
+    assert done.out == "outside\n"
+    assert done.err == ("vcor: note: case.nml: validity outside: contact_ratio 0.671, "
+                        "thickness_ratio 0.168, plate_wave_number 1.62\n")
+    assert vcor("run", "case.nml", "--print", "validity", "--quiet").err == ""
+
+
+# Sweeps
+
+
+VELOCITIES = "&sweep parameter = 'impact.velocity', values = 0.01, 0.1, 1, 10, 100 /\n"
+
+
+def test_sweep(vcor):
+    """How many, by which measure, where: the same from one run and from its shards."""
+    vcor.write(SLS + VELOCITIES + "&sweep parameter = 'sphere.radius', values = 0.002, 0.01 /\n")
+    out = vcor.succeeds("run", "case.nml", "--output", "out")
+    found = re.search(r"^  validity: (.*)\n((?:    .*\n)+)", out, re.MULTILINE)
+    with h5py.File(vcor.folder / "out" / "case.h5") as file:
+        table = file["summary"]
+        level, cause = table["validity"].asstr()[:], table["validity_cause"].asstr()[:]
+        velocity, radius = table["impact.velocity"][:], table["sphere.radius"][:]
+    for word in ("outside", "caution"):
+        some = level == word
+        assert (f"{some.sum()} of 10 points {word} (" in found[1]) == some.any()
+        for name in set(cause[some]):
+            here = some & (cause == name)
+            rows, columns = here.nonzero()
+            line = rf"    {word}: {here.sum()} by {name}, impact.velocity (\S+)(?: \.\. (\S+))?, "
+            line += r"sphere.radius (\S+)(?: \.\. (\S+))?\n"
+            ends = [text and float(text) for text in re.search(line, found[2]).groups()]
+            assert ends[0] == velocity[rows].min() and ends[1] in (None, velocity[rows].max())
+            assert ends[2] == radius[columns].min() and ends[3] in (None, radius[columns].max())
+    for number in (1, 2):
+        part = vcor.succeeds("run", "case.nml", "--output", "out", "--shard", f"{number}/2")
+        assert "validity" not in part
+    merged = vcor.succeeds("merge", "out/case_shard_1_of_2.h5", "out/case_shard_2_of_2.h5",
+                           "--output", "merged")
+    assert found[0] in merged
+    with h5py.File(vcor.folder / "merged" / "case.h5") as file:
+        assert (file["summary/validity"].asstr()[:] == level).all()
+        assert (file["summary/validity_cause"].asstr()[:] == cause).all()
+
+
+def test_sweep_of_bare_numbers(vcor):
+    vcor.write(SLS + VELOCITIES)
+    done = vcor("run", "case.nml", "--print", "validity,validity_cause")
+    levels = [line.split() for line in done.out.splitlines()]
+    n = [level for level, _ in levels].count("outside")
+    assert re.fullmatch(rf"vcor: note: case.nml: validity: {n} of 5 points outside \(.*\n", done.err)
+    assert vcor("run", "case.nml", "--print", "validity", "--quiet").err == ""
+    vcor.write(GLASS + "&sweep parameter = 'impact.velocity', values = 0.1, 1 /\n")
+    assert vcor("run", "case.nml", "--print", "cor").err == ""
+    assert "validity" not in vcor.succeeds("run", "case.nml", "--output", "out")
+
+
+def test_points_without_result(vcor):
+    vcor.write(SLS + "&sweep parameter = 'sphere.radius', values = -1, 0.01 /\n")
+    done = vcor("run", "case.nml", "--print", "validity,validity_cause,contact_ratio")
+    assert done.out.splitlines()[0] == "none none nan"
+    assert "1 of 2 points outside" in done.err
+
+
+def test_resume(vcor):
+    """Texts are read back as they were."""
+    vcor.write(SLS + VELOCITIES)
+    vcor.succeeds("run", "case.nml", "--output", "out")
+    whole = (vcor.folder / "out" / "case_summary.csv").read_bytes()
+    (vcor.folder / "out" / "case_summary.csv").unlink()
+    out = vcor.succeeds("run", "case.nml", "--output", "out", "--resume")
+    assert (vcor.folder / "out" / "case_summary.csv").read_bytes() == whole
+    assert "  validity: " in out
+
+
+@pytest.mark.parametrize("shard", [[], ["--shard", "1/1"]])
+def test_results_of_a_former_version(vcor, shard):
+    """Without these columns: one clear line."""
+    vcor.write(SLS + VELOCITIES)
+    vcor.succeeds("run", "case.nml", "--output", "out", *shard)
+    (path,) = (vcor.folder / "out").glob("*.h5")
+    with h5py.File(path, "r+") as file:
+        del file["summary/contact_ratio"], file["summary/validity"]
+    done = vcor("run", "case.nml", "--output", "out", "--resume", *shard)
+    complaint(done, FILE, ["contact_ratio", "earlier version"])
+    if shard:
+        complaint(vcor("merge", path.relative_to(vcor.folder)), FILE, ["contact_ratio", "earlier version"])
+
+
+# Notes on input
+
+
+SLIPS = [
+    ("impact.velocity=2", None),
+    ("sphere.radius=4", "is it in mm?"),
+    ("bearing_steel.density=7.8", "is it in g/cm3?"),
+    ("bearing_steel.density=7.8e6", "is it in g/m3?"),
+    ("bearing_steel.modulus=210", "is it in kPa, MPa or GPa?"),
+    ("float_glass.modulus=70e12", "has it a power of ten too many?"),
+    ("float_glass.poisson_ratio=-0.2", "is the sign right?"),
+]
+
+
+@pytest.mark.parametrize("command", ["check", "run"])
+@pytest.mark.parametrize("setting, slip", SLIPS)
+def test_slips(vcor, command, setting, slip):
+    vcor.write(GLASS)
+    done = vcor(command, "case.nml", "--set", setting)
+    path = setting.partition("=")[0]
+    warnings = [line for line in done.err.splitlines() if line.startswith("vcor: warning: ")]
+    assert len(warnings) == (slip is not None)
+    if slip:
+        assert warnings[0].startswith(f"vcor: warning: --set {path}: {path} = ")
+        assert warnings[0].endswith(slip)
+    if command == "run":
+        assert "warning" not in vcor("run", "case.nml", "--set", setting, "--quiet").err
+
+
+RELAXING = [
+    ("model = 'prony', moduli = 1e6, 20, rates = 1e3, 1e2", None),
+    ("model = 'prony', equilibrium_modulus = 10, moduli = 1e6, rates = 1e3", None),
+    ("model = 'prony', moduli = 1, 20, rates = 1e3, 1e2", ".moduli = 20.0 Pa is less than 1000.0"),
+    ("model = 'prony', moduli = 1e6, times = 1e-14", ".times = 1.0e-14 s is less"),
+    ("model = 'prony', moduli = 1e6, rates = 1e14", ".rates = 1.0e14 1/s is more"),
+    ("model = 'sls', glassy_modulus = 1e6, alpha = 1, beta = 2e13", ".beta = 2.0e13 1/s is more"),
+    ("model = 'cerf', relaxing_modulus = 1e6, beta = 1e6", None),
+    ("model = 'cerf', relaxing_modulus = 1e6, beta = 1e7", ".beta = 1.0e7 s^-1/2 is more"),
+]
+
+
+@pytest.mark.parametrize("model, says", RELAXING)
+def test_slips_of_relaxation(vcor, model, says):
+    """A line of the file; the largest term of a series counts."""
+    body = GLASS.replace("model   = 'elastic'", f"poisson_ratio = 0.3,\n{model}", 1)
+    body = body.replace("   poisson_ratio = 0.30\n   modulus = 210.0e9              ! Pa\n", "")
+    vcor.write(body)
+    done = vcor("check", "case.nml")
+    assert done.code == 0
+    if says is None:
+        assert done.err == ""
+    else:
+        line = next(i for i, text in enumerate(body.splitlines(), 1) if text == model)
+        assert re.fullmatch(rf"vcor: warning: case.nml:{line}: bearing_steel"
+                            rf"{re.escape(says)}.*\n", done.err)
+
+
+def test_slips_of_a_sweep(vcor):
+    vcor.write(GLASS + "&sweep parameter = 'float_glass.density',\n   values = 2500, 2.5 /\n")
+    done = vcor("check", "case.nml")
+    assert done.err.count("\n") == 1
+    assert "float_glass.density = 2.5 kg/m3 is less than 10.0: is it in g/cm3?" in done.err
+    assert done.err.startswith(f"vcor: warning: case.nml:{len(GLASS.splitlines()) + 1}: ")
+
+
+@pytest.mark.parametrize("path", [*EXAMPLES, *SWEEPS], ids=lambda path: path.stem)
+def test_examples_are_plausible(vcor, path):
+    assert "warning" not in vcor("check", path).err

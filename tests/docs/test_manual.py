@@ -139,4 +139,4 @@ def test_every_column(document, vcor, run):
 def test_the_example_of_the_input_runs(vcor, run, tmp_path):
     text = (ROOT / "docs/input.md").read_text().split("```fortran\n")[1].split("```")[0]
     (tmp_path / "case.nml").write_text(text)
-    assert 0 < float(run(vcor, "run", "case.nml", "--print", "cor", cwd=tmp_path)) < 1
+    assert 0 < float(run(vcor, "run", "case.nml", "--print", "cor", "--quiet", cwd=tmp_path)) < 1

@@ -41,6 +41,8 @@ module vcor_impact_contact
       real(wp), allocatable :: node(:)
       !> Their weights, shape (n)
       real(wp), allocatable :: weight(:)
+      !> Rules of the transform of a pair, made once for the frequencies of all impacts, shape (n)
+      real(wp), dimension(:), allocatable :: sine_node, sine_weight, cosine_node, cosine_weight
       !> What fits sums of exponentials to a pair; not allocated where they need not be fitted
       type(signed_fit_t), allocatable :: fit
    contains
@@ -130,6 +132,7 @@ contains
          self%first_factor = sphere%plane_strain_factor()
          self%second_factor = plate%plane_strain_factor()
          call graded_rule(ends, self%node, self%weight)
+         call fourier_rule(self%sine_node, self%sine_weight, self%cosine_node, self%cosine_weight)
          if (.not. expands(self)) then
             if (.not. allocated(fit)) then
                allocate (fit)
@@ -286,15 +289,14 @@ contains
       !> Storage + i loss [Pa]
       complex(wp) :: modulus
 
-      real(wp), allocatable :: sine_node(:), sine_weight(:), cosine_node(:), cosine_weight(:)
       real(wp) :: rubbery_modulus, storage, loss
 
       if (allocated(self%second)) then
          rubbery_modulus = self%rubbery()
-         call fourier_rule(sine_node, sine_weight, cosine_node, cosine_weight)
          storage = rubbery_modulus &
-            + sum(sine_weight*(self%relaxation(sine_node/omega) - rubbery_modulus))
-         loss = sum(cosine_weight*(self%relaxation(cosine_node/omega) - rubbery_modulus))
+            + sum(self%sine_weight*(self%relaxation(self%sine_node/omega) - rubbery_modulus))
+         loss = sum(self%cosine_weight &
+            *(self%relaxation(self%cosine_node/omega) - rubbery_modulus))
          modulus = cmplx(storage, loss, wp)
       else
          modulus = self%first_factor*self%first%complex_modulus(cmplx(0.0_wp, omega, wp))

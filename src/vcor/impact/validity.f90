@@ -15,9 +15,9 @@ module vcor_impact_validity
    implicit none
    private
 
-   public :: surroundings_t, assess, half_space_resistance
-   public :: threshold_t, thresholds, judged, levels, level_none, level_good, level_caution, &
-      level_outside
+   public :: surroundings_t, assess, judge, half_space_resistance
+   public :: threshold_t, thresholds, judged, level_of
+   public :: levels, level_none, level_good, level_caution, level_outside
 
    !> Levels of validity: of an impact without result
    integer, parameter :: level_none = 0
@@ -250,11 +250,11 @@ contains
 
       values = judged(outcome, around)
       outcome%validity = level_good
+      outcome%validity_cause = 0
       largest = 0.0_wp
       do i = 1, size(thresholds)
-         if (ieee_is_nan(values(i))) cycle
          level = level_of(i, values(i))
-         if (level == level_good .or. level < outcome%validity) cycle
+         if (level <= level_good .or. level < outcome%validity) cycle
          excess = values(i)/thresholds(i)%caution
          if (level == outcome%validity .and. excess <= largest) cycle
          outcome%validity = level
@@ -267,11 +267,13 @@ contains
    pure function level_of(measure, value) result(level)
       !> Its place in `thresholds`
       integer, intent(in) :: measure
-      !> What is held against its threshold
+      !> What is held against its threshold; NaN: nothing
       real(wp), intent(in) :: value
       !> One of the `level_*` constants
       integer :: level
 
+      level = level_none
+      if (ieee_is_nan(value)) return
       level = level_good
       if (value >= thresholds(measure)%caution) level = level_caution
       if (value >= thresholds(measure)%outside) level = level_outside

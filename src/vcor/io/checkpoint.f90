@@ -471,7 +471,9 @@ contains
          if (.not. allocated(error)) checks = dataset%column%integers
       end if
       call close_hdf5(reader)
-      if (allocated(error)) error%code = error_file
+      if (.not. allocated(error)) return
+      error%code = error_file
+      error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
    end subroutine read_columns
 
    !> Find the numbers that the texts of a column stand for

@@ -21,7 +21,7 @@ module vcor_verify_comparison
    implicit none
    private
 
-   public :: compare, model_t, solve_models
+   public :: compare, model_t, solve_models, solve_model, differ
 
    !> The case with one plate model, one contact law and one pair
    type :: model_t

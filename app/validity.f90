@@ -1,0 +1,308 @@
+!> What is said of the validity of results: the measures that are not good, one sentence each, and
+!> how many points of a sweep they are; and of input that is not plausible
+module vcor_app_validity
+   use, intrinsic :: iso_fortran_env, only : error_unit
+   use vcor_app_band, only : share_text => percent
+   use vcor_app_job, only : job_t
+   use vcor_app_screen, only : significant
+   use vcor_case_grid, only : grid_t
+   use vcor_case_plausibility, only : note_length, slips_of
+   use vcor_case_unread, only : why_unread
+   use vcor_constants, only : pi
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
+      levels, surroundings_t, thresholds
+   use vcor_kinds, only : wp
+   use vcor_sweep_quantity, only : quantity_place, quantity_value
+   use vcor_sweep_summary, only : summary_t
+   use vcor_text, only : integer_text
+   use vcor_verify_comparison, only : differ, model_t, solve_model
+   implicit none
+   private
+
+   public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
+      points_remark, about_numbers, warn_of_slips
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+
+contains
+
+   !> Warn on stderr of numbers that are not plausible
+   subroutine warn_of_slips(job)
+      type(job_t), intent(in) :: job
+
+      character(len=note_length), allocatable :: notes(:)
+      integer :: i
+
+      call slips_of(job%case, job%sweep%grid, notes)
+      do i = 1, size(notes)
+         write (error_unit, '(a)') 'vcor: warning: '//trim(notes(i))
+      end do
+   end subroutine warn_of_slips
+
+   !> Mechanics of a case, as far as it reads them
+   function mechanics_of(job, exact) result(text)
+      type(job_t), intent(in) :: job
+      !> Other mechanics to name in their place
+      type(model_t), intent(in), optional :: exact
+      !> As `waves relaxing, law boltzmann`
+      character(len=:), allocatable :: text
+
+      character(len=*), parameter :: groups(3) = [character(len=7) :: 'plate', 'contact', 'contact']
+      character(len=*), parameter :: keys(3) = [character(len=5) :: 'waves', 'law', 'pair']
+      character(len=:), allocatable :: word
+      integer :: i
+
+      text = ''
+      do i = 1, size(keys)
+         if (why_unread(job%case, job%case%address(trim(groups(i)), trim(keys(i)))) /= '') cycle
+         call job%case%get(trim(groups(i)), trim(keys(i)), word)
+         if (present(exact)) then
+            word = trim(exact%law)
+            if (i == 1) word = trim(exact%waves)
+            if (i == 3) word = trim(exact%pair)
+         end if
+         text = text//', '//trim(keys(i))//' '//word
+      end do
+      text = text(3:)
+   end function mechanics_of
+
+   !> Solve the impact of a case with the exact mechanics
+   subroutine solve_exact(job, outcome, exact, is_shown)
+      type(job_t), intent(in) :: job
+      !> Its outcome
+      type(outcome_t), intent(in) :: outcome
+      !> The same with the exact mechanics
+      type(model_t), intent(out) :: exact
+      !> Whether they make a difference, or have no result
+      logical, intent(out) :: is_shown
+
+      character(len=:), allocatable :: waves
+      logical :: is_valid
+
+      call job%case%get('plate', 'waves', waves)
+      exact = model_t(merge('none      ', 'hereditary', waves == 'none'), 'receding', 'series')
+      call solve_model(job%case, exact, is_valid)
+      is_shown = allocated(exact%failure)
+      if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
+   end subroutine solve_exact
+
+   !> The level of an impact and the measures that are not good, a line each
+   function measures_report(outcome, around) result(text)
+      type(outcome_t), intent(in) :: outcome
+      !> What is around the impact
+      type(surroundings_t), intent(in) :: around
+      !> Lines; the first has the level
+      character(len=:), allocatable :: text
+
+      real(wp) :: values(size(thresholds))
+      integer :: i, level
+
+      text = '  validity: '//trim(levels(outcome%validity))//nl
+      values = judged(outcome, around)
+      do level = level_outside, level_caution, -1
+         do i = 1, size(thresholds)
+            if (level_of(i, values(i)) == level) text = text//'    '//trim(levels(level))//': ' &
+               //measure_text(outcome, i)//': '//sentence(i)//nl
+         end do
+      end do
+
+   contains
+
+      !> What a measure says of this impact, and what to do about it
+      function sentence(measure) result(words)
+         !> Its place in `thresholds`
+         integer, intent(in) :: measure
+         character(len=:), allocatable :: words
+
+         associate (value => values(measure))
+            select case (thresholds(measure)%measure)
+            case ('contact_ratio')
+               if (value > outcome%contact_ratio) then
+                  words = 'the sphere gives way and is no half space, its dent is about ' &
+                     //percent(0.5_wp*outcome%sphere_ratio) &
+                     //' too deep; a slower impact makes a smaller contact'
+                  return
+               end if
+               ! the first term of Sneddon's force over Hertz'
+               words = "Hertz' force is about "//percent(0.1_wp*value**2) &
+                  //' too high; a slower impact makes a smaller contact'
+            case ('thickness_ratio')
+               words = 'the dent feels the back of the plate, the force is about ' &
+                  //percent(value)//' too low; take a thicker plate'
+            case ('plate_wave_number')
+               words = 'the wave is only '//brief(2.0_wp*pi/value) &
+                  //" thicknesses long, too short for a thin plate; compare waves = 'none'"
+            case ('needed_extent')
+               words = 'plate.extent is '//brief(around%extent) &
+                  //' m, the wave returns during the contact; take a larger plate'
+            case ('deflection_ratio')
+               words = 'the plate bends by '//percent(value) &
+                  //' of its thickness, too far for linear bending; take a thicker plate'
+            case ('weight_ratio')
+               words = 'the weight is '//percent(value) &
+                  //' of the largest force, and gravity is left out; take a faster impact'
+            case ('mean_pressure')
+               words = brief(value)//' times the yield strength (first yield: 1.07), cor is ' &
+                  //'too high; take a slower impact'
+            case default
+               words = 'a thick plate takes up '//percent(value) &
+                  //' of the energy more than is computed; cor may be too high'
+            end select
+         end associate
+      end function sentence
+   end function measures_report
+
+   !> The level of an impact that is not good and its measures, for one line
+   function measures_remark(outcome, around) result(text)
+      type(outcome_t), intent(in) :: outcome
+      !> What is around the impact
+      type(surroundings_t), intent(in) :: around
+      !> Words, none where all is good or there is no result
+      character(len=:), allocatable :: text
+
+      real(wp) :: values(size(thresholds))
+      integer :: i
+
+      text = ''
+      if (outcome%validity <= level_good) return
+      values = judged(outcome, around)
+      do i = 1, size(thresholds)
+         if (level_of(i, values(i)) > level_good) text = text//', '//measure_text(outcome, i)
+      end do
+      text = 'validity '//trim(levels(outcome%validity))//': '//text(3:)
+   end function measures_remark
+
+   !> Points of a sweep that are not good: how many, by which measure, and where
+   function points_report(grid, summary) result(text)
+      !> Points of the sweep
+      type(grid_t), intent(in) :: grid
+      !> Outcomes of all of them
+      type(summary_t), intent(in) :: summary
+      !> Lines, none where all is good
+      character(len=:), allocatable :: text
+
+      logical, allocatable :: chosen(:)
+      integer :: cause, level
+
+      text = points_remark(grid, summary)
+      if (text == '') return
+      text = '  '//text//nl
+      allocate (chosen(size(summary%status)))
+      do level = level_outside, level_caution, -1
+         do cause = 1, size(thresholds)
+            chosen = summary%values(quantity_place('validity'))%integers == level .and. &
+               summary%values(quantity_place('validity_cause'))%integers == cause
+            if (any(chosen)) text = text//'    '//trim(levels(level))//': ' &
+               //integer_text(count(chosen))//' by '//trim(thresholds(cause)%measure)//', ' &
+               //place_of(grid, chosen)//nl
+         end do
+      end do
+   end function points_report
+
+   !> Points of a sweep that are not good, for one line
+   function points_remark(grid, summary) result(text)
+      !> Points of the sweep
+      type(grid_t), intent(in) :: grid
+      !> Outcomes of all of them
+      type(summary_t), intent(in) :: summary
+      !> Words, none where all is good
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: causes
+      integer :: cause, level
+
+      text = ''
+      associate (found => summary%values(quantity_place('validity'))%integers, &
+                 by => summary%values(quantity_place('validity_cause'))%integers)
+         do level = level_outside, level_caution, -1
+            if (.not. any(found == level)) cycle
+            causes = ''
+            do cause = 1, size(thresholds)
+               if (any(found == level .and. by == cause)) &
+                  causes = causes//', '//trim(thresholds(cause)%measure)
+            end do
+            text = text//', '//integer_text(count(found == level))//' of ' &
+               //integer_text(grid%count())//' points '//trim(levels(level))//' ('//causes(3:)//')'
+         end do
+      end associate
+      if (text /= '') text = 'validity: '//text(3:)
+   end function points_remark
+
+   !> What is said of bare numbers, in one line
+   pure function about_numbers(job, inexact, validity) result(text)
+      type(job_t), intent(in) :: job
+      !> What there is to say of their accuracy; nothing is fine
+      character(len=*), intent(in) :: inexact
+      !> And of their validity
+      character(len=*), intent(in) :: validity
+      !> The line, or nothing
+      character(len=:), allocatable :: text
+
+      text = inexact
+      if (inexact /= '' .and. validity /= '') text = text//'; '
+      text = text//validity
+      if (text /= '') text = job%case%source//': '//text
+   end function about_numbers
+
+   !> Between what values of the parameters points lie
+   function place_of(grid, chosen) result(text)
+      !> Points of the sweep
+      type(grid_t), intent(in) :: grid
+      !> Which of them, shape (points)
+      logical, intent(in) :: chosen(:)
+      !> Names and ranges
+      character(len=:), allocatable :: text
+
+      real(wp) :: least(size(grid%axes)), most(size(grid%axes))
+      integer :: i, k, places(size(grid%axes))
+
+      least = huge(least)
+      most = -huge(most)
+      do i = 1, size(chosen)
+         if (.not. chosen(i)) cycle
+         places = grid%places(i)
+         do k = 1, size(places)
+            least(k) = min(least(k), grid%axes(k)%values(places(k)))
+            most(k) = max(most(k), grid%axes(k)%values(places(k)))
+         end do
+      end do
+      text = ''
+      do k = 1, size(places)
+         text = text//', '//grid%axes(k)%name//' '//brief(least(k))
+         if (most(k) > least(k)) text = text//' .. '//brief(most(k))
+      end do
+      text = text(3:)
+   end function place_of
+
+   !> A measure and its value
+   function measure_text(outcome, measure) result(text)
+      type(outcome_t), intent(in) :: outcome
+      !> Its place in `thresholds`
+      integer, intent(in) :: measure
+      !> As `contact_ratio 0.67`
+      character(len=:), allocatable :: text
+
+      text = trim(thresholds(measure)%measure)
+      text = text//' '//brief(quantity_value(outcome, text))
+   end function measure_text
+
+   !> A number with three digits
+   function brief(value) result(text)
+      real(wp), intent(in) :: value
+      character(len=:), allocatable :: text
+
+      text = trim(adjustl(significant(value, 3)))
+   end function brief
+
+   !> A share in percent, with two digits
+   function percent(share) result(text)
+      real(wp), intent(in) :: share
+      character(len=:), allocatable :: text
+
+      text = brief(100.0_wp*share)//' %'
+      if (share < 1.0_wp) text = share_text(share)
+   end function percent
+
+end module vcor_app_validity

@@ -1,0 +1,144 @@
+!> Measures of validity: thresholds, resistance of a half space, indentation between nodes
+program test_validity
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : col_indentation, col_time, col_velocity, trajectory_t
+   use vcor_impact_validity, only : half_space_resistance, judge, level_caution, level_good, &
+      level_none, level_outside, surroundings_t, thresholds
+   use vcor_kinds, only : wp
+   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_test, only : check, check_relative, finish, suite
+   implicit none
+
+   real(wp), parameter :: rounding = 1.0e-14_wp
+
+   call suite("validity")
+   call test_resistance()
+   call test_thresholds()
+   call test_cause()
+   call test_indentation()
+   call finish()
+
+contains
+
+   !> Miller and Pursey's integral, from a path around its singularities (9 digits)
+   subroutine test_resistance()
+      real(wp), parameter :: ratio(6) = [-0.5_wp, 0.0_wp, 0.25_wp, 0.3_wp, 0.4_wp, 0.5_wp]
+      real(wp), parameter :: expected(6) = [2.44644576_wp, 1.34437530_wp, 0.930752602_wp, &
+         0.862223129_wp, 0.742946155_wp, 0.656117003_wp]
+      ! half a digit, and what the rule of 48 nodes leaves
+      real(wp), parameter :: tolerance = 1.0e-8_wp
+      real(wp) :: node(48), weight(48)
+      integer :: i
+
+      call gauss_nodes(node, weight)
+      do i = 1, size(ratio)
+         call check_relative(half_space_resistance(ratio(i), node, weight), expected(i), &
+            tolerance, "resistance of a half space")
+      end do
+   end subroutine test_resistance
+
+   !> Each measure by itself, on either side of both thresholds
+   subroutine test_thresholds()
+      real(wp), parameter :: below = 0.999_wp, above = 1.001_wp
+      integer :: i
+
+      call check(level_at(0, 0.0_wp) == level_good, "good where nothing is judged")
+      do i = 1, size(thresholds)
+         associate (name => thresholds(i)%measure, row => thresholds(i))
+            call check(level_at(i, below*row%caution) == level_good, name//" is good")
+            call check(level_at(i, above*row%caution) == level_caution, name//": caution")
+            call check(level_at(i, below*row%outside) == level_caution, name//": caution still")
+            call check(level_at(i, above*row%outside) == level_outside, name//" is outside")
+         end associate
+      end do
+   end subroutine test_thresholds
+
+   !> Level of an impact of which one measure is known, or none; it has to be the cause
+   function level_at(measure, value) result(level)
+      !> Its place in the table, 0: none
+      integer, intent(in) :: measure
+      !> Value that is held against the threshold
+      real(wp), intent(in) :: value
+      !> What it comes to
+      integer :: level
+
+      real(wp), parameter :: scale = 3.0_wp
+      type(outcome_t) :: outcome
+      type(surroundings_t) :: around
+
+      outcome%sphere_ratio = 0.0_wp
+      select case (measure)
+      case (0)
+         call check(outcome%validity == level_none, "nothing without a result")
+      case (1)
+         outcome%contact_ratio = value
+      case (2)
+         outcome%thickness_ratio = value
+      case (3)
+         outcome%plate_wave_number = value
+      case (4)
+         around%extent = scale
+         outcome%needed_extent = scale*value
+      case (5)
+         outcome%deflection_ratio = value
+      case (6)
+         outcome%weight_ratio = value
+      case (7)
+         around%yield_strength = scale
+         outcome%mean_pressure = scale*value
+      case (8)
+         ! what is computed as waves is not lost
+         outcome%initial_energy = scale
+         outcome%wave_energy = scale*0.25_wp
+         outcome%half_space_loss = 0.25_wp + value
+      case default
+         call check(.false., "every measure is tested")
+      end select
+      call judge(outcome, around)
+      level = outcome%validity
+      call check(outcome%validity_cause == merge(measure, 0, level > level_good), "the cause")
+   end function level_at
+
+   !> The worst level counts, and in it what is farthest beyond its first threshold
+   subroutine test_cause()
+      type(outcome_t) :: outcome
+      type(surroundings_t) :: around
+
+      outcome%weight_ratio = 0.09_wp
+      outcome%sphere_ratio = 0.0_wp
+      outcome%contact_ratio = 0.5_wp
+      call judge(outcome, around)
+      call check(thresholds(outcome%validity_cause)%measure == 'weight_ratio', "nine times caution")
+      outcome%contact_ratio = 0.9_wp
+      call judge(outcome, around)
+      call check(thresholds(outcome%validity_cause)%measure == 'contact_ratio', &
+         "outside is worse than any caution")
+   end subroutine test_cause
+
+   !> Between equal steps the cubic of a cubic, in the last and shorter step too
+   subroutine test_indentation()
+      real(wp), parameter :: time(0:3) = [0.0_wp, 1.0_wp, 2.0_wp, 2.5_wp]
+      real(wp), parameter :: between(4) = [0.3_wp, 1.0_wp, 1.9_wp, 2.4_wp]
+      type(trajectory_t) :: trajectory
+      integer :: i
+
+      call trajectory%reserve(3)
+      trajectory%last = 3
+      trajectory%state(col_time, :) = time
+      trajectory%state(col_indentation, :) = cubic(time)
+      trajectory%state(col_velocity, :) = 2.0_wp - 3.0_wp*(time - 1.0_wp)**2
+      do i = 1, size(between)
+         call check_relative(trajectory%indentation_at(between(i)), cubic(between(i)), rounding, &
+            "indentation between nodes")
+      end do
+   end subroutine test_indentation
+
+   !> A cubic
+   elemental function cubic(t)
+      real(wp), intent(in) :: t
+      real(wp) :: cubic
+
+      cubic = 3.0_wp + 2.0_wp*t - (t - 1.0_wp)**3
+   end function cubic
+
+end program test_validity
