@@ -27,9 +27,7 @@ module vcor_solver_convolution
       !> reversed(room - i) = W_i, so that sums run forward through both arrays, shape (room)
       real(wp), allocatable, private :: reversed(:)
    contains
-      !> Set the weights
       procedure :: set
-      !> Sum over a part of the past
       procedure :: sum_over
    end type convolution_t
 
@@ -40,11 +38,8 @@ module vcor_solver_convolution
       !> sums(m) = C_n(m)
       real(wp), allocatable, private :: sums(:)
    contains
-      !> Make room and set the kernel
       procedure :: prepare
-      !> The double sum without the newest value
       procedure :: past
-      !> Take the newest value in
       procedure :: accept
    end type second_term_t
 

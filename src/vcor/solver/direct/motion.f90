@@ -64,13 +64,9 @@ module vcor_solver_direct_motion
       !> Differences of I [N s] and J [N s2] from node to node, for the memory
       real(wp), allocatable, private :: di(:), dj(:)
    contains
-      !> Make room
       procedure :: prepare
-      !> Go to the next node
       procedure :: advance
-      !> Set the motion as a function of the force
       procedure :: respond
-      !> Take the force in
       procedure :: accept
    end type motion_t
 

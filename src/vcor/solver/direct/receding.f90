@@ -35,11 +35,8 @@ module vcor_solver_direct_receding
       !> Its differences [m]; that of the first step stands for the one before
       real(wp), allocatable, private :: ds(:)
    contains
-      !> Make room
       procedure :: prepare
-      !> Go on to the next step
       procedure :: accept
-      !> Find the force in a step
       procedure :: find_force
    end type receding_t
 

@@ -24,9 +24,7 @@ module vcor_solver_direct_weights
       !> Moments v_i [N/m^1.5], shape (0:room-1)
       real(wp), allocatable :: moment(:)
    contains
-      !> Compute the weights
       procedure :: prepare
-      !> Integral of the kernel over the later part of a step
       procedure :: part
    end type contact_kernel_t
 

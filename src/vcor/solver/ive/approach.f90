@@ -65,11 +65,8 @@ module vcor_solver_ive_approach
       !> Panels
       type(stretch_t), allocatable, private :: stretch(:)
    contains
-      !> Add a panel
       procedure :: add
-      !> Force and condition by t1
       procedure :: evaluate
-      !> Another t1
       procedure :: moved
    end type approach_t
 

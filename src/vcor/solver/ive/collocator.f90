@@ -36,7 +36,6 @@ module vcor_solver_ive_collocator
       !> an end
       real(wp) :: near_tolerance = 0.0_wp
    contains
-      !> Values of a polynomial at the nodes of `coarse`
       procedure :: coarsened
    end type collocator_t
 

@@ -42,15 +42,10 @@ module vcor_solver_ive_course
       !> Whether the contact ends with the panel, and whether the computation does
       logical :: ends = .false., last = .false.
    contains
-      !> Error of the motion that a panel adds
       procedure :: motion_error
-      !> By how much a difference grows over it
       procedure :: growth_of
-      !> Whether an end does not become better
       procedure :: is_best_end
-      !> Factor by which the next panel can be longer
       procedure :: growth_of_step
-      !> Error that the contact time may have
       procedure :: time_tolerance
    end type course_t
 

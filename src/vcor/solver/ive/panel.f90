@@ -69,11 +69,8 @@ module vcor_solver_ive_panel
       !> Whether Newton's iteration converged
       logical :: converged = .false.
    contains
-      !> Set what is known before the panel is solved
       procedure :: begin
-      !> Positions of times in the panel
       procedure :: theta
-      !> Rate of a value at its end
       procedure :: pace_at_end
    end type panel_t
 

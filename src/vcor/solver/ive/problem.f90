@@ -58,23 +58,14 @@ module vcor_solver_ive_problem
       !> What rounding may leave of a correction of it
       real(wp) :: noise = 0.0_wp
    contains
-      !> Begin the rebound
       procedure :: turn_round
-      !> Set up the equations of a panel
       procedure :: set_up
-      !> Unknown x and f(x) of a panel
       procedure :: evaluate
-      !> Change its unknown
       procedure :: move
-      !> Forces of its solution
       procedure :: find_forces
-      !> Forces of its solution and their integrals
       procedure :: integrate
-      !> What collocation does not say at the end of a receding contact
       procedure :: settle
-      !> Second term of the Volterra series
       procedure :: second_term
-      !> Go to the end of a panel
       procedure :: advance
    end type panel_problem_t
 

@@ -19,13 +19,9 @@ module vcor_solver_ive_step
       !> start and grow as they leave it
       real(wp) :: reach = 0.0_wp
    contains
-      !> Scale of the map of the panel
       procedure :: map_scale
-      !> Duration
       procedure :: duration
-      !> Cut the step
       procedure :: shorten
-      !> Go on to the next step
       procedure :: proceed
    end type step_t
 
