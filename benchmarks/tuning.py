@@ -166,7 +166,7 @@ def main():
     parser.add_argument("--accuracies", default="1e-6,1e-8,1e-10")
     options = parser.parse_args()
     accuracies = [float(x) for x in options.accuracies.split(",")]
-    folder = options.build or Path(tempfile.mkdtemp(prefix="vcor_tuning_"))
+    folder = (options.build or Path(tempfile.mkdtemp(prefix="vcor_tuning_"))).resolve()
     program = folder / "build/release/vcor"
     if not program.exists():
         program = build(folder)
