@@ -2,8 +2,7 @@
 module vcor_app_band
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : short, significant
-   use vcor_app_sweep_screen, only : coordinates
+   use vcor_app_screen, only : percent, short, significant
    use vcor_case_case, only : case_t
    use vcor_error, only : error_t
    use vcor_impact_trajectory, only : contact_separated
@@ -16,7 +15,7 @@ module vcor_app_band
    implicit none
    private
 
-   public :: warn_of_bands, percent
+   public :: warn_of_bands
 
 contains
 
@@ -104,7 +103,7 @@ contains
          call job%case%get('material', 'name', name, item)
          place = ''
          lead = ''
-         if (job%sweep%is_grid()) place = ' (at '//coordinates(job, point)//')'
+         if (job%sweep%is_grid()) place = ' (at '//job%coordinates(point)//')'
          if (job%sweep%is_grid() .and. unseen > 0) lead = integer_text(unseen)//' of ' &
             //integer_text(size(known))//" contacts lie wholly before the data of '" &
             //printable(name)//"'; where cor changes most "
@@ -153,26 +152,5 @@ contains
       if (after > 0.0_wp) text = text//percent(after)//' of it lies after'
       if (text == '') text = 'hardly any of it lies outside'
    end function share_outside
-
-   !> A share in percent, with two digits
-   pure function percent(share) result(text)
-      !> The share, 0 to 1
-      real(wp), intent(in) :: share
-      !> The text; `all` where it is all
-      character(len=:), allocatable :: text
-
-      character(len=16) :: buffer, form
-      real(wp) :: value
-
-      text = 'all'
-      if (share >= 1.0_wp) return
-      value = 100.0_wp*share
-      write (form, '(a, i0, a)') '(f16.', max(0, 1 - floor(log10(value))), ')'
-      write (buffer, form) value
-      text = trim(adjustl(buffer))
-      if (index(text, '.') == len(text)) text = text(:len(text) - 1)
-      if (text(1:1) == '.') text = '0'//text
-      text = text//' %'
-   end function percent
 
 end module vcor_app_band

@@ -1,6 +1,7 @@
 !> The cases of a call, read and ready to run
 module vcor_app_job
    use vcor_app_cli, only : request_t
+   use vcor_app_screen, only : significant
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
@@ -46,6 +47,7 @@ module vcor_app_job
    contains
       procedure :: file
       procedure :: written
+      procedure :: coordinates
    end type job_t
 
    !> What the names of the files of run end with
@@ -80,6 +82,25 @@ contains
          if (self%writes(i)) text = text//'  written '//self%file(i)//new_line('a')
       end do
    end function written
+
+   !> Names and values of the swept parameters at a point
+   function coordinates(self, point) result(text)
+      class(job_t), intent(in) :: self
+      !> Number of the point
+      integer, intent(in) :: point
+      character(len=:), allocatable :: text
+
+      integer :: i, places(size(self%sweep%grid%axes))
+
+      places = self%sweep%grid%places(point)
+      text = ''
+      do i = 1, size(places)
+         if (i > 1) text = text//', '
+         associate (axis => self%sweep%grid%axes(i))
+            text = text//axis%name//' = '//trim(adjustl(significant(axis%values(places(i)))))
+         end associate
+      end do
+   end function coordinates
 
    !> Read, override, validate and build all cases of a request
    subroutine prepare(request, jobs, error)

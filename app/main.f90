@@ -1,12 +1,31 @@
 !> The program vcor: the coefficient of restitution of viscoelastic impacts
+!>
+!> A command is a page in `vcor_app_commands` and a call here.
 program vcor_main
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
-   use vcor_app_driver, only : complain, execute
+   use vcor_app_fit, only : fit_data
+   use vcor_app_help, only : help_text
+   use vcor_app_help_json, only : help_json
+   use vcor_app_job, only : job_t, prepare
+   use vcor_app_material, only : show_materials
+   use vcor_app_merge, only : merge_shards
+   use vcor_app_plot, only : plot
+   use vcor_app_run, only : run_impact
+   use vcor_app_screen, only : short
    use vcor_app_signals, only : prepare_signals
-   use vcor_error, only : error_t, error_usage, raise
-   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, share_error
+   use vcor_app_sweep, only : run_sweep
+   use vcor_app_validity, only : warn_of_slips
+   use vcor_app_verify, only : verify_case, verify_program
+   use vcor_case_printed, only : case_text
+   use vcor_error, only : error_numerical, error_t, error_usage, raise
+   use vcor_io_file, only : write_stdout
+   use vcor_io_number, only : decimal_text
+   use vcor_solver, only : default_accuracy
+   use vcor_sweep_mpi, only : differs, join_ranks, leave_ranks, share_error, this_rank
+   use vcor_text, only : integer_text
+   use vcor_version, only : version
    implicit none
 
    interface
@@ -42,4 +61,132 @@ program vcor_main
    if (allocated(error)) then
       call c_exit(int(error%code, c_int))
    end if
+
+contains
+
+   !> Do what is asked for. All ranks run cases; for the rest one is enough
+   subroutine execute(request, error)
+      type(request_t), intent(in) :: request
+      !> The first error, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      if (this_rank() > 0 .and. request%command /= 'run') return
+      select case (request%command)
+      case ('version')
+         call write_stdout('vcor '//version//new_line('a'), error)
+      case ('help')
+         call help(request, error)
+      case ('merge')
+         call merge_shards(request, error)
+      case ('fit')
+         call fit_data(request, error)
+      case ('plot')
+         call plot(request, error)
+      case default
+         if (size(request%files) == 0) then
+            call verify_program(request%quiet, error)
+         else
+            call treat_cases(request, error)
+         end if
+      end select
+   end subroutine execute
+
+   !> Run, check or verify cases, or show their materials. All are read and validated before the
+   !> first one runs, so that a mistake in the last does not come after hours. A case that fails
+   !> numerically does not stop the others, anything else does
+   subroutine treat_cases(request, error)
+      type(request_t), intent(in) :: request
+      !> The last error; those before it are said
+      type(error_t), allocatable, intent(out) :: error
+
+      type(job_t), allocatable :: jobs(:)
+      type(error_t), allocatable :: trouble
+      integer :: i
+
+      call prepare(request, jobs, error)
+      if (request%command == 'run') call share_error(error)
+      if (allocated(error)) return
+      do i = 1, size(jobs)
+         select case (request%command)
+         case ('run')
+            call run_case(request, jobs(i), trouble)
+         case ('check')
+            call warn_of_slips(jobs(i))
+            call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
+               //chosen(jobs(i)), trouble)
+         case ('material')
+            call show_materials(request, jobs(i), trouble)
+         case default
+            call verify_case(jobs(i), request%quiet, trouble)
+         end select
+         if (.not. allocated(trouble)) cycle
+         if (allocated(error) .and. trouble%code == error_numerical) call complain(error)
+         call move_alloc(trouble, error)
+         if (error%code /= error_numerical) return
+      end do
+   end subroutine treat_cases
+
+   !> Run a case; all ranks call this
+   subroutine run_case(request, job, error)
+      type(request_t), intent(in) :: request
+      type(job_t), intent(in) :: job
+      !> Error of code `error_numerical` if an impact has no result, of another if there is worse;
+      !> unallocated on success. All ranks have the same
+      type(error_t), allocatable, intent(out) :: error
+
+      if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(job)
+      if (job%sweep%is_grid()) then
+         call run_sweep(request, job, error)
+      else if (this_rank() == 0) then
+         call run_impact(request, job, error)
+      end if
+      call share_error(error)
+   end subroutine run_case
+
+   !> One line on stderr; all ranks have the same to say
+   subroutine complain(error)
+      type(error_t), intent(in) :: error
+
+      if (this_rank() > 0) return
+      write (error_unit, '(a)') 'vcor: error: '//error%message
+   end subroutine complain
+
+   !> Print a help page
+   subroutine help(request, error)
+      type(request_t), intent(in) :: request
+      !> Unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: text
+
+      if (request%json) then
+         text = help_json()
+      else if (size(request%files) > 0) then
+         call help_text(request%files(1)%text, text, error)
+      else
+         call help_text('', text, error)
+      end if
+      if (.not. allocated(error)) call write_stdout(text, error)
+   end subroutine help
+
+   !> What the program chooses where the case says nothing, as comments
+   function chosen(job) result(text)
+      type(job_t), intent(in) :: job
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: method
+
+      call job%case%get('solver', 'method', method)
+      text = job%method
+      if (method == 'auto') text = method//' ('//text//')'
+      text = new_line('a')//'! method: '//text//new_line('a')
+      if (.not. job%case%given('solver', 'accuracy')) text = text//'! accuracy: ' &
+         //short(default_accuracy(job%method))//new_line('a')
+      if (job%sweep%is_grid()) then
+         text = text//'! points: '//integer_text(job%sweep%grid%count())//new_line('a')
+      else if (.not. job%case%given('sphere', 'mass')) then
+         text = text//'! mass of the sphere: '//decimal_text(job%impact%mass)//' kg'//new_line('a')
+      end if
+   end function chosen
+
 end program vcor_main

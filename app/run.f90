@@ -1,14 +1,13 @@
-!> Running a case: its impact; its sweep is in `vcor_app_sweep`
+!> Running a case of one impact; a sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
-   use vcor_app_band, only : percent, warn_of_bands
+   use vcor_app_band, only : warn_of_bands
    use vcor_app_files, only : write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
-   use vcor_app_screen, only : report, short, significant
-   use vcor_app_sweep, only : run_sweep
+   use vcor_app_screen, only : percent, report, short, significant
    use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
-      solve_exact, warn_of_slips
+      solve_exact
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
@@ -19,7 +18,6 @@ module vcor_app_run
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
-   use vcor_sweep_mpi, only : share_error, this_rank
    use vcor_sweep_summary, only : new_summary, summary_t
    use vcor_sweep_quantity, only : values_of
    use vcor_sweep_sweep, only : solve_point, worker_t
@@ -27,26 +25,9 @@ module vcor_app_run
    implicit none
    private
 
-   public :: run_job
+   public :: run_impact
 
 contains
-
-   !> Run a case; all ranks call this
-   subroutine run_job(request, job, error)
-      type(request_t), intent(in) :: request
-      type(job_t), intent(in) :: job
-      !> Error of code `error_numerical` if an impact has no result, of another if there is worse;
-      !> unallocated on success. All ranks have the same
-      type(error_t), allocatable, intent(out) :: error
-
-      if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(job)
-      if (job%sweep%is_grid()) then
-         call run_sweep(request, job, error)
-      else if (this_rank() == 0) then
-         call run_impact(request, job, error)
-      end if
-      call share_error(error)
-   end subroutine run_job
 
    !> Run a case of one impact
    subroutine run_impact(request, job, error)

@@ -11,7 +11,7 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, shown, heading, line, padded, right, short, significant, visible
+   public :: report, shown, heading, line, padded, percent, right, short, significant, visible
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -257,5 +257,26 @@ contains
          if (text(letter + 2:letter + 2) == '0') text = text(:letter + 1)//text(letter + 3:)
       end if
    end function scientific
+
+   !> A share in percent, with two digits
+   pure function percent(share) result(text)
+      !> The share, 0 to 1
+      real(wp), intent(in) :: share
+      !> The text; `all` where it is all
+      character(len=:), allocatable :: text
+
+      character(len=16) :: buffer, form
+      real(wp) :: value
+
+      text = 'all'
+      if (share >= 1.0_wp) return
+      value = 100.0_wp*share
+      write (form, '(a, i0, a)') '(f16.', max(0, 1 - floor(log10(value))), ')'
+      write (buffer, form) value
+      text = trim(adjustl(buffer))
+      if (index(text, '.') == len(text)) text = text(:len(text) - 1)
+      if (text(1:1) == '.') text = '0'//text
+      text = text//' %'
+   end function percent
 
 end module vcor_app_screen

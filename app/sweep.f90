@@ -9,7 +9,7 @@ module vcor_app_sweep
    use vcor_app_job, only : directory_of, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
-   use vcor_app_sweep_screen, only : coordinates, inexact, shard_report, sweep_report
+   use vcor_app_sweep_screen, only : inexact, shard_report, sweep_report
    use vcor_app_validity, only : about_numbers, points_remark, points_report
    use vcor_app_watch, only : watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
@@ -309,7 +309,7 @@ contains
       call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
          //' of '//integer_text(job%part%count())//' points'//shard_text(job%part) &
          //' without result, the first at ' &
-         //coordinates(job, failures%reason(1)%first)//': '//failures%reason(1)%message)
+         //job%coordinates(failures%reason(1)%first)//': '//failures%reason(1)%message)
    end subroutine end_of_sweep
 
 end module vcor_app_sweep

@@ -12,7 +12,7 @@ module vcor_app_sweep_screen
    implicit none
    private
 
-   public :: sweep_report, shard_report, coordinates, inexact
+   public :: sweep_report, shard_report, inexact
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -166,7 +166,7 @@ contains
          associate (reason => failures%reason(i))
             text = text//'  '//right(integer_text(reason%count), 8)//'  '//reason%message//nl &
                //'            first at point '//integer_text(reason%first)//': ' &
-               //coordinates(job, reason%first)//nl
+               //job%coordinates(reason%first)//nl
          end associate
       end do
    end function reasons
@@ -182,27 +182,7 @@ contains
       text = integer_text(failures%inexact%count)//' of '//integer_text(job%part%count()) &
          //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
          //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
-         //coordinates(job, failures%inexact%first)
+         //job%coordinates(failures%inexact%first)
    end function inexact
-
-   !> Parameters of a point
-   function coordinates(job, point) result(text)
-      type(job_t), intent(in) :: job
-      !> Number of the point
-      integer, intent(in) :: point
-      !> Names and values
-      character(len=:), allocatable :: text
-
-      integer :: i, places(size(job%sweep%grid%axes))
-
-      places = job%sweep%grid%places(point)
-      text = ''
-      do i = 1, size(places)
-         if (i > 1) text = text//', '
-         associate (axis => job%sweep%grid%axes(i))
-            text = text//axis%name//' = '//trim(adjustl(significant(axis%values(places(i)))))
-         end associate
-      end do
-   end function coordinates
 
 end module vcor_app_sweep_screen

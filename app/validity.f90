@@ -2,9 +2,8 @@
 !> how many points of a sweep they are; and of input that is not plausible
 module vcor_app_validity
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_band, only : share_text => percent
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : significant
+   use vcor_app_screen, only : share_text => percent, significant
    use vcor_case_grid, only : grid_t
    use vcor_case_plausibility, only : note_length, slips_of
    use vcor_case_unread, only : why_unread
