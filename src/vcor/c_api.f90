@@ -419,7 +419,7 @@ contains
             //"'; "//suggestion(fortran(columns(i)), quantity_names()))
          exit
       end do
-      if (.not. allocated(trouble)) call build(handle, addresses, values, trouble)
+      if (.not. allocated(trouble) .and. n > 0) call build(handle, addresses, values, trouble)
       if (.not. allocated(trouble) .and. n > 0) then
          sweep = handle%sweep
          call give_values(sweep, handle%case, addresses, values)
