@@ -5,6 +5,7 @@ program vcor_main
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
+   use vcor_app_external, only : run_external
    use vcor_app_fit, only : fit_data
    use vcor_app_help, only : help_text
    use vcor_app_help_json, only : help_json
@@ -41,9 +42,10 @@ program vcor_main
    type(request_t) :: request
    type(error_t), allocatable :: error
 
+   call get_arguments(words)
+   call run_external(words)
    call join_ranks()
    call prepare_signals()
-   call get_arguments(words)
    call parse(words, request, error)
    call share_error(error)
    if (.not. allocated(error)) then

@@ -1,6 +1,7 @@
 """Words of the command line: what is refused, and what each option does."""
 
 import os
+import subprocess
 
 import pytest
 from cases import SLS
@@ -34,6 +35,29 @@ def test_unknown_command(vcor, word, nearest):
 )
 def test_no_command_at_all(vcor, word):
     vcor.refuses(word, code=USAGE, says=["command", "run", "check", "help"])
+
+
+def test_a_program_of_that_name(vcor, tmp_path, monkeypatch):
+    """`vcor hello` is `vcor-hello` of PATH, with its words, output and exit code; `vcor run` is not."""
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for name in ("vcor-hello", "vcor-run"):
+        (folder / name).write_text('#!/bin/sh\nprintf "[%s]" "$@"\nexit 7\n')
+        (folder / name).chmod(0o755)
+    (folder / "vcor-locked").write_text("nothing that can be run")
+    monkeypatch.setenv("PATH", f"{folder}:{os.environ['PATH']}")
+    for words, code, shown in (
+        (["hello", "--x=1", "two words", ""], 7, "[--x=1][two words][]"),
+        (["hello"], 7, "[]"),
+        (["run"], USAGE, ""),
+        (["locked"], USAGE, ""),
+        (["hello/../hello"], USAGE, ""),
+    ):
+        done = subprocess.run(
+            [os.environ["VCOR"], *words], capture_output=True, encoding="utf-8", check=False
+        )
+        assert (done.returncode, done.stdout) == (code, shown), words
+        assert bool(done.stderr) == (code == USAGE)
 
 
 @pytest.mark.parametrize("word, nearest", [("--versoin", "--version"), ("--hepl", "--help")])
