@@ -91,6 +91,12 @@ class Column(NamedTuple):
         attrs = {"units": self.unit} if self.unit else {}
         return attrs | {"long_name": self.meaning}
 
+    def value(self, number: float) -> float | str:
+        """One value as it is shown."""
+        if self.labels:
+            return self.labels[int(number) - self.first]
+        return int(number) if self.is_whole else number
+
     def values(self, numbers: Floats) -> NDArray[Any]:
         """Values as they are shown: numbers, or the words that they stand for."""
         if self.labels:

@@ -202,7 +202,8 @@ class Case:
                 raise kind(f"{self.name}: {_reason(remark)}")
         if not point or remark:
             found, _ = self._handle.solve([], np.empty((1, 0)), names, 1)
-        return {name: columns[name].values(found[:, i])[0].item() for i, name in enumerate(names)}
+        row = found[0].tolist()
+        return {name: columns[name].value(row[i]) for i, name in enumerate(names)}
 
     def points(
         self,
