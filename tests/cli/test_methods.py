@@ -149,7 +149,7 @@ def test_stiff_material_without_equilibrium_modulus(vcor):
 @pytest.mark.parametrize("beta", ["3.3e7", "3.5e7", "1.0e8"])
 def test_nearly_a_fluid(vcor, beta):
     """Contact lasts ten minutes and ends: that fixed steps give up earlier is no answer."""
-    found = []
+    found = {}
     for accuracy in ("1e-6", "1e-8", "1e-10"):
         done = vcor(
             *["run", PAPER / "sls.nml", "--print", "cor", "--set", f"rubber.beta={beta}"],
@@ -158,8 +158,9 @@ def test_nearly_a_fluid(vcor, beta):
         assert done.code in {SUCCESS, NUMERICAL}
         assert "do not separate" not in done.err
         if done.code == SUCCESS:
-            found.append(float(done.out.split()[-1]))
-    assert found and max(found) - min(found) <= 1e-11
+            found[float(accuracy)] = float(done.out.split()[-1])
+    best = found[min(found)]
+    assert all(abs(cor - best) <= 1e-4 * accuracy for accuracy, cor in found.items())
 
 
 def test_step_without_effect(vcor):

@@ -154,6 +154,7 @@ contains
       !> u/s there [m^0.5]
       real(wp), intent(out) :: secant
 
+      real(wp), parameter :: least_guess = 1.0e-3_wp
       real(wp) :: e, y, u, correction
       integer :: iteration
 
@@ -163,7 +164,8 @@ contains
       ! with d = 0 the root lies below sqrt(|r|), and from above Newton's method descends to it
       e = sign(d, r)
       y = sqrt(abs(r))
-      if (abs(guess) > 0.0_wp) y = min(y, sqrt(abs(guess)))
+      ! from far below, next to zero, the first step would leave the range of the numbers
+      if (abs(guess) > 0.0_wp) y = min(y, max(sqrt(abs(guess)), least_guess*y))
       do iteration = 1, 60
          secant = y
          if (abs(self%exponent - hertz) > 0.0_wp) secant = y**(2.0_wp*self%exponent - 2.0_wp)

@@ -183,6 +183,8 @@ contains
       !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      ! rate of the indentation over the velocity of impact
+      real(wp), parameter :: beyond_all_motion = 1.0e10_wp
       type(run_t) :: run
       real(wp) :: end_time, node(columns)
       integer :: n, room
@@ -210,6 +212,11 @@ contains
          call take_step(run, impact, n)
          if (run%receding%regrows) then
             call refuse_growth(impact, error)
+            return
+         end if
+         if (.not. abs(run%speed) < beyond_all_motion*impact%velocity) then
+            call raise(error, error_numerical, 'fixed steps do not follow this plate: its motion ' &
+               //'grows beyond all bounds')
             return
          end if
          node = state_of(run, impact)
