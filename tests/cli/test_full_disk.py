@@ -11,7 +11,7 @@ from program import FILE, complaint, contents, program
     "words",
     [
         ["run", "case.nml"],
-        ["run", "case.nml", "--print", "cor"],
+        ["run", "case.nml", "--print", "cor", "--quiet"],
         ["check", "case.nml"],
         ["help"],
         ["help", "input"],

@@ -98,7 +98,7 @@ def test_no_path_of_the_build(build, prefix):
 def test_program(prefix, tmp_path):
     """The program in an empty environment, on an example that was installed with it."""
     case = prefix / "share/doc/vcor/examples/paper/sls.nml"
-    words = ["run", case, *FASTER]
+    words = ["run", case, *FASTER, "--quiet"]
     assert abs(float(run(prefix / "bin/vcor", *words, env={}, cwd=tmp_path)) - COR) <= 1e-8
 
 
@@ -115,7 +115,7 @@ def test_consumer_with_cmake(prefix, tmp_path):
     run("cmake", "-S", CONSUMER, "-B", tmp_path, *options)
     run("cmake", "--build", tmp_path)
     assert is_close(run(tmp_path / "from_case", cwd=PAPER))
-    cor = float(run(prefix / "bin/vcor", "run", PAPER / "sls.nml", *CODE, "--print", "cor"))
+    cor = float(run(prefix / "bin/vcor", "run", PAPER / "sls.nml", *CODE, "--print", "cor", "--quiet"))
     assert f"3 m/s: COR {cor:11.8f}," in run(tmp_path / "from_code")
     # it needs the core of the library, and that needs neither HDF5 nor MINPACK
     needs = run("ldd", tmp_path / "from_case")
@@ -260,7 +260,7 @@ def test_package_runs(packages, tmp_path):
     for package in packages.values():
         run("dpkg-deb", "-x", package, tmp_path)
     case = tmp_path / "usr/share/doc/vcor/examples/paper/sls.nml"
-    words = ["run", case, *FASTER]
+    words = ["run", case, *FASTER, "--quiet"]
     assert abs(float(run(tmp_path / "usr/bin/vcor", *words, env={}, cwd=tmp_path)) - COR) <= 1e-8
     build = tmp_path / "build"
     run("cmake", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={tmp_path / 'usr'}")

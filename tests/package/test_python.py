@@ -59,5 +59,5 @@ def test_the_wheel_in_an_empty_environment(wheel, tmp_path):
     file, version, cor = run(python, "-c", SCRIPT, env=env, cwd=tmp_path).split()
     assert Path(file).is_relative_to(tmp_path / "env")
     assert f'version = "{version}"' in (ROOT / "fpm.toml").read_text()
-    words = ["run", "examples/paper/sls.nml", "--set", "impact.velocity=2.5", "--print", "cor"]
+    words = ["run", "examples/paper/sls.nml", "--set", "impact.velocity=2.5", "--print", "cor", "--quiet"]
     assert float(run(os.environ["VCOR"], *words, cwd=ROOT)) == float(cor)

@@ -66,7 +66,7 @@ def call(run, *options):
 @functools.cache
 def outcome(run):
     """The summary of a run: each column of COLUMNS as an attribute."""
-    done = call(run, "--print", ",".join(COLUMNS))
+    done = call(run, "--print", ",".join(COLUMNS), "--quiet")
     assert (done.returncode, done.stderr) == (0, ""), f"{run}: {done.stderr}"
     return SimpleNamespace(**dict(zip(COLUMNS, map(float, done.stdout.split()), strict=True)))
 

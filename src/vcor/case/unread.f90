@@ -1,6 +1,5 @@
-!> What an impact does not read: neither its solution nor a quantity of its output depends on it,
-!> other than a measure of validity of something that does not move. Whoever sets or sweeps it is
-!> told so, since the same numbers again would be taken for an answer
+!> What an impact does not read: neither its solution nor a quantity of its output depends on it.
+!> Whoever sets or sweeps it is told so, since the same numbers again would be taken for an answer
 !>
 !> What is read stands here by name, so a key that nobody has thought of is refused.
 module vcor_case_unread
@@ -117,9 +116,9 @@ contains
             continue
          case ('sweep.spacing')
             if (case%given('sweep', 'values', item)) reason = 'it is for start, stop and count'
-         case ('plate.half_thickness', 'plate.extent')
+         case ('plate.extent')
             reason = why_plate_rests(case)
-         case ('plate.waves')
+         case ('plate.waves', 'plate.half_thickness')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
          case ('contact.pair')
             reason = why_no_pair(case)
@@ -230,8 +229,12 @@ contains
       end if
       if (item == case%material_of('plate')) then
          if (len(reason) > 0) reason = reason//', and '
-         reason = reason//why_plate_rests(case)
-         if (why_plate_rests(case) == '') reason = ''
+         if (body_model(case, 'plate') == 'rigid') then
+            reason = reason//why_plate_rests(case)
+         else
+            ! waves into a thick body, if none in a thin plate
+            reason = ''
+         end if
       end if
    end function why_weightless
 
