@@ -28,7 +28,6 @@ contains
       !> The trajectory of a single impact
       type(trajectory_t), intent(in) :: trajectory
       character(len=:), allocatable, intent(out) :: files
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(table_t) :: course
@@ -68,7 +67,6 @@ contains
    subroutine write_numbers(request, summary, error)
       type(request_t), intent(in) :: request
       type(table_t), intent(in) :: summary
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer :: places(size(request%names)), i

@@ -51,7 +51,6 @@ contains
    !> Fit a model, show it and write it
    subroutine fit_data(request, error)
       type(request_t), intent(in) :: request
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(wish_t) :: wish

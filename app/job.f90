@@ -107,7 +107,6 @@ contains
       type(request_t), intent(in) :: request
       !> The cases, shape (files of the request)
       type(job_t), allocatable, intent(out) :: jobs(:)
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer :: i, j
@@ -129,7 +128,6 @@ contains
       character(len=*), intent(in) :: filename
       !> The case, the names of its files left out
       type(job_t), intent(inout) :: job
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: method, scheme
@@ -163,7 +161,6 @@ contains
       type(request_t), intent(in) :: request
       !> A case that was read
       type(job_t), intent(inout) :: job
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: directory, stem

@@ -156,7 +156,6 @@ contains
    !> Print a help page
    subroutine help(request, error)
       type(request_t), intent(in) :: request
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: text

@@ -72,7 +72,6 @@ contains
       !> A row per material
       type(table_t), intent(out) :: summary
       character(len=:), allocatable, intent(out) :: files
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(table_t) :: curves(2)

@@ -205,7 +205,6 @@ contains
       type(identity_t), intent(in) :: identity
       !> Outcomes
       type(summary_t), intent(inout) :: summary
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(previous_t) :: previous

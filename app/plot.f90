@@ -21,9 +21,7 @@ contains
 
    !> Draw the figure of a request
    subroutine plot(request, error)
-      !> The request
       type(request_t), intent(in) :: request
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(result_t), allocatable :: results(:)
@@ -57,7 +55,6 @@ contains
 
    !> Refuse values of options that are not known
    subroutine check_request(request, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -81,7 +78,6 @@ contains
 
    !> Texts of --legend, or names of --quantity
    function texts_of(request, of_legend) result(texts)
-      !> The request
       type(request_t), intent(in) :: request
       !> Which ones
       logical, intent(in) :: of_legend
@@ -105,7 +101,6 @@ contains
 
    !> Where the figure goes
    subroutine find_path(request, usual, path, format, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> Name where none is given
       character(len=*), intent(in) :: usual
@@ -113,7 +108,6 @@ contains
       character(len=:), allocatable, intent(out) :: path
       !> Its extension, a known format
       character(len=:), allocatable, intent(out) :: format
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: ending
@@ -132,7 +126,6 @@ contains
 
    !> No file that is written may be one of the results
    subroutine keep_inputs(request, path, format, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> File without its extension
       character(len=*), intent(in) :: path
@@ -157,7 +150,6 @@ contains
 
       !> Refuse a file
       subroutine refuse(extension)
-         !> Its extension
          character(len=*), intent(in) :: extension
 
          call raise(error, error_input, printable(request%files(i)%text)//': the figure would ' &

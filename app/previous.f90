@@ -123,7 +123,6 @@ contains
    function has_columns(path)
       !> Path of the file
       character(len=*), intent(in) :: path
-      !> Whether it has
       logical :: has_columns
 
       type(reader_t) :: reader

@@ -202,7 +202,6 @@ contains
 
    !> What is said of a result that is less accurate than asked for
    pure function inexact(outcome) result(text)
-      !> The outcome
       type(outcome_t), intent(in) :: outcome
       !> Words; nothing where it is as accurate as asked for
       character(len=:), allocatable :: text

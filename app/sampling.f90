@@ -47,7 +47,6 @@ contains
       type(samples_t), intent(out) :: samples
       !> What they are, in words
       character(len=:), allocatable, intent(out) :: note
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(request_t) :: reading

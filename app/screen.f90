@@ -238,11 +238,9 @@ contains
    !> A number as in `-1.5E-03`; the exponent has a third digit where it needs one, and never loses
    !> its letter, as it does with `es` formats of fixed width (`1.5-103`)
    pure function scientific(value, decimals) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Digits behind the point, 1 .. 14
       integer, intent(in) :: decimals
-      !> Its text
       character(len=:), allocatable :: text
 
       character(len=24) :: buffer

@@ -39,7 +39,6 @@ contains
 
    !> Run the sweep of a case; all ranks call this
    subroutine run_sweep(request, job, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
@@ -83,7 +82,6 @@ contains
 
    !> Find out where to begin
    subroutine begin(request, job, watch, previous, summary, is_finished, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
@@ -95,7 +93,6 @@ contains
       type(summary_t), intent(out) :: summary
       !> Whether there is nothing to do
       logical, intent(out) :: is_finished
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       logical :: is_unfinished
@@ -140,7 +137,6 @@ contains
    subroutine need_memory(job, threads, error)
       !> The case
       type(job_t), intent(in) :: job
-      !> Threads
       integer, intent(in) :: threads
       !> Error of code `error_file`, unallocated where there is enough
       type(error_t), allocatable, intent(out) :: error
@@ -171,7 +167,6 @@ contains
       type(summary_t), intent(inout) :: summary
       !> Whether there is something to solve; then its file is that of an unfinished one
       logical, intent(out) :: is_unfinished
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       is_unfinished = .false.
@@ -184,7 +179,6 @@ contains
 
    !> After the points: write the results, or say what ended the sweep
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
@@ -198,7 +192,6 @@ contains
       type(failures_t), intent(in) :: failures
       !> Signal that ended the sweep; 0 if there was none
       integer, intent(in) :: stopped
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: trouble
@@ -233,7 +226,6 @@ contains
 
    !> Write the results of a whole sweep
    subroutine finish_whole(request, job, watch, summary, failures, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
@@ -243,7 +235,6 @@ contains
       type(summary_t), intent(inout) :: summary
       !> What has no result
       type(failures_t), intent(in) :: failures
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(table_t) :: table
@@ -277,7 +268,6 @@ contains
 
    !> A shard is finished: its file gets its name
    subroutine finish_shard(request, job, watch, failures, error)
-      !> The request
       type(request_t), intent(in) :: request
       !> The case
       type(job_t), intent(in) :: job
@@ -285,7 +275,6 @@ contains
       type(watch_t), intent(inout) :: watch
       !> What has no result
       type(failures_t), intent(in) :: failures
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: path

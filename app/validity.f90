@@ -70,7 +70,6 @@ contains
    !> Solve the impact of a case with the exact mechanics
    subroutine solve_exact(job, outcome, exact, is_shown)
       type(job_t), intent(in) :: job
-      !> Its outcome
       type(outcome_t), intent(in) :: outcome
       !> The same with the exact mechanics
       type(model_t), intent(out) :: exact

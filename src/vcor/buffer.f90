@@ -22,9 +22,7 @@ contains
 
    !> Put a text at the end
    pure subroutine add(self, part)
-      !> The buffer
       class(buffer_t), intent(inout) :: self
-      !> The text
       character(len=*), intent(in) :: part
       character(len=:), allocatable :: larger
       integer, parameter :: first_room = 256
@@ -41,7 +39,6 @@ contains
 
    !> The text so far
    pure function text(self) result(all)
-      !> The buffer
       class(buffer_t), intent(in) :: self
       !> Everything that was added
       character(len=self%length) :: all

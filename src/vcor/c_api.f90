@@ -92,14 +92,12 @@ module vcor_c_api
          import :: c_ptr, c_size_t
          !> Bytes
          integer(c_size_t), value :: size
-         !> The room
          type(c_ptr) :: room
       end function malloc
 
       !> Length of a text of C
       pure function strlen(text) bind(c, name='strlen') result(length)
          import :: c_ptr, c_size_t
-         !> The text
          type(c_ptr), value :: text
          !> Bytes before its null
          integer(c_size_t) :: length
@@ -108,7 +106,6 @@ module vcor_c_api
       !> Number of the process
       function getpid() bind(c, name='getpid') result(number)
          import :: c_int
-         !> The number
          integer(c_int) :: number
       end function getpid
    end interface
@@ -117,7 +114,6 @@ contains
 
    !> Version of the library
    function vcor_library_version() bind(c) result(text)
-      !> The text
       type(c_ptr) :: text
 
 !$omp critical (vcor_c_api)
@@ -242,7 +238,6 @@ contains
       type(c_ptr), value :: self
       !> Where
       type(c_ptr), value :: address
-      !> What it is
       type(c_column_t), intent(out) :: column
       !> `vcor_error`, or null
       type(c_ptr), value :: error
@@ -299,7 +294,6 @@ contains
       integer(c_int), value :: table
       !> Which column, from 0
       integer(c_int), value :: index
-      !> The column
       type(c_column_t), intent(out) :: column
       !> 1, or 0 if there is none
       integer(c_int) :: found
@@ -380,7 +374,6 @@ contains
       type(c_ptr), value :: self
       !> Number of addresses
       integer(c_int), value :: m
-      !> The addresses
       type(c_ptr), intent(in) :: addresses(m)
       !> Number of points
       integer(c_int), value :: n
@@ -614,7 +607,6 @@ contains
       type(c_ptr), intent(in) :: addresses(:)
       !> The values, a column for each point
       real(wp), intent(in) :: values(:, :)
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(case_t) :: case
@@ -670,11 +662,9 @@ contains
 
    !> Check a case and read its data files
    subroutine check(case, all_materials, error)
-      !> The case
       type(case_t), intent(inout) :: case
       !> Whether materials are read that are in no body
       logical, intent(in) :: all_materials
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call validate(case, error)
@@ -684,9 +674,7 @@ contains
 
    !> Give the points their values
    subroutine give_values(sweep, case, addresses, values)
-      !> The sweep
       type(sweep_t), intent(inout) :: sweep
-      !> The case
       type(case_t), intent(in) :: case
       !> Addresses that have values of their own
       type(c_ptr), intent(in) :: addresses(:)
@@ -704,9 +692,7 @@ contains
 
    !> Which of some addresses, as texts, an address is
    function column_of(address, case, addresses) result(column)
-      !> The address
       type(address_t), intent(in) :: address
-      !> The case
       type(case_t), intent(in) :: case
       !> The texts
       type(c_ptr), intent(in) :: addresses(:)
@@ -724,13 +710,10 @@ contains
 
    !> A material of a case
    subroutine find_body(self, name, material, error)
-      !> The case
       type(c_ptr), intent(in) :: self
       !> Name of the material
       type(c_ptr), intent(in) :: name
-      !> The material
       class(material_t), allocatable, intent(out) :: material
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(handle_t), pointer :: handle
@@ -791,11 +774,8 @@ contains
    pure subroutine put_column(column, name, unit, meaning)
       !> The column, the rest of it empty
       type(c_column_t), intent(out) :: column
-      !> Name
       character(len=*), intent(in) :: name
-      !> Unit
       character(len=*), intent(in) :: unit
-      !> What it is
       character(len=*), intent(in) :: meaning
 
       call put_text(trim(name), column%name)
@@ -810,9 +790,7 @@ contains
 
    !> A text into room of C, cut if it does not fit
    pure subroutine put_text(text, room)
-      !> The text
       character(len=*), intent(in) :: text
-      !> The room
       character(kind=c_char), intent(inout) :: room(:)
 
       integer :: i, n
@@ -826,7 +804,6 @@ contains
 
    !> A text of C
    function fortran(text) result(copy)
-      !> The text
       type(c_ptr), intent(in) :: text
       !> The same
       character(len=:), allocatable :: copy
@@ -846,7 +823,6 @@ contains
 
    !> A text for C, released by free()
    function c_text(text) result(copy)
-      !> The text
       character(len=*), intent(in) :: text
       !> The same; null without memory
       type(c_ptr) :: copy
@@ -861,7 +837,6 @@ contains
 
    !> Numbers for C, released by free()
    function c_numbers(numbers) result(copy)
-      !> The numbers
       real(wp), intent(in) :: numbers(:)
       !> The same; null without memory
       type(c_ptr) :: copy

@@ -26,7 +26,6 @@ contains
    !> Names of the parameters of a model that can be given, separated by blanks
    pure function fixable_parameters(model) result(names)
       character(len=*), intent(in) :: model
-      !> The names
       character(len=:), allocatable :: names
 
       type(parameter_t), allocatable :: stated(:)

@@ -89,9 +89,7 @@ contains
 
    !> A bound as text, without a fraction where there is none
    pure function bound_text(bound) result(text)
-      !> The bound
       real(wp), intent(in) :: bound
-      !> Its text
       character(len=:), allocatable :: text
       real(wp), parameter :: whole_below = 1.0e6_wp
 

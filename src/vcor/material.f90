@@ -237,7 +237,6 @@ contains
       class(material_t), allocatable, intent(out) :: material
       !> Its description
       type(material_data_t), intent(in) :: data
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(prony_t) :: prony

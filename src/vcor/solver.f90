@@ -47,7 +47,6 @@ contains
    subroutine check_settings(settings, impact, error)
       !> How the impact is to be solved
       type(solver_settings_t), intent(in) :: settings
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -121,9 +120,7 @@ contains
       class(solver_t), allocatable, intent(out) :: solver
       !> How the impact is to be solved
       type(solver_settings_t), intent(in) :: settings
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call check_settings(settings, impact, error)
@@ -136,7 +133,6 @@ contains
       class(solver_t), allocatable, intent(out) :: solver
       !> How impacts are to be solved
       type(solver_settings_t), intent(in) :: settings
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(auto_t), allocatable :: auto
@@ -180,7 +176,6 @@ contains
       class(auto_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(error_t), allocatable :: failure

@@ -69,7 +69,6 @@ contains
 
    !> A logical as a namelist has it
    pure function logical_text(flag) result(text)
-      !> The logical
       logical, intent(in) :: flag
       !> `.true.` or `.false.`
       character(len=:), allocatable :: text
@@ -167,7 +166,6 @@ contains
 
    !> Whether a byte is an ASCII control character
    pure function is_control(byte) result(yes)
-      !> The byte
       character, intent(in) :: byte
       logical :: yes
 

@@ -22,7 +22,6 @@ contains
       !> 1 .. `law_count`
       integer, intent(in) :: number
       type(law_t), intent(out) :: law
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       select case (number)

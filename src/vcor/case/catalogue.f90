@@ -309,7 +309,6 @@ contains
    pure function says_the_same(one, other) result(yes)
       type(key_t), intent(in) :: one
       type(key_t), intent(in) :: other
-      !> Whether they do
       logical :: yes
 
       yes = one%group == other%group .and. one%name == other%name .and. one%unit == other%unit &

@@ -169,7 +169,6 @@ contains
       character(len=*), intent(in) :: text
       !> Byte to look at next
       integer, intent(inout) :: position
-      !> Its line
       integer, intent(inout) :: line
 
       logical :: in_comment
@@ -198,7 +197,6 @@ contains
       character(len=*), intent(in) :: text
       !> First byte that may be one of them
       integer, intent(in) :: first
-      !> The others
       character(len=*), intent(in) :: others
       !> The last byte, `first - 1` where there is none
       integer :: last
@@ -234,7 +232,6 @@ contains
    !> A place in the text, `case.nml:12`
    pure function place(self, line) result(text)
       class(namelist_t), intent(in) :: self
-      !> The line
       integer, intent(in) :: line
       !> The place, for the beginning of a message
       character(len=:), allocatable :: text
@@ -248,7 +245,6 @@ contains
       class(namelist_t), intent(inout) :: self
       !> Name of the group as it is written; unallocated after the last one
       character(len=:), allocatable, intent(out) :: name
-      !> Line of it
       integer, intent(out) :: line
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -289,7 +285,6 @@ contains
       class(namelist_t), intent(inout) :: self
       !> Name of the group, for messages
       character(len=*), intent(in) :: group
-      !> The statement
       type(statement_t), intent(out) :: statement
       !> Whether there was one; false after the last one of the group
       logical, intent(out) :: found

@@ -91,7 +91,6 @@ contains
 
       !> Judge the values of one key
       subroutine judge(limit, name)
-         !> Its limits
          type(limits_t), intent(in) :: limit
          !> Its path
          character(len=*), intent(in) :: name
@@ -122,13 +121,11 @@ contains
 
    !> Whether limits are those of a key
    pure function is_limited(limit, model, row) result(yes)
-      !> The limits
       type(limits_t), intent(in) :: limit
       !> Model of the material
       character(len=*), intent(in) :: model
       !> Row of the catalogue
       integer, intent(in) :: row
-      !> Whether they are
       logical :: yes
 
       integer :: own

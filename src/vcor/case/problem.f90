@@ -183,9 +183,7 @@ contains
    subroutine solve_case(case, outcome, error)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Its outcome
       type(outcome_t), intent(out) :: outcome
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(problem_t) :: problem

@@ -60,7 +60,6 @@ contains
       type(legend_t), intent(in) :: texts(:)
       !> Quantities of the summary for sweeps and maps; none: the coefficient of restitution
       type(legend_t), intent(in) :: quantities(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input` or `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error

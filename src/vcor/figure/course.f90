@@ -38,7 +38,6 @@ contains
    subroutine read_course(result, course, error)
       !> What a file holds
       type(result_t), intent(in) :: result
-      !> The course
       type(course_t), intent(out) :: course
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -85,7 +84,6 @@ contains
 
       !> Read a column
       subroutine take(name, values)
-         !> Its name
          character(len=*), intent(in) :: name
          !> Its values, as many as there are times
          real(wp), allocatable, intent(out) :: values(:)
@@ -103,7 +101,6 @@ contains
 
       !> Whether values are finite, the largest of them above zero
       pure function moves(values)
-         !> Values
          real(wp), intent(in) :: values(:)
          !> True if they are
          logical :: moves
@@ -128,7 +125,6 @@ contains
 
    !> Leave out times where there are more than a figure can show
    subroutine thin(course)
-      !> The course
       type(course_t), intent(inout) :: course
 
       integer, parameter :: most_times = 500
@@ -147,7 +143,6 @@ contains
 
    !> Put the end of contact in among the times
    subroutine cut(course)
-      !> The course
       type(course_t), intent(inout) :: course
 
       real(wp), parameter :: tolerance = 1.0e-9_wp

@@ -37,7 +37,6 @@ contains
       type(result_t), intent(in) :: results(:)
       !> Their texts
       type(legend_t), intent(in) :: legends(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -79,7 +78,6 @@ contains
 
       !> Labels and ranges of a panel
       subroutine set_axes(panel, label, lowest)
-         !> The panel
          type(panel_t), intent(inout) :: panel
          !> Label of its vertical axis
          character(len=*), intent(in) :: label
@@ -96,13 +94,10 @@ contains
 
       !> One response: up to the end of contact, its value there, and the ghost line after it
       subroutine add_response(panel, course, response, style, title)
-         !> The panel
          type(panel_t), intent(inout) :: panel
-         !> The course
          type(course_t), intent(in) :: course
          !> 1 indentation, 2 velocity, 3 force
          integer, intent(in) :: response
-         !> Style
          integer, intent(in) :: style
          !> Text of the legend
          character(len=*), intent(in) :: title
@@ -124,7 +119,6 @@ contains
 
       !> Values of a response
       pure function response_of(course, response) result(values)
-         !> The course
          type(course_t), intent(in) :: course
          !> 1 indentation, 2 velocity, 3 force
          integer, intent(in) :: response
@@ -158,9 +152,7 @@ contains
 
       !> What the values at the end of contact are
       subroutine add_marks(panel, course)
-         !> The panel
          type(panel_t), intent(inout) :: panel
-         !> The course
          type(course_t), intent(in) :: course
 
          if (.not. ieee_is_finite(course%contact_time)) return
@@ -176,9 +168,7 @@ contains
 
       !> Values at the end of contact, for the legend
       function outcome_text(course) result(text)
-         !> The course
          type(course_t), intent(in) :: course
-         !> The text
          character(len=:), allocatable :: text
 
          text = ': no separation'
@@ -195,7 +185,6 @@ contains
       type(result_t), intent(in) :: results(:)
       !> Their texts
       type(legend_t), intent(in) :: legends(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -236,7 +225,6 @@ contains
       !> The energy that is lost, or a bound where it is lost in its error, as that of an elastic
       !> contact is
       function loss_text(course) result(text)
-         !> The course
          type(course_t), intent(in) :: course
          !> The text; empty where the energy is not known
          character(len=:), allocatable :: text
@@ -255,7 +243,6 @@ contains
          real(wp), intent(in) :: joule
          !> Significant digits
          integer, intent(in) :: digits
-         !> Its text
          character(len=:), allocatable :: text
 
          character(len=:), allocatable :: unit

@@ -69,7 +69,6 @@ contains
 
    !> A label with its unit
    pure function with_unit(meaning, unit) result(label)
-      !> What it is
       character(len=*), intent(in) :: meaning
       !> Unit; empty or `1` for a pure number
       character(len=*), intent(in) :: unit
@@ -82,7 +81,6 @@ contains
 
    !> Label of a quantity of the summary, short enough for an axis
    pure function quantity_label(name, long_name) result(label)
-      !> Its name
       character(len=*), intent(in) :: name
       !> What the file says it is
       character(len=*), intent(in) :: long_name
@@ -113,9 +111,7 @@ contains
 
    !> A name with blanks for points and underscores
    pure function spaced(name) result(words)
-      !> The name
       character(len=*), intent(in) :: name
-      !> Its words
       character(len=len(name)) :: words
 
       integer :: i
@@ -128,11 +124,9 @@ contains
 
    !> A number with so many significant digits, without zeros at its end
    pure function number_text(value, digits) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Digits, 1 .. 15
       integer, intent(in) :: digits
-      !> Its text
       character(len=:), allocatable :: text
 
       integer :: mark
@@ -148,11 +142,9 @@ contains
 
    !> A number that was rounded to so many significant digits
    pure function rounded_text(value, digits) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Digits, 1 .. 15
       integer, intent(in) :: digits
-      !> Its text
       character(len=:), allocatable :: text
 
       character(len=40) :: buffer
@@ -198,7 +190,6 @@ contains
 
    !> Whether values are in equal steps of their logarithm rather than of themselves
    pure function is_geometric(values) result(yes)
-      !> Values
       real(wp), intent(in) :: values(:)
       !> True if they are; fewer than three values are not
       logical :: yes

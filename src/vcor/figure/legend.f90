@@ -195,7 +195,6 @@ contains
 
    !> Key of a line `key = value`
    pure function key_of(line) result(key)
-      !> The line
       character(len=*), intent(in) :: line
       !> What stands before the sign; the line where there is none
       character(len=:), allocatable :: key
@@ -209,9 +208,7 @@ contains
 
    !> A line `key = value` with the unit of the key, its number in short
    function described(line) result(text)
-      !> The line
       character(len=*), intent(in) :: line
-      !> The text
       character(len=:), allocatable :: text
 
       real(wp) :: number

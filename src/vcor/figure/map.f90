@@ -41,7 +41,6 @@ contains
       type(result_t), intent(in) :: results(:)
       !> Names of quantities of the summary, one
       type(legend_t), intent(in) :: quantities(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input` or `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -98,9 +97,7 @@ contains
 
    !> Axis of a parameter and its values as contours take them, the logarithm on such an axis
    subroutine set_axis(parameter, axis, values)
-      !> The parameter
       type(dataset_t), intent(in) :: parameter
-      !> Its axis
       type(figure_axis_t), intent(out) :: axis
       !> Its values, or their decadic logarithms
       real(wp), allocatable, intent(out) :: values(:)
@@ -201,7 +198,6 @@ contains
 
    !> Fill the areas
    pure subroutine fill(panel, areas, level_count)
-      !> The panel
       type(panel_t), intent(inout) :: panel
       !> Areas, the larger first
       type(area_t), intent(in) :: areas(:)
@@ -220,7 +216,6 @@ contains
 
    !> Fill one area
    pure subroutine fill_one(panel, loop, shade)
-      !> The panel
       type(panel_t), intent(inout) :: panel
       !> The line around it
       type(loop_t), intent(in) :: loop
@@ -237,7 +232,6 @@ contains
 
    !> Values on the axes for what may be logarithms
    pure subroutine as_drawn(panel, x, y)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Coordinates
       real(wp), intent(inout) :: x(:), y(:)
@@ -248,11 +242,8 @@ contains
 
    !> Draw the lines between the areas, without the edge of the map, and label them
    subroutine draw_lines(panel, areas, levels, x_range, y_range)
-      !> The panel
       type(panel_t), intent(inout) :: panel
-      !> Areas
       type(area_t), intent(in) :: areas(:)
-      !> Levels
       real(wp), intent(in) :: levels(:)
       !> Ends of the coordinates
       real(wp), intent(in) :: x_range(2), y_range(2)
@@ -305,7 +296,6 @@ contains
       subroutine draw_line(x, y, level)
          !> Its points
          real(wp), intent(in) :: x(:), y(:)
-         !> Its level
          real(wp), intent(in) :: level
 
          real(wp), parameter :: tries(7) = [0.5_wp, 0.4_wp, 0.6_wp, 0.3_wp, 0.7_wp, 0.2_wp, 0.8_wp]

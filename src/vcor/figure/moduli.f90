@@ -45,7 +45,6 @@ contains
       type(result_t), intent(in) :: results(:)
       !> Their texts
       type(legend_t), intent(in) :: legends(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -117,7 +116,6 @@ contains
 
       !> Axes of a panel
       subroutine set_axes(panel, over_time, label)
-         !> The panel
          type(panel_t), intent(inout) :: panel
          !> Whether over time rather than over frequency
          logical, intent(in) :: over_time
@@ -208,7 +206,6 @@ contains
 
    !> Values for a logarithmic axis
    pure function positive(values) result(kept)
-      !> Values
       real(wp), intent(in) :: values(:)
       !> The same, NaN where they are not positive
       real(wp) :: kept(size(values))
@@ -267,9 +264,7 @@ contains
    subroutine mark(result, over_time, over_frequency, with_text)
       !> What a file holds
       type(result_t), intent(in) :: result
-      !> Panels over time
       type(panel_t), intent(inout) :: over_time(:)
-      !> Panels over frequency
       type(panel_t), intent(inout) :: over_frequency(:)
       !> Whether the values are written beside the lines
       logical, intent(in) :: with_text

@@ -88,7 +88,6 @@ contains
       type(reader_t), intent(in) :: reader
       !> Name of the group
       character(len=*), intent(in) :: name
-      !> The group
       type(group_t), intent(out) :: group
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -149,7 +148,6 @@ contains
       character(len=*), intent(in) :: group
       !> Name of the column
       character(len=*), intent(in) :: name
-      !> The column
       type(column_t), intent(out) :: texts
 
       integer :: i, place
@@ -223,7 +221,6 @@ contains
       type(result_t), intent(in) :: result
       !> Name of its group
       character(len=*), intent(in) :: group
-      !> Names
       character(len=:), allocatable :: names
 
       integer :: i, place

@@ -36,7 +36,6 @@ contains
       type(legend_t), intent(in) :: legends(:)
       !> Names of quantities of the summary
       type(legend_t), intent(in) :: quantities(:)
-      !> The figure
       type(figure_t), intent(out) :: figure
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -192,7 +191,6 @@ contains
 
    !> Order in which values rise: a sweep may have its values in any
    pure function rising(values) result(order)
-      !> Values
       real(wp), intent(in) :: values(:)
       !> Their numbers
       integer :: order(size(values))

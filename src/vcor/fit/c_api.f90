@@ -126,7 +126,6 @@ contains
    subroutine take_samples(c_fit, samples)
       !> What is to be fitted
       type(c_fit_t), intent(in) :: c_fit
-      !> The samples
       type(samples_t), intent(out) :: samples
 
       real(c_double), pointer :: numbers(:)

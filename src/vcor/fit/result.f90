@@ -80,7 +80,6 @@ contains
    !> Say how well a material agrees with samples
    pure subroutine judge(fit, material, samples)
       type(fit_t), intent(inout) :: fit
-      !> Its material
       class(material_t), intent(in) :: material
       type(samples_t), intent(in) :: samples
 
@@ -222,7 +221,6 @@ contains
    subroutine mark_ends(fit, material, samples)
       !> The fit, with standard errors
       type(fit_t), intent(inout) :: fit
-      !> Its material
       class(material_t), intent(in) :: material
       type(samples_t), intent(in) :: samples
 

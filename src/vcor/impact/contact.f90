@@ -74,13 +74,10 @@ contains
    pure subroutine new_contact_modulus(self, sphere, plate, same, error, pair)
       !> Contact modulus; of an earlier one what fits its sums is kept, which takes longest to make
       type(contact_modulus_t), intent(inout) :: self
-      !> Material of the sphere
       class(material_t), intent(in) :: sphere
-      !> Material of the plate
       class(material_t), intent(in) :: plate
       !> Whether both have one and the same modulus
       logical, intent(in) :: same
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> One of the `pair_*` constants; absent: pair_eq1
       integer, intent(in), optional :: pair
@@ -145,7 +142,6 @@ contains
 
    !> Forget what a modulus was
    pure subroutine clear(self)
-      !> Contact modulus
       type(contact_modulus_t), intent(out) :: self
    end subroutine clear
 
@@ -153,7 +149,6 @@ contains
    pure function expands(self) result(yes)
       !> Contact modulus of a pair
       type(contact_modulus_t), intent(in) :: self
-      !> Whether it is
       logical :: yes
 
       yes = self%first%elastic() .and. self%second%discrete &
@@ -162,7 +157,6 @@ contains
 
    !> Contact modulus E'(t) at t > 0, Eq. (1)
    elemental function relaxation(self, t) result(value)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time [s], t >= 0
       real(wp), intent(in) :: t
@@ -190,7 +184,6 @@ contains
 
    !> Rate of the contact modulus at t > 0: E'^2 (E_a'/E_a^2 + E_b'/E_b^2)
    elemental function rate(self, t) result(value)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time [s], t > 0
       real(wp), intent(in) :: t
@@ -211,7 +204,6 @@ contains
 
    !> Integral of E' from 0 to t, the dashpot left out; for a pair by quadrature
    elemental function integral(self, t) result(value)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Upper limit [s], >= 0
       real(wp), intent(in) :: t
@@ -228,7 +220,6 @@ contains
    !> Mean over 0 .. t of the integral of E' from 0, the dashpot left out. By parts it is that of
    !> (t - x) E'(x): one sum for a pair, whose integral is a sum itself
    pure function mean_integral(self, t) result(value)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time [s], > 0
       real(wp), intent(in) :: t
@@ -248,7 +239,6 @@ contains
 
    !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, the dashpot left out
    pure function step_integrals(self, dt, n) result(value)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Length of the steps [s], > 0
       real(wp), intent(in) :: dt
@@ -282,7 +272,6 @@ contains
    !> Storage and loss modulus of the contact, Eq. (7): for a pair from the transform of E'(t),
    !> E*(omega) = E_r + omega int_0^inf (E'(t) - E_r) (sin(omega t) + i cos(omega t)) dt
    pure function dynamic_modulus(self, omega) result(modulus)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Frequency [rad/s], > 0
       real(wp), intent(in) :: omega
@@ -305,7 +294,6 @@ contains
 
    !> Glassy contact modulus E'(0), infinite for a singular kernel
    pure function glassy(self) result(modulus)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -317,7 +305,6 @@ contains
 
    !> Rubbery contact modulus E'(infinity)
    pure function rubbery(self) result(modulus)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -329,7 +316,6 @@ contains
 
    !> Viscosity of the dashpot in parallel with the contact modulus
    pure function viscosity(self)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Viscosity [Pa s]
       real(wp) :: viscosity
@@ -340,7 +326,6 @@ contains
 
    !> The contact modulus as a sum of exponentials
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> Contact modulus
       class(contact_modulus_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
@@ -373,7 +358,6 @@ contains
 
       !> Fit a sum to the values of the modulus
       pure subroutine fit_values(terms)
-         !> The sum
          type(exponential_sum_t), intent(out) :: terms
 
          type(signed_fit_t) :: other
@@ -397,7 +381,6 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
       !> Whether it is such a pair, and has a short sum
       logical, intent(out) :: is_found

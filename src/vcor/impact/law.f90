@@ -52,13 +52,11 @@ contains
 
    !> Build the law of an exponent
    pure subroutine new_contact_law(self, exponent, receding, error)
-      !> The law
       type(contact_law_t), intent(out) :: self
       !> Exponent n [-], >= 1: 3/2 for spheres, 2 for cones, 1 for flat punches
       real(wp), intent(in) :: exponent
       !> Whether the force of a shrinking contact is Ting's
       logical, intent(in) :: receding
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: part
@@ -80,7 +78,6 @@ contains
 
    !> u(s) = s |s|^(n-1)
    elemental function u(self, s)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
       real(wp), intent(in) :: s
@@ -92,7 +89,6 @@ contains
 
    !> du/ds = n |s|^(n-1)
    elemental function slope(self, s)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
       real(wp), intent(in) :: s
@@ -104,7 +100,6 @@ contains
 
    !> u/s = |s|^(n-1); for Hertz by a square root, which costs a tenth of a power
    elemental function secant(self, s)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
       real(wp), intent(in) :: s
@@ -120,7 +115,6 @@ contains
 
    !> u/s at many indentations in one call, for inner loops: u is s times it, the slope n times it
    pure subroutine secants(self, n, s, secant)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Number of indentations
       integer, intent(in) :: n
@@ -139,7 +133,6 @@ contains
    !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz:
    !> no iteration waits for a root
    pure subroutine solve(self, c, d, r, guess, s, secant)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Coefficient [m^-0.5], >= 0
       real(wp), intent(in) :: c
@@ -183,7 +176,6 @@ contains
 
    !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of the impact on an elastic contact, F = k u
    pure function time_scale(self, mass, firmness, velocity) result(time)
-      !> Contact law
       class(contact_law_t), intent(in) :: self
       !> Mass [kg], > 0
       real(wp), intent(in) :: mass

@@ -59,7 +59,6 @@ contains
 
    !> Build the memory of a plate
    pure subroutine new_memory(self, material, coefficient)
-      !> The memory
       type(memory_t), intent(out) :: self
       !> Material of the plate, neither rigid nor elastic
       class(material_t), intent(in) :: material
@@ -87,7 +86,6 @@ contains
    pure subroutine find_gaps(gaps, material)
       !> Zeros and poles
       type(gaps_t), intent(out) :: gaps
-      !> The material
       type(exponential_sum_t), intent(in) :: material
 
       real(wp), allocatable :: weight(:)
@@ -116,7 +114,6 @@ contains
 
    !> A s/sqrt(Q_b(s)), on the branch that is positive for s > 0
    elemental function complex_modulus(self, s) result(modulus)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Laplace variable [1/s]
       complex(wp), intent(in) :: s
@@ -128,7 +125,6 @@ contains
 
    !> psi(0), which nothing needs: infinite for singular kernels, and taken so for all
    pure function glassy(self) result(modulus)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Infinite
       real(wp) :: modulus
@@ -138,7 +134,6 @@ contains
 
    !> psi(infinity)
    pure function rubbery(self) result(modulus)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Zero
       real(wp) :: modulus
@@ -149,13 +144,11 @@ contains
    !> The memory as a sum of exponentials, alpha as its viscosity; its error is that of the velocity
    !> under a constant force, over that velocity
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       ! the rule for gaps gets as many digits more with each, the other one a step so much shorter
@@ -191,13 +184,10 @@ contains
 
    !> Error of the velocity under a constant force, over that velocity
    pure function error_of(self, window, terms) result(error)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window
-      !> The sum
       type(exponential_sum_t), intent(in) :: terms
-      !> Error
       real(wp) :: error
 
       real(wp) :: time(2), expected, found
@@ -224,7 +214,6 @@ contains
    !> each of its zeros z and the pole b that follows; there w(l) = A/(pi sqrt(-Q_b)), with a branch
    !> point at both ends. With a dashpot w goes on to infinity beyond the last pole
    pure subroutine sum_over_gaps(self, gaps, window, accuracy, terms)
-      !> The memory
       class(memory_t), intent(in) :: self
       !> Zeros and poles of Q_b
       type(gaps_t), intent(in) :: gaps
@@ -232,7 +221,6 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       ! exp(-l t) grows for l < 0 where the window is long: as if there were a branch point
@@ -331,7 +319,6 @@ contains
 
    !> Rates in increasing order, those that are the same but for rounding taken together
    pure subroutine sort(material, pole, weight)
-      !> The sum
       type(exponential_sum_t), intent(in) :: material
       !> Rates [1/s]
       real(wp), allocatable, intent(out) :: pole(:)

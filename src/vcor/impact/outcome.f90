@@ -105,11 +105,8 @@ contains
 
    !> Evaluate a trajectory
    pure function evaluate(impact, trajectory) result(outcome)
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
-      !> Outcome
       type(outcome_t) :: outcome
 
       complex(wp) :: modulus
@@ -155,7 +152,6 @@ contains
    pure function is_finite(self)
       !> The outcome, of a separation
       class(outcome_t), intent(in) :: self
-      !> Whether they are
       logical :: is_finite
 
       is_finite = all(ieee_is_finite([self%cor, self%cor_sphere, self%contact_time, &
@@ -169,9 +165,7 @@ contains
    !> Whether the estimated error is above the accuracy that was asked for; there is none where
    !> nothing separated
    pure function misses(self)
-      !> The outcome
       class(outcome_t), intent(in) :: self
-      !> Whether it is
       logical :: misses
 
       misses = self%status == contact_separated .and. self%accuracy > 0.0_wp

@@ -66,9 +66,7 @@ contains
 
    !> Whether the plate moves: it is not rigid, and there are waves in it
    pure function moves(self)
-      !> The plate
       class(plate_t), intent(in) :: self
-      !> Whether it does
       logical :: moves
 
       moves = self%coefficient > 0.0_wp
@@ -76,7 +74,6 @@ contains
 
    !> Build a plate
    pure subroutine new_plate(self, material, half_thickness, waves, error)
-      !> The plate
       type(plate_t), intent(out) :: self
       !> Its material; a rigid one never moves
       class(material_t), intent(in) :: material
@@ -84,7 +81,6 @@ contains
       real(wp), intent(in) :: half_thickness
       !> One of the `waves_*` constants
       integer, intent(in) :: waves
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! alpha, its products with the mass and their squares stay far inside the range of the numbers
@@ -126,7 +122,6 @@ contains
 
    !> Zener's plate parameter alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3)
    elemental function alpha(self, t) result(value)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t >= 0
       real(wp), intent(in) :: t
@@ -142,7 +137,6 @@ contains
 
    !> The same at many times at once
    pure subroutine alpha_at(self, t, value)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Times since first contact [s], t >= 0
       real(wp), intent(in) :: t(:)
@@ -164,7 +158,6 @@ contains
    !> Plate parameter after a time: alpha, or what a plate that remembers the force makes of a
    !> constant one
    elemental function alpha_after(self, t) result(value)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
@@ -177,7 +170,6 @@ contains
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
    elemental function frozen(self)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Whether it does; with a constant alpha both are the same
       logical :: frozen
@@ -187,7 +179,6 @@ contains
 
    !> Whether the plate remembers the force: U' = alpha F + int psi(t - x) F(x) dx
    elemental function hereditary(self)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Whether it does; an elastic plate does not
       logical :: hereditary
@@ -197,9 +188,7 @@ contains
 
    !> Whether the velocity U' - alpha F is a quantity of its own, not alpha' I
    elemental function drifts(self)
-      !> The plate
       class(plate_t), intent(in) :: self
-      !> Whether it is
       logical :: drifts
 
       drifts = self%frozen() .or. self%hereditary()
@@ -233,7 +222,6 @@ contains
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
    elemental function alpha_rate(self, t, alpha) result(value)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
@@ -256,7 +244,6 @@ contains
 
    !> Plate parameter and its rate
    elemental subroutine alpha_and_rate(self, t, alpha, rate)
-      !> The plate
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t

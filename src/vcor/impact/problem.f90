@@ -74,7 +74,6 @@ contains
    !> Build an impact
    pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &
                               error, law)
-      !> The impact
       type(impact_t), intent(out) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -84,11 +83,8 @@ contains
       real(wp), intent(in) :: radius
       !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
-      !> Contact modulus
       type(contact_modulus_t), intent(in) :: modulus
-      !> Plate
       type(plate_t), intent(in) :: plate
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
       !> Contact law; absent: Hertz's over all the past
       type(contact_law_t), intent(in), optional :: law
@@ -102,7 +98,6 @@ contains
 
    !> Give the sphere another motion or size; modulus, plate and law stay
    pure subroutine launch(self, velocity, mass, radius, surface_radius, error)
-      !> The impact
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -112,7 +107,6 @@ contains
       real(wp), intent(in) :: radius
       !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! energies and their products stay far inside the range of the numbers
@@ -145,7 +139,6 @@ contains
 
    !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time [s], t >= 0
       real(wp), intent(in) :: t
@@ -157,7 +150,6 @@ contains
 
    !> Integral of the kernel from 0 to t, the dashpot left out
    elemental function kernel_integral(self, t) result(value)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Upper limit [s], >= 0
       real(wp), intent(in) :: t
@@ -169,7 +161,6 @@ contains
 
    !> Mean over 0 .. t of the integral of the kernel
    pure function kernel_mean_integral(self, t) result(value)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time [s], > 0
       real(wp), intent(in) :: t
@@ -181,7 +172,6 @@ contains
 
    !> Integrals of the kernel over the steps from i dt to (i + 1) dt, i = 0 .. n - 1
    pure function kernel_step_integrals(self, dt, n) result(value)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Length of the steps [s], > 0
       real(wp), intent(in) :: dt
@@ -195,7 +185,6 @@ contains
 
    !> The kernel as a sum of exponentials, Eq. (17): itself where it is one, else an approximation
    pure subroutine kernel_exponentials(self, window, accuracy, terms)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
@@ -210,7 +199,6 @@ contains
 
    !> Viscosity of the kernel's dashpot
    pure function kernel_viscosity(self) result(viscosity)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Viscosity [N s/m^1.5]
       real(wp) :: viscosity
@@ -220,7 +208,6 @@ contains
 
    !> Time scale of the contact: that of an elastic impact with the mean kernel over it
    pure function time_scale(self) result(scale)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time scale [s]
       real(wp) :: scale
@@ -245,7 +232,6 @@ contains
 
    !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz's
    pure function elastic_time(self, firmness) result(time)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Firmness k of the contact [N/m^1.5], > 0
       real(wp), intent(in) :: firmness
@@ -258,7 +244,6 @@ contains
    !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
    !> that relaxes before it is over can be shorter than its time scale
    pure function fast_time_scale(self) result(scale)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time scale [s]
       real(wp) :: scale
@@ -274,7 +259,6 @@ contains
    !> Time after which a contact counts as lasting where the user gives none: a thousand time
    !> scales, those of the rubbery modulus if there is one
    pure function patience(self, time_scale) result(time)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Its time scale [s]
       real(wp), intent(in) :: time_scale
@@ -293,9 +277,7 @@ contains
    !> relaxed. The restitution that it gives to a fluid is about its ratio to the mean modulus over
    !> the contact: below the rounding of the velocities it is none
    pure function springs_back(self)
-      !> The impact
       class(impact_t), intent(in) :: self
-      !> Whether it has
       logical :: springs_back
 
       real(wp), parameter :: rounding = 1.0e-13_wp
@@ -309,7 +291,6 @@ contains
    !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
    !> that is infinite or nothing at t = 0
    pure function inelasticity(self) result(lambda)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Parameter [-]
       real(wp) :: lambda
@@ -326,7 +307,6 @@ contains
    !> the plate is for the sphere in a contact that lasts, whether or not the kernel is finite at
    !> t = 0
    pure function lasting_inelasticity(self, time) result(lambda)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Time since first contact [s], > 0
       real(wp), intent(in) :: time
@@ -339,7 +319,6 @@ contains
 
    !> Kinetic energy of the sphere before the impact, m v0^2/2
    pure function initial_energy(self) result(energy)
-      !> The impact
       class(impact_t), intent(in) :: self
       !> Energy [J]
       real(wp) :: energy

@@ -104,7 +104,6 @@ contains
 
    !> Make room for at least `nodes` nodes after node 0; what is there stays
    pure subroutine reserve(self, nodes)
-      !> The trajectory
       class(trajectory_t), intent(inout) :: self
       !> Number of nodes wanted
       integer, intent(in) :: nodes
@@ -127,7 +126,6 @@ contains
 
    !> Note the map of the panel that comes next
    pure subroutine add_map(self, map)
-      !> The trajectory
       class(trajectory_t), intent(inout) :: self
       !> Coefficients of theta and theta^2 [s]
       real(wp), intent(in) :: map(2)
@@ -148,9 +146,7 @@ contains
    !> for a moment at its largest indentation, however soft it is; it sticks only where a plate has
    !> taken up the blow and the dent is gone
    pure function is_stuck(self, impact)
-      !> The trajectory
       class(trajectory_t), intent(in) :: self
-      !> The impact
       type(impact_t), intent(in) :: impact
       !> Whether the sphere sticks
       logical :: is_stuck
@@ -174,7 +170,6 @@ contains
    pure function misses_by_far(self)
       !> The trajectory, ended in separation
       class(trajectory_t), intent(in) :: self
-      !> Whether it is
       logical :: misses_by_far
 
       real(wp), parameter :: far = 100.0_wp
@@ -190,7 +185,6 @@ contains
    !> State at equal steps of time from first contact to the final node: interpolated by the
    !> collocation polynomials, or the nodes themselves where the solver works in equal steps
    pure subroutine sample(self, count, state)
-      !> The trajectory
       class(trajectory_t), intent(in) :: self
       !> Number of steps wanted of a collocation solution, > 0
       integer, intent(in) :: count
@@ -221,7 +215,6 @@ contains
    !> Indentation at a time of the contact, by the polynomial of its panel, or in equal steps by the
    !> cubic that has indentation and velocity of the nodes beside it
    pure function indentation_at(self, time) result(indentation)
-      !> The trajectory
       class(trajectory_t), intent(in) :: self
       !> Time since first contact [s], up to that of the last node
       real(wp), intent(in) :: time

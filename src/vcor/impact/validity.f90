@@ -100,7 +100,6 @@ contains
 
    !> Follow the plate's Poisson's ratio: the resistance is found anew where it has changed
    pure subroutine follow(self, poisson_ratio)
-      !> The surroundings
       class(surroundings_t), intent(inout) :: self
       !> Poisson's ratio [-], -1 < nu <= 0.5
       real(wp), intent(in) :: poisson_ratio
@@ -121,15 +120,10 @@ contains
    pure subroutine assess(outcome, impact, trajectory, around, sphere, plate)
       !> Outcome of a separation, evaluated; its measures are set
       type(outcome_t), intent(inout) :: outcome
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
-      !> What is around it
       type(surroundings_t), intent(in) :: around
-      !> Material of the sphere
       class(material_t), intent(in) :: sphere
-      !> Material of the plate
       class(material_t), intent(in) :: plate
 
       complex(wp) :: modulus, plate_modulus
@@ -160,9 +154,7 @@ contains
 
    !> Share of the second body in the compliance of the contact
    pure function plate_share(sphere, plate, modulus, frequency) result(share)
-      !> Material of the sphere
       class(material_t), intent(in) :: sphere
-      !> Material of the plate
       class(material_t), intent(in) :: plate
       !> Complex modulus of the plate at the frequency [Pa]
       complex(wp), intent(in) :: modulus
@@ -184,15 +176,10 @@ contains
 
    !> Measures of the plate's waves
    pure subroutine assess_plate(outcome, impact, trajectory, around, plate, storage, frequency)
-      !> Outcome
       type(outcome_t), intent(inout) :: outcome
-      !> The impact
       type(impact_t), intent(in) :: impact
-      !> Its trajectory
       type(trajectory_t), intent(in) :: trajectory
-      !> What is around it
       type(surroundings_t), intent(in) :: around
-      !> Material of the plate
       class(material_t), intent(in) :: plate
       !> Storage modulus of the plate [Pa], 0 for a rigid one
       real(wp), intent(in) :: storage

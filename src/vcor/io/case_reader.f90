@@ -42,7 +42,6 @@ contains
    subroutine read_case_text(case, text, source, error)
       !> The case, which starts anew
       type(case_t), intent(inout) :: case
-      !> The text
       character(len=*), intent(in) :: text
       !> Name of its source, for messages and for the default of `output.stem`
       character(len=*), intent(in) :: source
@@ -70,13 +69,11 @@ contains
 
    !> Read one group
    subroutine read_group(case, namelist, name, line, error)
-      !> The case
       type(case_t), intent(inout) :: case
       !> The namelists, after the name of the group
       type(namelist_t), intent(inout) :: namelist
       !> Name of the group as it is written
       character(len=*), intent(in) :: name
-      !> Line of it
       integer, intent(in) :: line
       !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -115,11 +112,9 @@ contains
 
    !> Read one statement
    subroutine read_statement(case, namelist, statement, group, item, message)
-      !> The case
       type(case_t), intent(inout) :: case
       !> The namelists the statement is from
       type(namelist_t), intent(in) :: namelist
-      !> The statement
       type(statement_t), intent(in) :: statement
       !> Index of its group
       integer, intent(in) :: group
@@ -162,7 +157,6 @@ contains
       character(len=*), intent(in) :: section
       !> Numbers of the list
       integer, intent(in) :: n
-      !> Whether it is
       logical :: yes
 
       yes = any(section == [character(len=16) :: ':', '1:', ':'//integer_text(n), &
@@ -171,7 +165,6 @@ contains
 
    !> Set one value by `path=value`, as the option --set has it
    subroutine override(case, setting, error)
-      !> The case
       type(case_t), intent(inout) :: case
       !> `group.key=value` or `material_name.key=value`; a text may stand without quotes
       character(len=*), intent(in) :: setting
@@ -223,7 +216,6 @@ contains
 
    !> Position of the equals sign between path and value; a name in quotes may have one, too
    pure function end_of_path(setting) result(mark)
-      !> The setting
       character(len=*), intent(in) :: setting
       !> Position, 0 when there is none
       integer :: mark

@@ -68,9 +68,7 @@ contains
 
    !> Whether there is a file
    pure function is_open(self)
-      !> The file
       class(checkpoint_t), intent(in) :: self
-      !> Whether there is
       logical :: is_open
 
       is_open = c_associated(self%stream)
@@ -78,7 +76,6 @@ contains
 
    !> Begin a file, with what is done so far
    subroutine create_checkpoint(self, path, identity, grid, summary, error)
-      !> The file
       type(checkpoint_t), intent(inout) :: self
       !> Its path; nothing may be there
       character(len=*), intent(in) :: path
@@ -119,7 +116,6 @@ contains
 
    !> Points of a part as a table, with columns that have no values yet
    subroutine lay_out(table, identity, grid, quantities)
-      !> The table
       type(table_t), intent(out) :: table
       !> What it is about
       type(identity_t), intent(in) :: identity
@@ -156,7 +152,6 @@ contains
 
    !> Give a file its name
    subroutine name_file(self, path, error)
-      !> The file
       type(checkpoint_t), intent(inout) :: self
       !> Its name; nothing may have it
       character(len=*), intent(in) :: path
@@ -191,9 +186,7 @@ contains
 
    !> Go on with a file that is there
    subroutine open_checkpoint(self, path, identity, summary, error, anew)
-      !> The file
       type(checkpoint_t), intent(inout) :: self
-      !> Its path
       character(len=*), intent(in) :: path
       !> What it should be about
       type(identity_t), intent(in) :: identity
@@ -222,9 +215,7 @@ contains
 
    !> Open a file that is there for writing, and learn where its columns are
    subroutine attach(self, path, quantities, error)
-      !> The file
       type(checkpoint_t), intent(inout) :: self
-      !> Its path
       character(len=*), intent(in) :: path
       !> Columns of its summary
       type(quantity_t), intent(in) :: quantities(:)
@@ -272,7 +263,6 @@ contains
 
    !> Keep outcomes
    subroutine put(self, first, last, summary, error)
-      !> The file
       class(checkpoint_t), intent(in) :: self
       !> First place
       integer, intent(in) :: first
@@ -328,7 +318,6 @@ contains
 
    !> Close the file, which stays
    subroutine close_checkpoint(self)
-      !> The file
       class(checkpoint_t), intent(inout) :: self
 
       integer(c_int) :: ignored
@@ -341,7 +330,6 @@ contains
 
    !> Close the file, complete, and give it another name
    subroutine close_as(self, path, error)
-      !> The file
       class(checkpoint_t), intent(inout) :: self
       !> Its new path, in the same folder
       character(len=*), intent(in) :: path
@@ -360,7 +348,6 @@ contains
 
    !> Close the file and remove it; none is fine
    subroutine remove(self)
-      !> The file
       class(checkpoint_t), intent(inout) :: self
 
       integer(c_int) :: ignored
@@ -399,7 +386,6 @@ contains
 
    !> Read the file of a part
    subroutine read_points(path, identity, summary, error)
-      !> Its path
       character(len=*), intent(in) :: path
       !> What it should be about
       type(identity_t), intent(in) :: identity
@@ -434,7 +420,6 @@ contains
 
    !> Read all columns of a file
    subroutine read_columns(path, summary, error, checks)
-      !> Its path
       character(len=*), intent(in) :: path
       !> Outcomes, with room for all of its points
       type(summary_t), intent(inout) :: summary
@@ -480,7 +465,6 @@ contains
    subroutine number_texts(column, quantity, path, error)
       !> The column, of texts; its `integers` become the numbers
       type(column_t), intent(inout) :: column
-      !> What it is
       type(quantity_t), intent(in) :: quantity
       !> File that it is from, for messages
       character(len=*), intent(in) :: path

@@ -39,7 +39,6 @@ contains
 
    !> Where the first line of a text begins
    pure function start_of(text) result(start)
-      !> The text
       character(len=*), intent(in) :: text
       !> Place of its first character
       integer :: start
@@ -50,9 +49,7 @@ contains
 
    !> Number of lines in a text, or a little more
    pure function lines_in(text) result(n)
-      !> The text
       character(len=*), intent(in) :: text
-      !> The number
       integer :: n
       integer :: i
 
@@ -64,7 +61,6 @@ contains
 
    !> Take a line from a text; one that names the separator becomes blank
    pure subroutine take_line(text, start, content, comment)
-      !> The text
       character(len=*), intent(in) :: text
       !> Where the line begins, on return where the next one does
       integer, intent(inout) :: start

@@ -87,7 +87,6 @@ contains
    !> Write some dimensions and columns of all rows to the standard output, a line per row with
    !> blanks between the values
    subroutine write_rows(table, places, error)
-      !> The table
       type(table_t), intent(in) :: table
       !> Places of dimensions and columns (`place_in_table`), in their order, shape (n), n > 0
       integer, intent(in) :: places(:)
@@ -140,7 +139,6 @@ contains
    subroutine put_value(block, column, row, separator, quotes)
       !> Text with room for the value
       type(text_block_t), intent(inout) :: block
-      !> Column
       type(column_t), intent(in) :: column
       !> Number of the value
       integer, intent(in) :: row
@@ -167,7 +165,6 @@ contains
 
       !> Add text
       subroutine put_text(text)
-         !> The text
          character(len=*), intent(in) :: text
 
          block%text(block%last + 1:block%last + len(text)) = text
@@ -177,9 +174,7 @@ contains
 
    !> What describes a table, and the line of the names
    function head_of(table) result(text)
-      !> The table
       type(table_t), intent(in) :: table
-      !> The text
       character(len=:), allocatable :: text
 
       type(buffer_t) :: head
@@ -211,7 +206,6 @@ contains
 
       !> Describe a column, and keep its name
       subroutine add_column(column)
-         !> The column
          type(column_t), intent(in) :: column
 
          names = names//','//field(column%name)

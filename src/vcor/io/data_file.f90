@@ -32,7 +32,6 @@ contains
    !> Read the data files of a validated case: the points become `times` and `moduli` of their
    !> material, which no user can give to it
    subroutine read_data(case, error)
-      !> The case
       type(case_t), intent(inout) :: case
       !> Error of code `error_file` when a file cannot be read, `error_input` when its contents are
       !> wrong; unallocated on success
@@ -63,7 +62,6 @@ contains
 
    !> Path of the data file of a material, from the folder of the case file
    pure function data_file(case, item) result(path)
-      !> The case
       type(case_t), intent(in) :: case
       !> Number of the material
       integer, intent(in) :: item
@@ -154,7 +152,6 @@ contains
    !> Refuse a header that names something else than a time and a relaxation modulus, or other units
    !> than those of the case. A line of other than two names is a title
    subroutine check_header(header, name, scale, error)
-      !> The header
       type(header_t), intent(in) :: header
       !> Name of the file
       character(len=*), intent(in) :: name
@@ -221,7 +218,6 @@ contains
    pure subroutine compare(before, point, line, message)
       !> The point before
       real(wp), intent(in) :: before(2)
-      !> The point
       real(wp), intent(in) :: point(2)
       !> Line of the point before
       integer, intent(in) :: line

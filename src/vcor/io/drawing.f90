@@ -22,7 +22,6 @@ contains
    !> Where gnuplot is missing, or fails, the script and its data are left and the error names the
    !> script.
    subroutine draw(figure, path, format, keep, error)
-      !> The figure
       type(figure_t), intent(in) :: figure
       !> Its file without the extension; replaced if it is there
       character(len=*), intent(in) :: path
@@ -77,7 +76,6 @@ contains
 
       !> Give a file its real name
       subroutine take_over(extension)
-         !> Its extension
          character(len=*), intent(in) :: extension
 
          if (allocated(error)) return
@@ -115,7 +113,6 @@ contains
 
    !> Folder and name of a path
    pure subroutine split_path(path, directory, name)
-      !> The path
       character(len=*), intent(in) :: path
       !> Its folder, with the slash; empty: the current one
       character(len=:), allocatable, intent(out) :: directory

@@ -303,7 +303,6 @@ contains
    !> Remove a file in a private folder, or such a folder if it is empty, and forget it; none is
    !> fine
    subroutine remove_scratch(path)
-      !> Its path
       character(len=*), intent(in) :: path
 
       integer(c_int) :: ignored
@@ -372,7 +371,6 @@ contains
 
    !> Whether the standard error is a terminal
    function stderr_is_terminal() result(is_one)
-      !> Whether it is
       logical :: is_one
 
       is_one = c_isatty(standard_error) == 1

@@ -46,7 +46,6 @@ contains
 
    !> Text of the script
    function script_text(figure, name, format) result(text)
-      !> The figure
       type(figure_t), intent(in) :: figure
       !> Name of its files, without folder and extension
       character(len=*), intent(in) :: name
@@ -97,7 +96,6 @@ contains
 
    !> Text of the data: a block per curve, blocks apart by two empty lines
    function data_text(figure) result(text)
-      !> The figure
       type(figure_t), intent(in) :: figure
       !> The data
       character(len=:), allocatable :: text
@@ -174,7 +172,6 @@ contains
    subroutine put_panel(buffer, panel, frame, width, first)
       !> The script
       type(buffer_t), intent(inout) :: buffer
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Its place
       type(frame_t), intent(in) :: frame
@@ -221,9 +218,7 @@ contains
 
    !> How a curve is drawn
    function drawn(panel, curve, place) result(text)
-      !> Its panel
       type(panel_t), intent(in) :: panel
-      !> The curve
       type(curve_t), intent(in) :: curve
       !> Its number in the panel
       integer, intent(in) :: place
@@ -272,7 +267,6 @@ contains
    subroutine put_notes(buffer, panel)
       !> The script
       type(buffer_t), intent(inout) :: buffer
-      !> The panel
       type(panel_t), intent(in) :: panel
       character(len=*), parameter :: thin = " nohead lw 0.6 lc rgb '#707070' dt '.' back"
       real(wp) :: heights(panel%note_count), apart
@@ -338,7 +332,6 @@ contains
    pure function short(value) result(text)
       !> The number, 0 to 1000
       real(wp), intent(in) :: value
-      !> Its text
       character(len=:), allocatable :: text
       character(len=10) :: buffer
 

@@ -212,7 +212,6 @@ contains
 
       !> Room for one column
       pure function bytes_of_column(column) result(bytes)
-         !> The column
          type(column_t), intent(in) :: column
          !> Number of bytes
          integer(int64) :: bytes
@@ -338,9 +337,7 @@ contains
    !> written then but the fill value of its dataset, and reads as if it were. HDF5 takes 50 bytes
    !> and a microsecond to store a text
    pure function is_uniform(column)
-      !> The column
       type(column_t), intent(in) :: column
-      !> Whether it is
       logical :: is_uniform
 
       integer, parameter :: longest_stored = 50000
@@ -395,9 +392,7 @@ contains
 
    !> Keep where a dataset of numbers is, as no part of the seal
    subroutine leave_out(writer, column, dataset)
-      !> Writer
       type(writer_t), intent(inout) :: writer
-      !> Its column
       type(column_t), intent(in) :: column
       !> The dataset, in one piece
       integer(hid_t), intent(in) :: dataset
@@ -439,7 +434,6 @@ contains
       integer(hid_t), intent(in) :: object
       !> Name of the attribute
       character(len=*), intent(in) :: name
-      !> The number
       real(wp), intent(in), target :: number
 
       call put_attribute(writer, object, name, h5t_ieee_f64le, h5t_native_double, c_loc(number))
@@ -472,7 +466,6 @@ contains
 
    !> Keep the first failure
    pure subroutine note(writer, status, what)
-      !> Writer
       type(writer_t), intent(inout) :: writer
       !> Status of HDF5, negative on failure
       integer, intent(in) :: status

@@ -50,7 +50,6 @@ module vcor_io_hdf5_library
       !> Where in the file the numbers of a dataset begin that is stored in one piece
       function c_get_offset(dataset) result(offset) bind(c, name="H5Dget_offset")
          import :: c_int64_t
-         !> The dataset
          integer(c_int64_t), intent(in), value :: dataset
          !> Bytes before it, all bits set if there is none
          integer(c_int64_t) :: offset

@@ -268,7 +268,6 @@ contains
       type(reader_t), intent(in) :: reader
       !> Path of the dataset
       character(len=*), intent(in) :: path
-      !> The dataset
       type(dataset_t), intent(out), target :: dataset
       !> Set if there is none or it cannot be read
       type(error_t), allocatable, intent(out) :: error
@@ -322,7 +321,6 @@ contains
       integer, intent(in) :: kind
       !> Number of its values
       integer, intent(in) :: length
-      !> The dataset
       type(dataset_t), intent(out) :: dataset
       !> Set if there is none, or it has other values, or it cannot be read
       type(error_t), allocatable, intent(out) :: error
@@ -396,7 +394,6 @@ contains
 
    !> Lengths of the dimensions of a space
    subroutine read_lengths(space, lengths, status)
-      !> The space
       integer(hid_t), intent(in) :: space
       !> Lengths, the slowest first
       integer, allocatable, intent(out) :: lengths(:)
@@ -421,7 +418,6 @@ contains
       integer(hid_t), intent(in) :: object
       !> Whether it is an attribute
       logical, intent(in) :: is_attribute
-      !> Its space
       integer(hid_t), intent(in) :: space
       !> Its type in the file
       integer(hid_t), intent(in) :: type_id

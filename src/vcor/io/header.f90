@@ -117,9 +117,7 @@ contains
 
    !> Keep what a comment says about the unit of a column: `name [unit] ...`
    pure subroutine note_comment(header, comment)
-      !> The header
       type(header_t), intent(inout) :: header
-      !> The comment
       character(len=*), intent(in) :: comment
 
       character(len=:), allocatable :: text
@@ -137,7 +135,6 @@ contains
 
    !> Read the line of the names
    pure subroutine read_names(header, content, line)
-      !> The header
       type(header_t), intent(inout) :: header
       !> The line
       character(len=*), intent(in) :: content
@@ -197,7 +194,6 @@ contains
 
    !> Read the line of the units
    pure subroutine read_units(header, content, line)
-      !> The header
       type(header_t), intent(inout) :: header
       !> The line
       character(len=*), intent(in) :: content
@@ -219,7 +215,6 @@ contains
 
    !> A cell without quotation marks around it
    pure function unquoted(cell) result(text)
-      !> The cell
       character(len=*), intent(in) :: cell
       !> What is in it
       character(len=:), allocatable :: text
@@ -245,9 +240,7 @@ contains
 
    !> Take name and unit apart
    pure subroutine take_apart(cell, column)
-      !> The cell
       character(len=*), intent(in) :: cell
-      !> The column
       type(column_name_t), intent(out) :: column
 
       character(len=:), allocatable :: name
@@ -337,7 +330,6 @@ contains
 
    !> What a column holds, by its name and else by its unit; what it is in, where that is understood
    pure subroutine role_of(column, role, shear, unit)
-      !> The column
       type(column_name_t), intent(in) :: column
       !> One of the `role_*` constants
       integer, intent(out) :: role
@@ -366,9 +358,7 @@ contains
    pure function name_of(role, unit) result(name)
       !> One of the `role_*` constants but `role_none`
       integer, intent(in) :: role
-      !> Its unit
       character(len=*), intent(in) :: unit
-      !> The name
       character(len=:), allocatable :: name
 
       name = trim(roles(role)%words)
@@ -442,7 +432,6 @@ contains
 
    !> Check that a unit is one of what a column holds
    subroutine check_unit(unit, role, place, error)
-      !> The unit
       character(len=*), intent(in) :: unit
       !> What the column holds
       integer, intent(in) :: role
@@ -465,7 +454,6 @@ contains
 
    !> The unit that somebody may have meant
    pure function nearest_unit(unit, known) result(near)
-      !> The unit
       character(len=*), intent(in) :: unit
       !> Known ones, separated by blanks
       character(len=*), intent(in) :: known

@@ -292,7 +292,6 @@ contains
 
       !> The line that begins there
       pure function line_at(case_text) result(line)
-         !> A case
          character(len=*), intent(in) :: case_text
          !> The line, shortened where it is long
          character(len=:), allocatable :: line

@@ -40,7 +40,6 @@ contains
 
    !> Places of all panels and of their legends
    pure subroutine lay_out(figure, frames, width, height)
-      !> The figure
       type(figure_t), intent(in) :: figure
       !> Places, shape (number of panels)
       type(frame_t), intent(out) :: frames(:)
@@ -108,7 +107,6 @@ contains
 
    !> Columns and rows of a legend
    pure subroutine arrange(panel, width, columns, rows)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Width that there is [cm]
       real(wp), intent(in) :: width
@@ -125,7 +123,6 @@ contains
 
    !> Width of a legend
    pure function legend_width(panel, columns) result(width)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Texts beside each other
       integer, intent(in) :: columns
@@ -142,7 +139,6 @@ contains
 
    !> Number of texts in the legend
    pure function title_count(panel) result(count)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Number
       integer :: count
@@ -171,7 +167,6 @@ contains
 
    !> Whether a panel has a note with a text at some place
    pure function has_note(panel, place) result(has)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> One of the `note_*` constants
       integer, intent(in) :: place
@@ -187,7 +182,6 @@ contains
 
    !> Margin right of a panel
    pure function right_of(panel) result(margin)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Margin [cm]
       real(wp) :: margin

@@ -27,7 +27,6 @@ contains
 
    !> Moduli as tables
    subroutine moduli_tables(moduli, title, case_text, summary, relaxation, dynamic)
-      !> The moduli
       type(moduli_t), intent(in) :: moduli
       !> Title of the case
       character(len=*), intent(in) :: title
@@ -76,9 +75,7 @@ contains
 
       !> Begin a table of some materials
       subroutine begin(table, name, items)
-         !> The table
          type(table_t), intent(out) :: table
-         !> Its name
          character(len=*), intent(in) :: name
          !> Numbers of the materials
          integer, intent(in) :: items(:)
@@ -101,7 +98,6 @@ contains
 
       !> Add the dimension of the materials
       subroutine add_names(table, items, longest)
-         !> The table
          type(table_t), intent(inout) :: table
          !> Numbers of the materials
          integer, intent(in) :: items(:)
@@ -133,7 +129,6 @@ contains
 
    !> Columns of the summary
    pure subroutine add_summary(table, materials)
-      !> The table
       type(table_t), intent(inout) :: table
       !> The materials, shape (n)
       type(curves_t), intent(in) :: materials(:)

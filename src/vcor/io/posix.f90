@@ -223,7 +223,6 @@ contains
       character(len=*), intent(in) :: path
       !> Whether a link counts as what it points at
       logical, intent(in) :: follows
-      !> The file
       type(file_id_t) :: id
 
       ! AT_FDCWD and AT_SYMLINK_NOFOLLOW of C
@@ -236,7 +235,6 @@ contains
    function open_file(descriptor) result(id)
       !> File descriptor
       integer(c_int), intent(in) :: descriptor
-      !> The file
       type(file_id_t) :: id
 
       ! AT_EMPTY_PATH of C
@@ -249,11 +247,9 @@ contains
    function file_of(directory, path, flags) result(id)
       !> Where a relative path begins
       integer(c_int), intent(in) :: directory
-      !> Path
       character(len=*), intent(in) :: path
       !> Flags of `statx`
       integer(c_int), intent(in) :: flags
-      !> The file
       type(file_id_t) :: id
 
       ! STATX_TYPE and STATX_INO; S_IFMT, S_IFREG and S_IFDIR of C. The type is two bytes from byte
@@ -278,7 +274,6 @@ contains
 
    !> Whether two files are one, and there is one
    pure function same_file_id(one, other) result(same)
-      !> A file
       type(file_id_t), intent(in) :: one
       !> Another file
       type(file_id_t), intent(in) :: other

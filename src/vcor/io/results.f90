@@ -21,7 +21,6 @@ contains
    !> Summary: a row per impact. Its dimensions are what is swept, each by its path; a single impact
    !> has the dimension `impact` of length one
    subroutine summary_table(table, title, case_text, grid, summary)
-      !> The table
       type(table_t), intent(out) :: table
       !> Title of the case
       character(len=*), intent(in) :: title
@@ -50,9 +49,7 @@ contains
 
       !> Move the values of a quantity to a column
       subroutine move_in(quantity, values)
-         !> The quantity
          type(quantity_t), intent(in) :: quantity
-         !> Its values
          type(values_t), intent(inout) :: values
 
          type(column_t) :: column
@@ -71,7 +68,6 @@ contains
       type(axis_t), intent(in) :: axis
       !> Its values, in the unit of the parameter
       real(wp), intent(in) :: values(:)
-      !> The column
       type(column_t) :: column
 
       column = column_of(axis%name, values, axis%unit, axis%meaning)
@@ -80,13 +76,11 @@ contains
 
    !> A column of a summary, without values
    function quantity_column(quantity, length, as_numbers) result(column)
-      !> What it is
       type(quantity_t), intent(in) :: quantity
       !> Number of its values
       integer, intent(in) :: length
       !> Whether texts stay the numbers that stand for them; absent: false
       logical, intent(in), optional :: as_numbers
-      !> The column
       type(column_t) :: column
 
       character(len=label_length), allocatable :: labels(:)
@@ -112,13 +106,11 @@ contains
 
    !> History: a row per time
    subroutine history_table(table, title, case_text, trajectory)
-      !> The table
       type(table_t), intent(out) :: table
       !> Title of the case
       character(len=*), intent(in) :: title
       !> Full case
       character(len=*), intent(in) :: case_text
-      !> The trajectory
       type(trajectory_t), intent(in) :: trajectory
 
       real(wp), allocatable :: state(:, :)
@@ -149,7 +141,6 @@ contains
       type(table_t), intent(in) :: table
       !> More that describes the HDF5 file, shape (n)
       type(remark_t), intent(in) :: remarks(:)
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (csv /= '') call write_csv(csv, table, error)

@@ -289,7 +289,6 @@ contains
       character(len=*), intent(in) :: name
       !> First line of numbers
       integer, intent(in) :: line
-      !> The plan
       type(plan_t), intent(out) :: plan
       !> Error of code `error_input` or `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -410,7 +409,6 @@ contains
 
    !> Refuse a header that does not say which columns to read
    subroutine check_names(header, roles, units, told, plan, head, error)
-      !> The header
       type(header_t), intent(in) :: header
       !> What each column holds, as far as the header says it, shape (n)
       integer, intent(in) :: roles(:)
@@ -498,7 +496,6 @@ contains
 
    !> A number of columns in words
    pure function columns_text(columns) result(text)
-      !> The number
       integer, intent(in) :: columns
       !> `2 columns`
       character(len=:), allocatable :: text
@@ -509,7 +506,6 @@ contains
 
    !> What a header says against the number of columns
    pure function expected_of(header, columns) result(text)
-      !> The header
       type(header_t), intent(in) :: header
       !> Number of columns of the first line of numbers
       integer, intent(in) :: columns

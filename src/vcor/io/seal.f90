@@ -96,7 +96,6 @@ contains
       integer, intent(in) :: unit
       !> Its length
       integer(int64), intent(in) :: bytes
-      !> Whether it is
       logical :: is_sound
 
       integer(int64), allocatable :: left_out(:, :)
@@ -156,7 +155,6 @@ contains
       integer(int64), intent(in) :: left_out(:, :)
       !> Sum of what is before it
       integer(int32), intent(in) :: before
-      !> The sum
       integer(int32) :: sum
 
       integer(int64) :: first, last
@@ -178,7 +176,6 @@ contains
       integer, intent(in) :: unit
       !> Its length
       integer(int64), intent(in) :: bytes
-      !> Whether it does
       logical :: is_sound
 
       ! superblock of HDF5 1.8: 8 bytes that every file begins with, version, sizes of places and

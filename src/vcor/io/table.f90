@@ -144,7 +144,6 @@ contains
 
    !> Which coordinate of a dimension a row has
    pure function coordinate_row(table, number, row) result(place)
-      !> Table
       type(table_t), intent(in) :: table
       !> Number of the dimension, from 1
       integer, intent(in) :: number
@@ -159,7 +158,6 @@ contains
 
    !> Place of a dimension or a column
    pure function place_in_table(table, name) result(place)
-      !> Table
       type(table_t), intent(in) :: table
       !> Name to look for
       character(len=*), intent(in) :: name
@@ -195,9 +193,7 @@ contains
       type(table_t), intent(inout) :: table
       !> One word
       character(len=*), intent(in) :: name
-      !> The number
       real(wp), intent(in) :: value
-      !> Its unit
       character(len=*), intent(in) :: unit
       !> What it is, one line
       character(len=*), intent(in) :: long_name
@@ -211,7 +207,6 @@ contains
       character(len=*), intent(in) :: name, unit, long_name
       !> Values, shape (length); NaN and infinity are allowed
       real(wp), intent(in) :: values(:)
-      !> The column
       type(column_t) :: column
 
       call describe(column, name, unit, long_name)
@@ -226,7 +221,6 @@ contains
       character(len=*), intent(in) :: name, unit, long_name
       !> Values, shape (length)
       integer, intent(in) :: values(:)
-      !> The column
       type(column_t) :: column
 
       call describe(column, name, unit, long_name)
@@ -241,7 +235,6 @@ contains
       character(len=*), intent(in) :: name, unit, long_name
       !> Values, shape (length); blanks at their ends do not count
       character(len=*), intent(in) :: values(:)
-      !> The column
       type(column_t) :: column
 
       integer :: i
@@ -259,7 +252,6 @@ contains
 
    !> Say what a column is
    pure subroutine describe(column, name, unit, long_name)
-      !> The column
       type(column_t), intent(inout) :: column
       !> Name, unit and meaning
       character(len=*), intent(in) :: name, unit, long_name
@@ -290,7 +282,6 @@ contains
    pure subroutine add_coordinates(table, coordinates)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Coordinates
       type(column_t), intent(in) :: coordinates
 
       call look_for_fault(table, coordinates)
@@ -307,7 +298,6 @@ contains
    pure subroutine add_column(table, column)
       !> Table to add to
       type(table_t), intent(inout) :: table
-      !> The column
       type(column_t), intent(in) :: column
 
       type(column_t) :: copy

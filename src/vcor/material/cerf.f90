@@ -44,7 +44,6 @@ contains
 
    !> Build a CERF material
    pure subroutine new_cerf(self, equilibrium, relaxing, beta, error)
-      !> The material
       type(cerf_t), intent(out) :: self
       !> Equilibrium modulus E_0 [Pa], >= 0
       real(wp), intent(in) :: equilibrium
@@ -52,7 +51,6 @@ contains
       real(wp), intent(in) :: relaxing
       !> Parameter b [s^(-1/2)], > 0
       real(wp), intent(in) :: beta
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call check_values('cerf', cerf_parameters(2:), [equilibrium, relaxing, beta], error)
@@ -65,7 +63,6 @@ contains
 
    !> Relaxation modulus E(t)
    elemental function relaxation(self, t) result(value)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -78,7 +75,6 @@ contains
    !> Rate of relaxation: with x = b sqrt(t), E_1 b^2 (CERF(x) - 1/(x sqrt(pi))), minus infinity
    !> at t = 0
    elemental function rate(self, t) result(value)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -103,7 +99,6 @@ contains
 
    !> Integral of E from 0 to t: E_0 t + E_1 ((CERF(x) - 1)/b^2 + 2 sqrt(t/pi)/b), x = b sqrt(t)
    elemental function integral(self, t) result(value)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t
@@ -121,7 +116,6 @@ contains
    elemental function integral_of_cerf(x) result(y)
       !> Argument, >= 0
       real(wp), intent(in) :: x
-      !> Value
       real(wp) :: y
 
       real(wp) :: even, odd
@@ -143,7 +137,6 @@ contains
 
    !> Complex modulus E_0 + E_1 sqrt(s)/(sqrt(s) + b), Eq. (25)
    elemental function complex_modulus(self, s) result(modulus)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Laplace variable [1/s], not on the negative real axis
       complex(wp), intent(in) :: s
@@ -155,7 +148,6 @@ contains
 
    !> Glassy modulus E_0 + E_1
    pure function glassy(self) result(modulus)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -165,7 +157,6 @@ contains
 
    !> Rubbery modulus E_0
    pure function rubbery(self) result(modulus)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -175,13 +166,11 @@ contains
 
    !> The modulus as a sum of exponentials, from its relaxation spectrum
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The material
       class(cerf_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet, and the next one far from it

@@ -157,7 +157,6 @@ contains
 
    !> Insert numbers into a list unless they are out of bounds or there already
    pure subroutine insert(numbers, lower, upper, same, list, n)
-      !> The numbers
       real(wp), intent(in) :: numbers(:)
       !> Lower bound
       real(wp), intent(in) :: lower

@@ -31,7 +31,6 @@ contains
 
    !> Multiply the sum by a factor
    pure subroutine scale(self, factor)
-      !> The sum
       class(exponential_sum_t), intent(inout) :: self
       !> Factor, > 0
       real(wp), intent(in) :: factor
@@ -43,7 +42,6 @@ contains
 
    !> Integral from 0 to t, dashpot included
    pure function integral(self, t) result(value)
-      !> The sum
       class(exponential_sum_t), intent(in) :: self
       !> Upper limit [s], >= 0
       real(wp), intent(in) :: t

@@ -56,7 +56,6 @@ contains
       class(material_t), intent(in) :: second
       !> Factor of its modulus, > 0
       real(wp), intent(in) :: second_factor
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(in_series_t), allocatable :: series
@@ -99,7 +98,6 @@ contains
       real(wp), intent(in) :: a
       !> The other
       real(wp), intent(in) :: b
-      !> Value
       real(wp) :: value
 
       value = 0.0_wp
@@ -114,7 +112,6 @@ contains
       type(exponential_sum_t), intent(in) :: b
       !> The Prony series that they make
       type(prony_t), intent(out) :: prony
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! moduli of terms that nothing can feel, over the glassy modulus
@@ -204,7 +201,6 @@ contains
 
    !> Complex modulus Q_a Q_b/(Q_a + Q_b)
    elemental function complex_modulus(self, s) result(modulus)
-      !> The two
       class(in_series_t), intent(in) :: self
       !> Laplace variable [1/s]
       complex(wp), intent(in) :: s
@@ -217,7 +213,6 @@ contains
 
    !> Glassy modulus; a dashpot beside one of the moduli makes it rigid at first
    pure function glassy(self) result(modulus)
-      !> The two
       class(in_series_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -247,7 +242,6 @@ contains
 
    !> Rubbery modulus
    pure function rubbery(self) result(modulus)
-      !> The two
       class(in_series_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -258,13 +252,11 @@ contains
 
    !> The modulus as a sum of exponentials, from its spectrum
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The two
       class(in_series_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       if (allocated(self%terms)) then

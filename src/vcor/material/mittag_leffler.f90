@@ -53,7 +53,6 @@ contains
 
    !> Build a Mittag-Leffler material
    pure subroutine new_mittag_leffler(self, equilibrium, relaxing, exponent, time, error)
-      !> The material
       type(mittag_leffler_t), intent(out) :: self
       !> Equilibrium modulus E_0 [Pa], >= 0
       real(wp), intent(in) :: equilibrium
@@ -64,7 +63,6 @@ contains
       real(wp), intent(in) :: exponent
       !> Relaxation time tau [s], > 0
       real(wp), intent(in) :: time
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call check_values('mittag_leffler', mittag_leffler_parameters(2:), &
@@ -83,7 +81,6 @@ contains
 
    !> (t/tau)^a
    elemental function power(self, t) result(u)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Time [s], >= 0
       real(wp), intent(in) :: t
@@ -96,7 +93,6 @@ contains
 
    !> Relaxation modulus E(t)
    elemental function relaxation(self, t) result(value)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -108,7 +104,6 @@ contains
 
    !> Rate of relaxation: -E_1 u E_{a,a}(-u)/t with u = (t/tau)^a, minus infinity at t = 0
    elemental function rate(self, t) result(value)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -128,7 +123,6 @@ contains
 
    !> Integral of E from 0 to t: t (E_0 + E_1 E_{a,2}(-u)) with u = (t/tau)^a
    elemental function integral(self, t) result(value)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t
@@ -142,7 +136,6 @@ contains
    !> the rate exp(x)/tau: for a near 1 a peak about as narrow as 1 - a, of which a rate keeps too
    !> few digits
    elemental function spectrum(self, rate, beyond_peak) result(density)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Rate [1/s], > 0
       real(wp), intent(in) :: rate
@@ -169,7 +162,6 @@ contains
    !> a narrow peak at q = 1, where 1 + p is small. To keep the digits, phi is measured from the
    !> nearest half axis, and p or 1/p taken, whichever is smaller: both have the same |1 + p|^2/|p|
    elemental function complex_modulus(self, s) result(modulus)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Laplace variable [1/s]; on the negative real axis the sign of the imaginary part, which
       !> may be a zero, says which side
@@ -214,7 +206,6 @@ contains
 
    !> Glassy modulus E_0 + E_1
    pure function glassy(self) result(modulus)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -224,7 +215,6 @@ contains
 
    !> Rubbery modulus E_0
    pure function rubbery(self) result(modulus)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -234,13 +224,11 @@ contains
 
    !> The modulus as a sum of exponentials, from its relaxation spectrum
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The material
       class(mittag_leffler_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       ! Q has its poles where (s tau)^a = -1

@@ -93,7 +93,6 @@ contains
 
    !> Compute the moduli of materials
    subroutine compute_moduli(self, materials, contact_time, reference, range, error)
-      !> The moduli
       type(moduli_t), intent(out) :: self
       !> The materials, shape (n)
       type(specimen_t), intent(in) :: materials(:)
@@ -139,11 +138,9 @@ contains
 
    !> Curves of one material
    pure function curves_of(material, moduli) result(curves)
-      !> The material
       class(material_t), intent(in) :: material
       !> Times and frequencies
       type(moduli_t), intent(in) :: moduli
-      !> Its curves
       type(curves_t) :: curves
 
       complex(wp) :: modulus(size(moduli%frequencies))
@@ -198,11 +195,9 @@ contains
    !> Whole decades from the glassy plateau of a material to the rubbery one, as far as they are
    !> within reach of a time, and that time
    pure function usual_range(material, reference) result(range)
-      !> The material
       class(material_t), intent(in) :: material
       !> The time [s], > 0
       real(wp), intent(in) :: reference
-      !> Range of times
       type(time_range_t) :: range
 
       real(wp) :: glassy, rubbery

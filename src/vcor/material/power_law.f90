@@ -47,7 +47,6 @@ contains
 
    !> Build a power law
    pure subroutine new_power_law(self, equilibrium, coefficient, exponent, error)
-      !> The material
       type(power_law_t), intent(out) :: self
       !> Equilibrium modulus E_0 [Pa], >= 0
       real(wp), intent(in) :: equilibrium
@@ -55,7 +54,6 @@ contains
       real(wp), intent(in) :: coefficient
       !> Exponent a, 0 < a < 1
       real(wp), intent(in) :: exponent
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call check_values('power_law', power_law_parameters(2:), &
@@ -70,7 +68,6 @@ contains
 
    !> Relaxation modulus E(t), infinite at t = 0
    elemental function relaxation(self, t) result(value)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -86,7 +83,6 @@ contains
 
    !> Rate of relaxation dE/dt, minus infinity at t = 0
    elemental function rate(self, t) result(value)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -102,7 +98,6 @@ contains
 
    !> Integral of E from 0 to t: E_0 t + C t^(1-a)/((1 - a) Gamma(1 - a))
    elemental function integral(self, t) result(value)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t
@@ -115,7 +110,6 @@ contains
 
    !> Complex modulus E_0 + C s^a, the transform of Eq. (23)
    elemental function complex_modulus(self, s) result(modulus)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Laplace variable [1/s], not on the negative real axis
       complex(wp), intent(in) :: s
@@ -127,7 +121,6 @@ contains
 
    !> Glassy modulus: infinite
    pure function glassy(self) result(modulus)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -137,7 +130,6 @@ contains
 
    !> Rubbery modulus E_0
    pure function rubbery(self) result(modulus)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -147,13 +139,11 @@ contains
 
    !> The modulus as a sum of exponentials, from its relaxation spectrum
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The material
       class(power_law_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       call sum_of_spectrum(self, window, accuracy, terms)

@@ -63,7 +63,6 @@ contains
 
    !> Build a Prony series
    pure subroutine new_prony(self, equilibrium, moduli, rates, viscosity, error)
-      !> The material
       type(prony_t), intent(out) :: self
       !> Equilibrium modulus [Pa], >= 0
       real(wp), intent(in) :: equilibrium
@@ -73,7 +72,6 @@ contains
       real(wp), intent(in) :: rates(:)
       !> Viscosity of the dashpot [Pa s], >= 0
       real(wp), intent(in) :: viscosity
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (size(moduli) /= size(rates)) then
@@ -100,7 +98,6 @@ contains
    !> Build the standard linear solid of Eq. (13): E_g (a/b + (1 - a/b) exp(-b t)). With b = 0 it
    !> is the elastic solid E_g, the limit by which the paper checks its scheme
    pure subroutine new_sls(self, glassy_modulus, alpha, beta, error)
-      !> The material
       type(prony_t), intent(out) :: self
       !> Glassy modulus E_g [Pa], > 0
       real(wp), intent(in) :: glassy_modulus
@@ -108,7 +105,6 @@ contains
       real(wp), intent(in) :: alpha
       !> Rate of relaxation b [1/s], >= 0
       real(wp), intent(in) :: beta
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: rubbery_fraction
@@ -133,11 +129,9 @@ contains
 
    !> Build an elastic solid
    pure subroutine new_elastic(self, modulus, error)
-      !> The material
       type(prony_t), intent(out) :: self
       !> Young's modulus [Pa], > 0
       real(wp), intent(in) :: modulus
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: none(0) = [real(wp) ::]
@@ -147,7 +141,6 @@ contains
 
    !> Build a rigid body: every modulus is infinite
    pure subroutine new_rigid(self)
-      !> The material
       type(prony_t), intent(out) :: self
 
       self%rigid = .true.
@@ -157,7 +150,6 @@ contains
 
    !> Relaxation modulus E(t) for t > 0
    elemental function relaxation(self, t) result(value)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -174,7 +166,6 @@ contains
 
    !> Relaxation modulus E(t) at many times: the exponentials of one term are vector instructions
    pure subroutine relaxation_at(self, t, value)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Times since the strain step [s], t >= 0
       real(wp), intent(in) :: t(:)
@@ -195,7 +186,6 @@ contains
 
    !> Rate of relaxation dE/dt
    elemental function rate(self, t) result(value)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -212,7 +202,6 @@ contains
 
    !> Integral of E from 0 to t: E_0 t + sum E_i (1 - exp(-b_i t))/b_i
    elemental function integral(self, t) result(value)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t
@@ -243,7 +232,6 @@ contains
 
    !> Complex modulus E_0 + sum E_i s/(s + b_i) + viscosity s, Eq. (27)
    elemental function complex_modulus(self, s) result(modulus)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Laplace variable [1/s], not at -b_i
       complex(wp), intent(in) :: s
@@ -260,7 +248,6 @@ contains
 
    !> Glassy modulus E_0 + sum E_i, the dashpot left out
    pure function glassy(self) result(modulus)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -270,7 +257,6 @@ contains
 
    !> Rubbery modulus E_0
    pure function rubbery(self) result(modulus)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -280,7 +266,6 @@ contains
 
    !> The series itself, whatever the window and the accuracy
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The material
       class(prony_t), intent(in) :: self
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window

@@ -73,7 +73,6 @@ contains
 
    !> Samples, and nodes of the integrals
    pure subroutine set_nodes(self)
-      !> The rule
       type(signed_fit_t), intent(inout) :: self
 
       ! slowest and fastest rate; ratio of two, logarithmic
@@ -142,7 +141,6 @@ contains
 
    !> Fit a modulus
    pure subroutine fit(self, window, modulus, terms)
-      !> The rule
       class(signed_fit_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
@@ -189,7 +187,6 @@ contains
    !> values count. Loading and unloading may feel it with different signs: three times that one was
    !> never exceeded by more than a factor of two where it was above the rounding
    pure function error_of_integral(self, deviation, sample, early) result(error)
-      !> The rule
       type(signed_fit_t), intent(in) :: self
       !> Error at the samples, over the mean modulus, shape (samples)
       real(wp), intent(in) :: deviation(:)
@@ -218,7 +215,6 @@ contains
 
    !> Moduli of the rates, of as many as pay
    pure subroutine find_moduli(self, sample, early, moduli, n, error)
-      !> The rule
       type(signed_fit_t), intent(in) :: self
       !> Modulus at the samples over its mean, shape (samples)
       real(wp), intent(in) :: sample(:)

@@ -61,7 +61,6 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
       !> ln of the rate [1/s] at which the spectrum has its peak; absent: it is a power of the rate
       real(wp), intent(in), optional :: peak
@@ -156,7 +155,6 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum
       type(exponential_sum_t), intent(out) :: terms
 
       integer, parameter :: most_refinements = 3
@@ -209,13 +207,10 @@ contains
    !> Largest relative error of a sum at some times of the window. For shorter times the error may
    !> be larger; what counts there are the integrals of the modulus, which are kept
    pure function largest_error(material, window, terms) result(error)
-      !> The material
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window
-      !> The sum
       type(exponential_sum_t), intent(in) :: terms
-      !> Error
       real(wp) :: error
 
       ! the window in parts of equal length: one exponential tells a term at the ends of them all

@@ -71,13 +71,11 @@ contains
 
    !> Build a material from points of E(t)
    pure subroutine new_tabulated(self, times, moduli, error)
-      !> The material
       type(tabulated_t), intent(out) :: self
       !> Times [s], > 0, strictly increasing, shape (n), n >= 2
       real(wp), intent(in) :: times(:)
       !> Moduli at these times [Pa], > 0, not increasing but for rounding, shape (n)
       real(wp), intent(in) :: moduli(:)
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! the logarithm is to tell two times apart
@@ -113,7 +111,6 @@ contains
 
    !> Cut the intervals between the points into panels, and integrate over them
    pure subroutine set_panels(self, x, y)
-      !> The material
       type(tabulated_t), intent(inout) :: self
       !> x at the points, shape (n)
       real(wp), intent(in) :: x(:)
@@ -177,7 +174,6 @@ contains
 
    !> Value of the sum of exponentials
    elemental function sum_at(terms, t) result(value)
-      !> The sum
       type(exponential_sum_t), intent(in) :: terms
       !> Time [s], >= 0
       real(wp), intent(in) :: t
@@ -189,7 +185,6 @@ contains
 
    !> y and its slope at x within the data
    elemental subroutine interpolate(self, x, y, slope)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> ln(t/t_1)
       real(wp), intent(in) :: x
@@ -207,9 +202,7 @@ contains
 
    !> Integral of E over a panel from its start to x, in units of E_1 t_1: that of exp(y + x)
    pure function area_of(self, panel, x) result(area)
-      !> The material
       class(tabulated_t), intent(in) :: self
-      !> The panel
       integer, intent(in) :: panel
       !> End of the integral, in the panel
       real(wp), intent(in) :: x
@@ -228,7 +221,6 @@ contains
 
    !> Relaxation modulus E(t)
    elemental function relaxation(self, t) result(value)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -252,7 +244,6 @@ contains
 
    !> Rate of relaxation dE/dt = (E/t) d ln E/d ln t, 0 outside of the data
    elemental function rate(self, t) result(value)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
       real(wp), intent(in) :: t
@@ -271,7 +262,6 @@ contains
 
    !> Integral of E from 0 to t
    elemental function integral(self, t) result(value)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t
@@ -299,7 +289,6 @@ contains
 
    !> Complex modulus of the sum of exponentials, E_0 + sum E_k s/(s + l_k)
    elemental function complex_modulus(self, s) result(modulus)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Laplace variable [1/s], not on the negative real axis
       complex(wp), intent(in) :: s
@@ -311,7 +300,6 @@ contains
 
    !> Glassy modulus: that of the first point
    pure function glassy(self) result(modulus)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -321,7 +309,6 @@ contains
 
    !> Rubbery modulus: that of the last point
    pure function rubbery(self) result(modulus)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -331,7 +318,6 @@ contains
 
    !> The sum of exponentials fitted to the data, whatever the window and the accuracy
    pure subroutine exponentials(self, window, accuracy, terms)
-      !> The material
       class(tabulated_t), intent(in) :: self
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window

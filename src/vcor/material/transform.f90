@@ -33,7 +33,6 @@ contains
 
    !> Make the rule of the inversion
    pure subroutine prepare(self)
-      !> The modulus
       class(transform_t), intent(inout) :: self
 
       call contour_rule(self%node, self%weight)
@@ -41,7 +40,6 @@ contains
 
    !> Modulus E(t)
    elemental function relaxation(self, t) result(value)
-      !> The modulus
       class(transform_t), intent(in) :: self
       !> Time [s], t >= 0
       real(wp), intent(in) :: t
@@ -57,7 +55,6 @@ contains
 
    !> Rate dE/dt at t > 0
    elemental function rate(self, t) result(value)
-      !> The modulus
       class(transform_t), intent(in) :: self
       !> Time [s], t > 0
       real(wp), intent(in) :: t
@@ -69,7 +66,6 @@ contains
 
    !> Integral of E from 0 to t, the dashpot left out
    elemental function integral(self, t) result(value)
-      !> The modulus
       class(transform_t), intent(in) :: self
       !> Upper limit [s], t >= 0
       real(wp), intent(in) :: t

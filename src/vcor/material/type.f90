@@ -63,7 +63,6 @@ module vcor_material_type
       !> A function of time
       elemental function of_time_i(self, t) result(value)
          import :: material_t, wp
-         !> The material
          class(material_t), intent(in) :: self
          !> Time since the strain step [s], t >= 0
          real(wp), intent(in) :: t
@@ -74,7 +73,6 @@ module vcor_material_type
       !> A function of the Laplace variable
       elemental function complex_modulus_i(self, s) result(modulus)
          import :: material_t, wp
-         !> The material
          class(material_t), intent(in) :: self
          !> Laplace variable [1/s], not on the negative real axis; i omega gives storage and loss
          complex(wp), intent(in) :: s
@@ -85,7 +83,6 @@ module vcor_material_type
       !> A limit of the relaxation modulus
       pure function limit_i(self) result(modulus)
          import :: material_t, wp
-         !> The material
          class(material_t), intent(in) :: self
          !> Modulus [Pa]
          real(wp) :: modulus
@@ -94,7 +91,6 @@ module vcor_material_type
       !> The modulus as a sum of exponentials: itself where it is one, else an approximation
       pure subroutine exponentials_i(self, window, accuracy, terms)
          import :: exponential_sum_t, material_t, wp
-         !> The material
          class(material_t), intent(in) :: self
          !> Time up to which the sum is to hold [s], > 0
          real(wp), intent(in) :: window
@@ -109,7 +105,6 @@ contains
 
    !> Relaxation modulus E(t) at many times at once, for models that have a faster way to it
    pure subroutine relaxation_at(self, t, value)
-      !> The material
       class(material_t), intent(in) :: self
       !> Times since the strain step [s], t >= 0
       real(wp), intent(in) :: t(:)
@@ -123,7 +118,6 @@ contains
    !> complex modulus Q. A model with a narrow peak takes the distance from it, which it cannot know
    !> from the rate to all digits
    elemental function spectrum(self, rate, beyond_peak) result(density)
-      !> The material
       class(material_t), intent(in) :: self
       !> Rate l [1/s], > 0
       real(wp), intent(in) :: rate
@@ -139,7 +133,6 @@ contains
 
    !> Factor from E to the plane-strain modulus: E' = E/(1 - nu^2), Eq. (1)
    elemental function plane_strain_factor(self) result(factor)
-      !> The material
       class(material_t), intent(in) :: self
       !> 1/(1 - nu^2) [-]
       real(wp) :: factor
@@ -149,7 +142,6 @@ contains
 
    !> Mass density
    elemental function density(self)
-      !> The material
       class(material_t), intent(in) :: self
       !> Density [kg/m3], > 0; 0 = not known
       real(wp) :: density
@@ -159,7 +151,6 @@ contains
 
    !> Poisson's ratio, constant in time
    elemental function poisson_ratio(self)
-      !> The material
       class(material_t), intent(in) :: self
       !> The ratio [-], -1 < nu <= 0.5
       real(wp) :: poisson_ratio
@@ -190,9 +181,7 @@ contains
 
    !> Whether the modulus is constant: the material neither relaxes nor flows
    pure function elastic(self)
-      !> The material
       class(material_t), intent(in) :: self
-      !> Whether it is
       logical :: elastic
 
       elastic = .not. (self%glassy() > self%rubbery() .or. self%viscosity > 0.0_wp)

@@ -33,7 +33,6 @@ contains
       integer(int8), intent(in), contiguous :: bytes(:)
       !> Sum of the bytes before them; 0 where there are none
       integer(int32), intent(in) :: before
-      !> The sum
       integer(int32) :: crc
 
       integer(int64) :: k

@@ -54,7 +54,6 @@ contains
          integer, intent(in) :: j
          !> Distance, not 0
          real(wp), intent(in) :: distance
-         !> Value
          real(wp) :: value
 
          value = constant + sum(weight/((pole - pole(j)) - distance))

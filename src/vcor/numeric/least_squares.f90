@@ -29,7 +29,6 @@ module vcor_numeric_least_squares
       !> Residuals
       subroutine residuals_i(self, x, r)
          import :: least_squares_t, wp
-         !> The problem
          class(least_squares_t), intent(in) :: self
          !> Unknowns within their bounds, shape (n)
          real(wp), intent(in) :: x(:)
@@ -40,7 +39,6 @@ module vcor_numeric_least_squares
       !> Derivatives of the residuals
       subroutine jacobian_i(self, x, j)
          import :: least_squares_t, wp
-         !> The problem
          class(least_squares_t), intent(in) :: self
          !> Unknowns within their bounds, shape (n)
          real(wp), intent(in) :: x(:)
@@ -58,7 +56,6 @@ contains
 
    !> Minimise the sum of squares
    subroutine minimise(problem, x, r, converged, tolerance, most)
-      !> The problem
       class(least_squares_t), intent(in), target :: problem
       !> Unknowns: on entry a guess, on return the solution within its bounds, shape (n)
       real(wp), intent(inout) :: x(:)
@@ -94,7 +91,6 @@ contains
 
    !> Unknowns of angles
    pure function unknowns_of(problem, y) result(x)
-      !> The problem
       class(least_squares_t), intent(in) :: problem
       !> Angles, shape (n)
       real(wp), intent(in) :: y(:)
@@ -106,7 +102,6 @@ contains
 
    !> Angles of unknowns; of those at or beyond a bound, angles a little within
    pure function angles_of(problem, x) result(y)
-      !> The problem
       class(least_squares_t), intent(in) :: problem
       !> Unknowns, shape (n)
       real(wp), intent(in) :: x(:)

@@ -62,7 +62,6 @@ contains
    pure function new_mittag_leffler_rule(exponent) result(self)
       !> Exponent a, 0 < a <= 1, which is not checked
       real(wp), intent(in) :: exponent
-      !> The rule
       type(mittag_leffler_rule_t) :: self
 
       complex(wp) :: root, w, weight, half, power, difference
@@ -90,7 +89,6 @@ contains
    pure function parts(z)
       !> Number
       complex(wp), intent(in) :: z
-      !> Its parts
       real(wp) :: parts(2)
 
       parts = [real(z, wp), aimag(z)]
@@ -98,7 +96,6 @@ contains
 
    !> E_a(-u), which falls from 1 to 0: exp(-u) in the limit a = 1, 1/(1 + u) in the limit a = 0
    elemental function value(self, u) result(y)
-      !> The rule
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite
       real(wp), intent(in) :: u
@@ -125,7 +122,6 @@ contains
    !>
    !> nothing cancels either, and the factor a that is left keeps the digits for small a
    elemental function slope(self, u) result(y)
-      !> The rule
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite
       real(wp), intent(in) :: u
@@ -151,7 +147,6 @@ contains
    !> E_{a,2}(-u), the mean of E_a(-x^a) from 0 to x with u = x^a. It falls like 1/u, for which
    !> the integral as it stands is right
    elemental function mean(self, u) result(y)
-      !> The rule
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite
       real(wp), intent(in) :: u

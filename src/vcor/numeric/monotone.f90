@@ -54,7 +54,6 @@ contains
       real(wp), intent(in) :: secant
       !> Secant of the one next to it
       real(wp), intent(in) :: further_secant
-      !> Slope
       real(wp) :: slope
 
       slope = secant + h/(h + further_h)*(secant - further_secant)

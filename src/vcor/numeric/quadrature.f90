@@ -123,7 +123,6 @@ contains
       real(wp), intent(in) :: y
       !> Scale of the rule, pi over its step
       real(wp), intent(in) :: m
-      !> Value
       real(wp), intent(out) :: phi
       !> Derivative
       real(wp), intent(out) :: slope

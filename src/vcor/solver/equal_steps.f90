@@ -12,7 +12,6 @@ contains
 
    !> Parabola through values at -1, 0 and 1
    pure function parabola(value, x) result(y)
-      !> Values
       real(wp), intent(in) :: value(-1:1)
       !> Argument
       real(wp), intent(in) :: x
@@ -47,7 +46,6 @@ contains
 
       !> Peak of one column
       pure subroutine peak(column, value, time)
-         !> Column
          integer, intent(in) :: column
          !> Largest value
          real(wp), intent(out) :: value

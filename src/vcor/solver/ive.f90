@@ -40,7 +40,6 @@ contains
       type(ive_t), intent(out) :: self
       !> Accuracy, end and second term
       type(solver_settings_t), intent(in) :: settings
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       self%settings = settings
@@ -56,7 +55,6 @@ contains
       class(ive_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(modes_t) :: modes

@@ -54,7 +54,6 @@ module vcor_solver_type
          type(impact_t), intent(in) :: impact
          !> Its course; an impact that does not end in separation is no error but a status
          type(trajectory_t), intent(out) :: trajectory
-         !> Unallocated on success
          type(error_t), allocatable, intent(out) :: error
       end subroutine solve_i
    end interface

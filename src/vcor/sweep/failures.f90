@@ -46,7 +46,6 @@ contains
    !> Note points. In whatever order they come, the reasons are the same in the end, as long as
    !> there are not more than `most_reasons`; the rest counts for the last one
    pure subroutine note(self, point, message, count)
-      !> The reasons
       class(failures_t), intent(inout) :: self
       !> Number of the first of the points
       integer, intent(in) :: point
@@ -76,7 +75,6 @@ contains
 
       !> Add the points to a reason
       pure subroutine add(reason)
-         !> The reason
          type(failure_t), intent(inout) :: reason
 
          reason%count = reason%count + n
@@ -88,7 +86,6 @@ contains
 
    !> All reasons as numbers: for each first point, count, numbers of its text, text
    pure function pack_reasons(self) result(numbers)
-      !> The reasons
       class(failures_t), intent(in) :: self
       !> Numbers, shape (n)
       real(wp), allocatable :: numbers(:)
@@ -107,7 +104,6 @@ contains
 
    !> Add reasons from numbers
    pure subroutine add_packed(self, numbers)
-      !> The reasons
       class(failures_t), intent(inout) :: self
       !> Numbers, as `pack` made them, any number of times, shape (n)
       real(wp), intent(in) :: numbers(:)
@@ -125,7 +121,6 @@ contains
 
    !> Order the reasons by their first point
    pure subroutine sort(self)
-      !> The reasons
       class(failures_t), intent(inout) :: self
 
       type(failure_t) :: other
@@ -143,7 +138,6 @@ contains
 
    !> A message without its numbers
    pure function words_of(message) result(words)
-      !> The message
       character(len=*), intent(in) :: message
       !> Its text without what numbers are written with
       character(len=:), allocatable :: words

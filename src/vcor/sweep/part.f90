@@ -38,7 +38,6 @@ contains
       integer, intent(in) :: number
       !> Number of parts, > 0
       integer, intent(in) :: parts
-      !> The part
       type(part_t) :: part
 
       part = part_t(number=number, parts=parts, points=points)
@@ -46,7 +45,6 @@ contains
 
    !> Number of points
    pure function count_places(self) result(n)
-      !> The part
       class(part_t), intent(in) :: self
       !> Number; 0 where there are more parts than points and this one has none
       integer :: n
@@ -57,7 +55,6 @@ contains
 
    !> Point at a place
    pure function point(self, place)
-      !> The part
       class(part_t), intent(in) :: self
       !> Place in the part, from 1
       integer, intent(in) :: place

@@ -45,7 +45,6 @@ module vcor_sweep_points
       !> Points are finished; called on the first rank only
       subroutine finished_i(self, first, last, count, summary, error)
          import :: error_t, monitor_t, summary_t
-         !> The watch
          class(monitor_t), intent(inout) :: self
          !> First place that may have changed
          integer, intent(in) :: first
@@ -80,7 +79,6 @@ contains
 
    !> Solve what is pending of a part of a sweep; all ranks call this
    subroutine solve_points(sweep, part, threads, summary, failures, error, monitor, stopped)
-      !> The sweep
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part
@@ -160,7 +158,6 @@ contains
 
    !> Solve the points of a round: this rank its part of them
    subroutine solve_round(sweep, part, places, workers, summary, failures, error, monitor)
-      !> The sweep
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part
@@ -211,7 +208,6 @@ contains
 
    !> What one thread of a team does
    subroutine work_off(sweep, part, own, places, chunk, worker, rows, failures, monitor)
-      !> The sweep
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part

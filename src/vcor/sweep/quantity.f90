@@ -176,15 +176,10 @@ contains
 
    !> Add a column of numbers
    pure subroutine add_real(self, name, symbol, unit, meaning, value)
-      !> The columns
       class(list_t), intent(inout) :: self
-      !> Name
       character(len=*), intent(in) :: name
-      !> Symbol
       character(len=*), intent(in) :: symbol
-      !> Unit
       character(len=*), intent(in) :: unit
-      !> What it is
       character(len=*), intent(in) :: meaning
       !> Value, in this unit
       real(wp), intent(in) :: value
@@ -197,15 +192,10 @@ contains
 
    !> Add a column of whole numbers
    pure subroutine add_whole(self, name, symbol, unit, meaning, value)
-      !> The columns
       class(list_t), intent(inout) :: self
-      !> Name
       character(len=*), intent(in) :: name
-      !> Symbol
       character(len=*), intent(in) :: symbol
-      !> Unit
       character(len=*), intent(in) :: unit
-      !> What it is
       character(len=*), intent(in) :: meaning
       !> Value, in this unit
       integer, intent(in) :: value
@@ -216,15 +206,11 @@ contains
 
    !> Add a column of texts
    pure subroutine add_label(self, name, symbol, unit, meaning, value, labels, first)
-      !> The columns
       class(list_t), intent(inout) :: self
-      !> Name
       character(len=*), intent(in) :: name
-      !> Symbol
       character(len=*), intent(in) :: symbol
       !> Unit, empty
       character(len=*), intent(in) :: unit
-      !> What it is
       character(len=*), intent(in) :: meaning
       !> Number of the text
       integer, intent(in) :: value
@@ -259,7 +245,6 @@ contains
 
    !> An outcome as numbers
    pure function values_of(outcome) result(values)
-      !> The outcome
       type(outcome_t), intent(in) :: outcome
       !> Values of the columns, each in its unit, in the order of `quantities`
       real(wp), allocatable :: values(:)
@@ -272,7 +257,6 @@ contains
 
    !> Place of a quantity among the columns
    pure function quantity_place(name) result(place)
-      !> Its name
       character(len=*), intent(in) :: name
       !> Its place in `quantities`; 0 where there is none of this name
       integer :: place
@@ -287,7 +271,6 @@ contains
 
    !> Value of a quantity
    pure function quantity_value(outcome, name) result(value)
-      !> Outcome
       type(outcome_t), intent(in) :: outcome
       !> Name of the quantity
       character(len=*), intent(in) :: name
@@ -321,7 +304,6 @@ contains
 
    !> Names of all columns of a summary, separated by blanks
    pure function quantity_names() result(names)
-      !> Names
       character(len=:), allocatable :: names
 
       type(quantity_t), allocatable :: list(:)

@@ -41,7 +41,6 @@ contains
 
    !> Make room; all points are pending, and have no values yet
    subroutine new_summary(self, points, error)
-      !> The summary
       type(summary_t), intent(out) :: self
       !> Number of points
       integer, intent(in) :: points
@@ -71,7 +70,6 @@ contains
 
    !> NaN or 0 for the values of pending points, before they are written
    pure subroutine blank_pending(self)
-      !> The summary
       class(summary_t), intent(inout) :: self
 
       integer :: i
@@ -90,9 +88,7 @@ contains
 
    !> Keep the outcome of a point
    pure subroutine put(self, place, values)
-      !> The summary
       class(summary_t), intent(inout) :: self
-      !> Its place
       integer, intent(in) :: place
       !> The outcome as numbers, as `values_of` makes them
       real(wp), intent(in) :: values(:)
@@ -113,7 +109,6 @@ contains
    pure subroutine put_part(self, part, outcomes)
       !> Outcomes of all points
       class(summary_t), intent(inout) :: self
-      !> The part
       type(part_t), intent(in) :: part
       !> Outcomes of its points
       type(summary_t), intent(in) :: outcomes

@@ -61,9 +61,7 @@ contains
 
    !> Whether the case has a &sweep group
    pure function is_grid(self) result(yes)
-      !> The sweep
       class(sweep_t), intent(in) :: self
-      !> Whether it has
       logical :: yes
 
       yes = size(self%grid%axes) > 0
@@ -71,7 +69,6 @@ contains
 
    !> Build what the impacts of a case have in common
    subroutine new_sweep(self, case, error)
-      !> The sweep
       type(sweep_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
@@ -112,7 +109,6 @@ contains
       pure function has_part(axis)
          !> The parameter
          type(axis_t), intent(in) :: axis
-         !> Whether it has
          logical :: has_part
 
          has_part = .not. allocated(error%about)
@@ -124,7 +120,6 @@ contains
 
    !> Solve one point
    subroutine solve_point(self, point, worker, outcome, error)
-      !> The sweep
       type(sweep_t), intent(in) :: self
       !> Number of the point, from 1
       integer, intent(in) :: point
@@ -146,7 +141,6 @@ contains
 
    !> Build the impact of a point
    subroutine build_point(self, point, worker, error)
-      !> The sweep
       type(sweep_t), intent(in) :: self
       !> Number of the point
       integer, intent(in) :: point

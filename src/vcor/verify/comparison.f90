@@ -42,7 +42,6 @@ contains
    subroutine compare(case, impact, comparison, error)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Its impact
       type(impact_t), intent(in) :: impact
       type(comparison_t), intent(out) :: comparison
       !> What no method can do; numerical failures are part of the comparison. Unallocated on
@@ -136,7 +135,6 @@ contains
       !> Settings but for method and step
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! steps per contact

@@ -52,7 +52,6 @@ contains
    subroutine get_impact(self, impact, error)
       class(strike_t), intent(in) :: self
       type(impact_t), intent(out) :: impact
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       class(material_t), allocatable :: sphere, body
@@ -78,7 +77,6 @@ contains
    subroutine make_body(body, material, error)
       class(material_t), allocatable, intent(out) :: body
       type(material_data_t), intent(in) :: material
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(material_data_t) :: data

@@ -30,7 +30,6 @@ contains
 
    !> Range of the horizontal values of a panel
    pure function across(panel) result(range)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Least and largest
       real(wp) :: range(2)
@@ -44,7 +43,6 @@ contains
 
    !> Range of the vertical values of a panel
    pure function along(panel, at_right) result(range)
-      !> The panel
       type(panel_t), intent(in) :: panel
       !> Of which axis
       logical, intent(in) :: at_right
@@ -79,7 +77,6 @@ contains
       type(buffer_t), intent(inout) :: buffer
       !> x, y or y2
       character(len=*), intent(in) :: name
-      !> The axis
       type(figure_axis_t), intent(in) :: axis
       !> Least and largest value of the data
       real(wp), intent(in) :: range(2)
@@ -243,7 +240,6 @@ contains
 
    !> A number with ten digits
    pure function number(value) result(text)
-      !> The number
       real(wp), intent(in) :: value
       !> Its shortest text, `NaN` where it is not finite
       character(len=:), allocatable :: text

@@ -83,7 +83,6 @@ contains
 
    !> The same real number for all pairs
    pure function constant(value) result(c)
-      !> The number
       real(wp), intent(in) :: value
       !> Vector of it
       real(wp) :: c(width)

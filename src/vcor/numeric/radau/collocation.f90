@@ -100,13 +100,11 @@ contains
 
    !> Build a rule and the diagonalised maps
    subroutine new_collocation(self, stages, steps, error)
-      !> The rule
       type(collocation_t), intent(out) :: self
       !> Number of stages, 2 .. width
       integer, intent(in) :: stages
       !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, steps >= 0
       integer, intent(in) :: steps
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: matrix(stages, stages)
@@ -146,7 +144,6 @@ contains
       real(wp), intent(in) :: node(:)
       !> Integrals, shape (n, n)
       real(wp), intent(out) :: matrix(:, :)
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: value(size(node), size(node)), integral(size(node), size(node))
@@ -183,7 +180,6 @@ contains
       real(wp), intent(in) :: bend
       !> The diagonalised map
       type(panel_map_t), intent(out) :: map
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: b(size(node), size(node)), wr(size(node)), wi(size(node))
@@ -319,7 +315,6 @@ contains
 
    !> Times of the stages of a panel since its start
    pure function times(self, index, scale)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Index of the map
       integer, intent(in) :: index
@@ -335,13 +330,11 @@ contains
 
    !> Value of the polynomial that takes the given values at the points
    pure function interpolate(self, value, theta) result(y)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`, shape (0:stages)
       real(wp), intent(in) :: value(0:)
       !> Argument, 0 .. 1, or somewhat beyond to extrapolate
       real(wp), intent(in) :: theta
-      !> Value
       real(wp) :: y
 
       real(wp) :: before(0:width), after
@@ -363,7 +356,6 @@ contains
    !> Values of the polynomial that takes the given values at the points, for many arguments and
    !> to ten digits: a guess
    pure function extend(self, value, theta) result(y)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
@@ -385,7 +377,6 @@ contains
    !> Coefficients of 1, theta, theta^2 ... of the polynomial that takes the given values at the
    !> points
    pure function powers(self, value) result(c)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
@@ -414,7 +405,6 @@ contains
 
    !> Derivative by theta, at the points, of the polynomial that takes the given values there
    pure function slopes(self, value) result(slope)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
@@ -427,7 +417,6 @@ contains
    !> Zero of the polynomial with the given values between two arguments where its signs differ,
    !> by the Illinois method, to ten digits; the upper one where they do not
    pure function crossing(self, value, lower, upper, tolerance) result(theta)
-      !> The rule
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
@@ -472,7 +461,6 @@ contains
       pure function at(x) result(y)
          !> Argument
          real(wp), intent(in) :: x
-         !> Value
          real(wp) :: y
 
          real(wp) :: x2, x4

@@ -46,7 +46,6 @@ contains
 
    !> Build the rule
    pure subroutine new_settling(self, point)
-      !> The rule
       type(settling_t), intent(out) :: self
       !> Points theta = 1 - y of the polynomials, rising to 1, shape (0:n), n <= 8
       real(wp), intent(in) :: point(0:)
@@ -99,7 +98,6 @@ contains
 
    !> Sum of G_k w_k at the end
    pure function total(self, moduli, rates, scale, start, x)
-      !> The rule
       class(settling_t), intent(in) :: self
       !> Moduli G_k, shape (modes)
       real(wp), intent(in) :: moduli(:)
@@ -140,7 +138,6 @@ contains
    pure subroutine find_moments(a, moment, decay)
       !> a, >= 0
       real(wp), intent(in) :: a
-      !> Moments
       real(wp), intent(out) :: moment(0:highest)
       !> exp(-a), 0 where that is nothing
       real(wp), intent(out) :: decay

@@ -221,7 +221,6 @@ contains
    pure function zeta(s)
       !> Argument
       real(wp), intent(in) :: s
-      !> Value
       real(wp) :: zeta
 
       integer, parameter :: terms = 20

@@ -94,7 +94,6 @@ contains
       class(product_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: first_steps = 64
@@ -158,7 +157,6 @@ contains
    !> Limit of three values with steps 4 dt, 2 dt and dt, the last one where they show no order that
    !> the method has
    pure function extrapolated(value)
-      !> Values
       real(wp), intent(in) :: value(3)
       !> Their limit
       real(wp) :: extrapolated
@@ -180,7 +178,6 @@ contains
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       ! rate of the indentation over the velocity of impact

@@ -178,7 +178,6 @@ contains
       subroutine evaluate(position, condition, up_to)
          !> Position, 0 .. 1
          real(wp), intent(in) :: position
-         !> Condition
          real(wp), intent(out) :: condition
          !> Force [N]
          real(wp), intent(out) :: up_to

@@ -48,7 +48,6 @@ contains
       real(wp), intent(in) :: accuracy
       !> Coefficient of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp), intent(in) :: second_coefficient
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: unit(0:stages)

@@ -87,7 +87,6 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       !> Whether the window was long enough
       logical, intent(out) :: complete
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(contact_t) :: contact
@@ -407,7 +406,6 @@ contains
       type(contact_t), intent(inout) :: self
       type(approach_t), intent(in), target :: approach
       type(trajectory_t), intent(inout) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: part, sphere_error, cor_error
@@ -486,11 +484,9 @@ contains
    !> not by a factor of some size. With few panels it is anybody's guess; next to the branch point
    !> of u and where alpha' of a frozen plate is infinite at first contact neither is better
    pure function error_over_difference(self, panels) result(part)
-      !> The contact
       type(contact_t), intent(in) :: self
       !> Number of panels
       integer, intent(in) :: panels
-      !> Part
       real(wp) :: part
 
       associate (problem => self%problem)

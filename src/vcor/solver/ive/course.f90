@@ -99,7 +99,6 @@ contains
    !> Factor by which the next panel can be longer than an accepted one
    pure function growth_of_step(self) result(factor)
       class(course_t), intent(in) :: self
-      !> Factor
       real(wp) :: factor
 
       factor = min(longest_growth, max(self%excess, tiny(1.0_wp)) &

@@ -22,7 +22,6 @@ contains
    !> grows, or stands still, the force is positive: what is not is rounding
    pure function first_without_force(panel) result(stage)
       type(panel_t), intent(in) :: panel
-      !> Stage
       integer :: stage
 
       do stage = 1, panel%stages

@@ -30,7 +30,6 @@ contains
    !> of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c with
    !> c 1 = sum_k G_k p_k (1 + l_k H)^-1 1
    pure subroutine resolve(terms, p, map, lambda, response, past)
-      !> The sum
       type(exponential_sum_t), intent(in) :: terms
       !> Values p_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: p(:)

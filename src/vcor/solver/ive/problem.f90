@@ -298,7 +298,6 @@ contains
    !> M f
    pure function product_with_m(e, f) result(product)
       type(equations_t), intent(in) :: e
-      !> f
       real(wp), intent(in) :: f(width)
       !> M f
       real(wp) :: product(width)

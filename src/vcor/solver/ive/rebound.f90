@@ -64,7 +64,6 @@ contains
       type(approach_t), intent(in), target :: approach
       !> Course of the impact, on entry its approach
       type(trajectory_t), intent(inout) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(rebound_t) :: rebound

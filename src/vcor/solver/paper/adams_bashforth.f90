@@ -34,7 +34,6 @@ contains
       !> Form, quadrature, step, end and second term; a step of 0 is a 3000th of the expected
       !> contact time, an accuracy is what the result is held against
       type(solver_settings_t), intent(in) :: settings
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (settings%form /= 'a' .and. settings%form /= 'b') then
@@ -52,7 +51,6 @@ contains
       class(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer, parameter :: usual_steps = 3000, fewest_steps = 40
@@ -117,7 +115,6 @@ contains
       !> Go on after the separation
       logical, intent(in) :: ghost
       type(trajectory_t), intent(out) :: trajectory
-      !> Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       logical :: stable, complete

@@ -149,7 +149,6 @@ contains
       pure function damping_at(angle) result(damping)
          !> Angle, 0 < angle <= pi
          real(wp), intent(in) :: angle
-         !> Damping
          complex(wp) :: damping
 
          complex(wp) :: x, sigma, response
@@ -193,7 +192,6 @@ contains
       real(wp), intent(in) :: c(:)
       !> Argument
       complex(wp), intent(in) :: x
-      !> Value
       complex(wp) :: value
 
       integer :: j
