@@ -90,6 +90,8 @@ contains
       real(wp), intent(inout) :: inverse(width, width)
       type(panel_t), intent(inout) :: panel
 
+      ! u [m^n], or force [N]
+      real(wp), parameter :: beyond_all = 1.0e120_wp
       real(wp) :: change(width), force(width), second(width, width)
       real(wp) :: unit, size, rate, left
       logical :: regular
@@ -97,6 +99,9 @@ contains
 
       n = panel%stages
       call problem%evaluate(e, panel)
+      ! an iteration that has lost its way does not get to products beyond the range of the numbers
+      self%failed = .not. largest(e%f) < beyond_all
+      if (self%failed) return
       if (self%stale .and. .not. e%formed) call form_matrix(e)
       change = e%right - e%x - product_with_m(e, e%f)
       if (allocated(e%lag)) then
