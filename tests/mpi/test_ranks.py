@@ -91,10 +91,12 @@ def test_one_voice(vcor):
     done = end(start(vcor, "-n", 2, program(), "--version"))
     assert (done.code, done.out.count("\n"), done.err) == (SUCCESS, 1, "")
     done = run(vcor, 2, "case.nml", "--print", "cor")
-    assert (done.code, done.out.count("\n"), done.err) == (SUCCESS, 1, "")
+    assert (done.code, done.out.count("\n"), done.err.count("\n")) == (SUCCESS, 1, 1)
+    assert "case.nml: validity outside: " in done.err
     vcor.write(SLS + "&sweep parameter = 'impact.velocity', values = 1, 2, 3 /\n")
     done = run(vcor, 3, "case.nml", "--print", "cor")
-    assert (done.code, done.out.count("\n"), done.err) == (SUCCESS, 3, "")
+    assert (done.code, done.out.count("\n"), done.err.count("\n")) == (SUCCESS, 3, 1)
+    assert "case.nml: validity: 3 of 3 points outside" in done.err
 
 
 @pytest.mark.parametrize(
