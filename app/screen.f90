@@ -17,8 +17,9 @@ module vcor_app_screen
    character(len=*), parameter :: nl = new_line('a')
    !> Quantities of the first table, by name
    character(len=*), parameter :: shown(*) = [character(len=20) :: 'cor', 'cor_sphere', &
-      'contact_time', 'max_indentation', 'max_force', 'residual_indentation', 'residual_ratio', &
-      'min_frequency', 'inelasticity', 'loss_tangent']
+      'resilience', 'rebound_height', 'contact_time', 'max_indentation', 'max_force', &
+      'residual_indentation', 'residual_ratio', 'contact_radius', 'mean_pressure', &
+      'min_frequency', 'inelasticity', 'loss_tangent', 'peak_loss_tangent']
 
 contains
 
@@ -50,6 +51,7 @@ contains
             //integer_text(outcome%steps)//' steps), status '//status_name(outcome%status)//nl
       else
          do i = 1, size(shown)
+            if (shown(i) == 'rebound_height' .and. ieee_is_nan(outcome%rebound_height)) cycle
             associate (quantity => columns(quantity_place(shown(i))))
                text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &

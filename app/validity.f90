@@ -86,7 +86,7 @@ contains
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
    end subroutine solve_exact
 
-   !> The level of an impact and the measures that are not good, a line each
+   !> The level of an impact, the measures that are not good, a line each, and the good ones in one
    function measures_report(outcome, around) result(text)
       type(outcome_t), intent(in) :: outcome
       !> What is around the impact
@@ -95,16 +95,22 @@ contains
       character(len=:), allocatable :: text
 
       real(wp) :: values(size(thresholds))
+      character(len=:), allocatable :: good
       integer :: i, level
 
       text = '  validity: '//trim(levels(outcome%validity))//nl
       values = judged(outcome, around)
+      good = ''
+      do i = 1, size(thresholds)
+         if (level_of(i, values(i)) == level_good) good = good//', '//measure_text(outcome, i)
+      end do
       do level = level_outside, level_caution, -1
          do i = 1, size(thresholds)
             if (level_of(i, values(i)) == level) text = text//'    '//trim(levels(level))//': ' &
                //measure_text(outcome, i)//': '//sentence(i)//nl
          end do
       end do
+      if (good /= '') text = text//'    good: '//good(3:)//nl
 
    contains
 

@@ -151,6 +151,23 @@ def test_screen_of_the_paper(vcor):
     for _, name, value in said:
         assert float(value) == pytest.approx(rows[0][name], rel=0.01)
     assert "  validity: outside\n" in out
+    good = re.search(r"^    good: (.+)$", out, re.MULTILINE)[1]
+    for word in good.split(", "):
+        name, value = word.split()
+        assert float(value) == pytest.approx(rows[0][name], rel=0.01)
+    assert {word.split()[0] for word in good.split(", ")} | set(names) == {
+        "contact_ratio", "thickness_ratio", "plate_wave_number", "deflection_ratio", "weight_ratio", "half_space_loss"
+    }  # extent and strength are not given
+
+
+def test_screen_of_what_is_not_judged(vcor):
+    out = screen(vcor, DROPPED)
+    row = numbers(vcor, DROPPED)
+    for name, symbol in [("resilience", "e_a^2"), ("rebound_height", "H_1"), ("contact_radius", "a"),
+                         ("mean_pressure", "p_m"), ("peak_loss_tangent", "tan(d)_p")]:
+        value = re.search(rf" {re.escape(symbol)} +([0-9]\S*)", out)[1]
+        assert float(value) == pytest.approx(row[name], rel=1e-7)
+    assert " H_1 " not in screen(vcor, GLASS)
 
 
 @pytest.mark.parametrize("text", [GLASS, BEADS, DROPPED])

@@ -21,7 +21,7 @@ program test_impact
    use vcor_solver_ive, only : ive_t
    use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
-   use vcor_test_cases, only : make_ive, make_product, rigid_on_plate, success
+   use vcor_test_cases, only : refused, make_ive, make_product, rigid_on_plate, success
    implicit none
 
    !> A dozen operations, each rounded
@@ -78,7 +78,8 @@ contains
       real(wp), parameter :: s(5) = [-2.0e-5_wp, 0.0_wp, 3.0e-7_wp, 1.7e-4_wp, 4.0_wp]
       ! contact times of n = 1, half a period of a spring, and of n = 2
       real(wp), parameter :: exponent(2) = [1.0_wp, 2.0_wp]
-      real(wp) :: duration(2), root(5)
+      real(wp), parameter :: guess(5) = [0.0_wp, -1.0e-300_wp, 1.0e-12_wp, -3.9_wp, 1.0e6_wp]
+      real(wp) :: duration(2), root(5), found, secant
       type(contact_law_t) :: hertz, built, law
       type(error_t), allocatable :: error
       integer :: i
@@ -96,6 +97,12 @@ contains
       call check(.not. any(abs(root - sqrt(abs(s))) > 0.0_wp), "u/s of many values")
       call check_relative(hertz%time_scale(2.0_wp, 3.0_wp, 4.0_wp), (1.0_wp/3.0_wp)**0.4_wp, &
          rounding, "T = (m/(k sqrt(v0)))^(2/5)")
+      ! s + 3 u(s) = 28 at s = 4; the guess may be next to nothing, and as well far too large
+      do i = 1, size(guess)
+         call hertz%solve(3.0_wp, 0.0_wp, -28.0_wp, guess(i), found, secant)
+         call check_relative(found, -4.0_wp, rounding, "root of the equation of a step")
+         call check_relative(secant, 2.0_wp, rounding, "u/s there")
+      end do
 
       duration = [pi, 2.0_wp*1.5_wp**(1.0_wp/3.0_wp)*sqrt(pi)*gamma(4.0_wp/3.0_wp) &
          /gamma(5.0_wp/6.0_wp)]
@@ -114,9 +121,9 @@ contains
       end do
 
       call new_contact_law(law, 0.9_wp, .false., error)
-      call check_refused(error, "an exponent below 1")
+      call refused(error, "an exponent below 1", "")
       call new_contact_law(law, ieee_value(1.0_wp, ieee_positive_inf), .false., error)
-      call check_refused(error, "an infinite exponent")
+      call refused(error, "an infinite exponent", "")
    end subroutine test_law
 
    !> Density and Poisson's ratio out of range are refused, and change nothing
@@ -132,29 +139,20 @@ contains
       soft = sls
       do i = 1, size(ratio)
          call soft%set_constants(error, density=900.0_wp, poisson_ratio=ratio(i))
-         call check_refused(error, "Poisson's ratio")
+         call refused(error, "Poisson's ratio", "")
       end do
       do i = 1, size(density)
          call soft%set_constants(error, density=density(i), poisson_ratio=0.3_wp)
-         call check_refused(error, "a density")
+         call refused(error, "a density", "")
       end do
       call check_close(soft%density(), 1100.0_wp, 0.0_wp, "the density stays")
       call check_close(soft%poisson_ratio(), 0.5_wp, 0.0_wp, "Poisson's ratio stays")
       call soft%set_constants(error, density=1.0e300_wp)
       call new_plate(plate, soft, 0.02_wp, waves_relaxing, error)
-      call check_refused(error, "a density beyond the numbers")
+      call refused(error, "a density beyond the numbers", "")
       call new_plate(plate, sls, 1.0e155_wp, waves_relaxing, error)
-      call check_refused(error, "a thickness whose square is beyond the numbers")
+      call refused(error, "a thickness whose square is beyond the numbers", "")
    end subroutine test_unsound_constants
-
-   !> An error of the input was raised
-   subroutine check_refused(error, what)
-      type(error_t), intent(in), allocatable :: error
-      character(len=*), intent(in) :: what
-
-      call check(allocated(error), what//" is refused")
-      if (allocated(error)) call check(error%code == error_input, what//": as wrong input")
-   end subroutine check_refused
 
    !> The cases of the paper's Section III
    subroutine test_four_cases()
