@@ -2,7 +2,7 @@
 module vcor_test_cases
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_constants, only : pi
-   use vcor_error, only : error_t
+   use vcor_error, only : error_input, error_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : new_plate, plate_t
@@ -18,13 +18,13 @@ module vcor_test_cases
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
    use vcor_case_problem, only : problem_of_case, problem_t
-   use vcor_test, only : check
+   use vcor_test, only : check, check_contains
    implicit none
    private
 
    public :: random_t
-   public :: success, read_impact, rigid_on_plate, body_on_body, run, make_ive, make_product
-
+   public :: success, refused, read_impact, rigid_on_plate, body_on_body, run, make_ive, &
+      make_product
 
    !> Random numbers, the same on every machine: the multiplicative generator of Park and Miller,
    !> Commun. ACM 31 (1988) 1192, doi:10.1145/63039.63042
@@ -55,6 +55,24 @@ contains
          call check(.true., what)
       end if
    end subroutine success
+
+   !> Check that something was refused as bad input
+   subroutine refused(error, what, reason)
+      type(error_t), allocatable, intent(in) :: error
+      !> What was refused
+      character(len=*), intent(in) :: what
+      !> What the message must name, empty: anything; absent: what was refused
+      character(len=*), intent(in), optional :: reason
+
+      call check(allocated(error), what//" is refused")
+      if (.not. allocated(error)) return
+      call check(error%code == error_input, what//" is an error of the input")
+      if (present(reason)) then
+         if (reason /= "") call check_contains(error%message, reason, what//": the message says why")
+      else
+         call check_contains(error%message, what, what//": the message says why")
+      end if
+   end subroutine refused
 
    !> The impact of a case file
    subroutine read_impact(filename, impact)

@@ -1,6 +1,6 @@
 !> The paper's own time marching: its digits, its order, its limits
 program test_adams_bashforth
-   use vcor_error, only : error_input, error_numerical, error_t
+   use vcor_error, only : error_numerical, error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_frozen, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
@@ -15,7 +15,7 @@ program test_adams_bashforth
    use vcor_solver_paper_formulas, only : damping_limit, kernel_terms
    use vcor_solver_type, only : solver_settings_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
-   use vcor_test_cases, only : rigid_on_plate, run, success
+   use vcor_test_cases, only : refused, rigid_on_plate, run, success
    implicit none
 
    !> The paper's step for the SLS, 2 ms/3000, and the one of its BUTYL runs [s]
@@ -513,18 +513,5 @@ contains
          call check_contains(error%message, "at most", "the message says how long it may be")
       end do
    end subroutine test_long_steps
-
-   !> Check that something was refused as bad input
-   subroutine refused(error, reason)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-      !> What the message must name
-      character(len=*), intent(in) :: reason
-
-      call check(allocated(error), reason//": refused")
-      if (.not. allocated(error)) return
-      call check(error%code == error_input, reason//": as an error of the input")
-      call check_contains(error%message, reason, reason//": with the reason")
-   end subroutine refused
 
 end program test_adams_bashforth

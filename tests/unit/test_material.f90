@@ -4,7 +4,7 @@ program test_material
       ieee_quiet_nan, ieee_value
    use, intrinsic :: ieee_exceptions, only : ieee_get_halting_mode, ieee_invalid, ieee_set_flag, &
       ieee_set_halting_mode
-   use vcor_error, only : error_input, error_t
+   use vcor_error, only : error_t
    use vcor_interval, only : is_within
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, model_parameters, models, new_material, &
@@ -17,9 +17,9 @@ program test_material
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
-   use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
+   use vcor_test, only : check, check_close, check_relative, check_text, finish, &
       suite
-   use vcor_test_cases, only : success
+   use vcor_test_cases, only : refused, success
    use vcor_test_material_values, only : cerf_integral, cerf_rate, cerf_relaxation, cerf_time, &
       power_exponent, power_integral, power_relaxation, power_time
    implicit none
@@ -453,22 +453,6 @@ contains
       call ieee_set_flag(ieee_invalid, .false.)
       call ieee_set_halting_mode(ieee_invalid, halting)
    end subroutine test_not_a_number
-
-   !> Check that something was refused as bad input
-   subroutine refused(error, what, reason)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-      !> What was refused
-      character(len=*), intent(in) :: what
-      !> What the message must name; empty: anything
-      character(len=*), intent(in) :: reason
-
-      call check(allocated(error), what//" is refused")
-      if (.not. allocated(error)) return
-      call check(error%code == error_input, what//" is an error of the input")
-      if (len(reason) > 0) call check_contains(error%message, reason, &
-         what//": the message says why")
-   end subroutine refused
 
    !> Materials by the name of their model
    subroutine test_factory()

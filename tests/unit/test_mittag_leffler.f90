@@ -2,7 +2,7 @@
 !> that have a model of their own, and what must not overflow
 program test_mittag_leffler
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
-   use vcor_error, only : error_input, error_t
+   use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_cerf, only : cerf_t, new_cerf
@@ -10,8 +10,8 @@ program test_mittag_leffler
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
    use vcor_material_prony, only : new_sls, prony_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
-   use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
-   use vcor_test_cases, only : success
+   use vcor_test, only : check, check_close, check_relative, finish, suite
+   use vcor_test_cases, only : refused, success
    use vcor_test_material_values, only : ml_exponent, ml_mean, ml_rate, ml_slope, ml_spectrum, &
       ml_time, ml_value
    implicit none
@@ -339,18 +339,5 @@ contains
       call new_material(built, data, error)
       call refused(error, "exponent")
    end subroutine test_refusals
-
-   !> Check that something was refused as bad input
-   subroutine refused(error, reason)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-      !> What the message must name
-      character(len=*), intent(in) :: reason
-
-      call check(allocated(error), reason//" out of range is refused")
-      if (.not. allocated(error)) return
-      call check(error%code == error_input, reason//" out of range is an error of the input")
-      call check_contains(error%message, reason, reason//": the message says why")
-   end subroutine refused
 
 end program test_mittag_leffler

@@ -1,7 +1,7 @@
 !> Both solvers: convergence, what a trajectory holds, contacts that do not end, refusals
 program test_solver
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use vcor_error, only : error_input, error_t
+   use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
    use vcor_impact_plate, only : waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
@@ -15,10 +15,10 @@ program test_solver
    use vcor_solver, only : method_for, new_solver, solver_settings_t, solver_t
    use vcor_solver_ive, only : ive_t
    use vcor_solver_direct_product, only : product_t
-   use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
+   use vcor_test, only : check, check_close, check_relative, check_text, finish, &
       suite
-   use vcor_test_cases, only : body_on_body, make_ive, make_product, random_t, rigid_on_plate, &
-      run, success
+   use vcor_test_cases, only : refused, body_on_body, make_ive, make_product, random_t, &
+      rigid_on_plate, run, success
    implicit none
 
    !> Sums and differences of the state, each rounded
@@ -486,20 +486,5 @@ contains
       call new_solver(solver, settings, impact(1), error)
       call refused(error, "an unknown scheme", "product")
    end subroutine test_factory
-
-   !> Check that something was refused as bad input
-   subroutine refused(error, what, remedy)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-      !> What was refused
-      character(len=*), intent(in) :: what
-      !> What the message must name
-      character(len=*), intent(in) :: remedy
-
-      call check(allocated(error), what//" is refused")
-      if (.not. allocated(error)) return
-      call check(error%code == error_input, what//" is an error of the input")
-      call check_contains(error%message, remedy, what//": the message says what works")
-   end subroutine refused
 
 end program test_solver

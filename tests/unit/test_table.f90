@@ -1,7 +1,7 @@
 !> Material given by points: the interpolation, its integral, and the sum of exponentials fitted to
 !> it
 program test_table
-   use vcor_error, only : error_input, error_t
+   use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -11,8 +11,8 @@ program test_table
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_numeric_legendre, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
-   use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
-   use vcor_test_cases, only : random_t, success
+   use vcor_test, only : check, check_close, check_relative, finish, suite
+   use vcor_test_cases, only : refused, random_t, success
    implicit none
 
    !> exp and ln of numbers up to 50, whose last digits count fifty times
@@ -370,19 +370,6 @@ contains
       call new_material(built, data, error)
       call refused(error, "increase")
    end subroutine test_refusals
-
-   !> Check that something was refused as bad input
-   subroutine refused(error, reason)
-      !> The error
-      type(error_t), allocatable, intent(in) :: error
-      !> What the message must name
-      character(len=*), intent(in) :: reason
-
-      call check(allocated(error), "refused: "//reason)
-      if (.not. allocated(error)) return
-      call check(error%code == error_input, "an error of the input: "//reason)
-      call check_contains(error%message, reason, "the message says why")
-   end subroutine refused
 
    !> Check that terms are a sum of exponentials, between the limits of the material
    subroutine sane(material, last, terms, what)
