@@ -68,7 +68,8 @@ contains
       if (.not. allocated(error)) return
       call check(error%code == error_input, what//" is an error of the input")
       if (present(reason)) then
-         if (reason /= "") call check_contains(error%message, reason, what//": the message says why")
+         if (reason /= "") &
+            call check_contains(error%message, reason, what//": the message says why")
       else
          call check_contains(error%message, what, what//": the message says why")
       end if
