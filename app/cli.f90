@@ -33,7 +33,6 @@ module vcor_app_cli
       type(argument_t), allocatable :: names(:)
       !> Value of --output; unallocated without it
       character(len=:), allocatable :: directory
-      !> Threads of --threads; 0 without it
       integer :: threads = 0
       !> Whether to go on with what is there
       logical :: resume = .false.
@@ -223,7 +222,6 @@ contains
    !> Set what an option stands for
    subroutine apply(request, option, value, error)
       type(request_t), intent(inout) :: request
-      !> A known option
       character(len=*), intent(in) :: option
       !> Its value, empty if it takes none
       character(len=*), intent(in) :: value

@@ -42,7 +42,6 @@ module vcor_app_fit
       character(len=:), allocatable :: name
       !> Case, and perhaps material, to be sampled in place of data
       character(len=:), allocatable :: source
-      !> Whether storage and loss modulus are sampled
       logical :: dynamic = .false.
    end type wish_t
 

@@ -22,7 +22,6 @@ contains
    function fit_report(fit, source, note, samples, tail) result(text)
       type(fit_t), intent(in) :: fit
       character(len=*), intent(in) :: source
-      !> What was read
       character(len=*), intent(in) :: note
       type(samples_t), intent(in) :: samples
       !> Notes and files, one to a line

@@ -86,7 +86,6 @@ contains
    !> Names and values of the swept parameters at a point
    function coordinates(self, point) result(text)
       class(job_t), intent(in) :: self
-      !> Number of the point
       integer, intent(in) :: point
       character(len=:), allocatable :: text
 
@@ -188,6 +187,7 @@ contains
       ! bare numbers are for scripts, which would be surprised by files
       if (size(request%names) > 0 .and. .not. allocated(request%directory)) job%writes = .false.
       if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
+      job%history = job%history .and. any(job%writes)
       job%part = new_part(job%sweep%grid%count(), 1, 1)
       call take_shard(request, job, error)
       if (allocated(error)) return
@@ -318,7 +318,6 @@ contains
       type(job_t), intent(in) :: new
       !> One that comes no later
       type(job_t), intent(in) :: old
-      !> Whether they are the same
       logical, intent(in) :: is_same
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error

@@ -33,7 +33,6 @@ program vcor_main
       !> Leave the process with an exit code and without the words of `stop`
       subroutine c_exit(code) bind(c, name='exit')
          import :: c_int
-         !> Exit code
          integer(c_int), intent(in), value :: code
       end subroutine c_exit
    end interface

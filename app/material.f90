@@ -2,19 +2,16 @@
 module vcor_app_material
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : directory_of, job_t
+   use vcor_app_files, only : write_files
+   use vcor_app_job, only : job_t
    use vcor_app_screen, only : heading, line, short, significant
    use vcor_app_window, only : find_window, window_t
-   use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
    use vcor_case_problem, only : material_of_case
    use vcor_error, only : error_t
-   use vcor_io_csv, only : write_csv
    use vcor_io_file, only : write_stdout
-   use vcor_io_hdf5, only : write_hdf5
    use vcor_io_moduli_tables, only : moduli_tables
    use vcor_text, only : integer_text, printable
-   use vcor_io_path, only : make_directory
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, specimen_t
@@ -37,7 +34,7 @@ contains
 
       type(specimen_t), allocatable :: materials(:)
       type(moduli_t) :: moduli
-      type(table_t) :: summary
+      type(table_t) :: tables(3)
       character(len=:), allocatable :: title, files
       type(window_t) :: window
       integer :: i
@@ -55,42 +52,12 @@ contains
             request%range, error)
          if (allocated(error)) return
          call case%get('case', 'title', title)
-         call write_files(job, case, title, moduli, summary, files, error)
+         call moduli_tables(moduli, title, case_text(case, complete=.true.), tables)
       end associate
+      call write_files(job, tables, files, error)
       if (allocated(error) .or. request%quiet) return
       call write_stdout(report(job%case%source, title, moduli)//window%notes//files//nl, error)
    end subroutine show_materials
-
-   !> Write the files
-   subroutine write_files(job, case, title, moduli, summary, files, error)
-      !> What is written, and where
-      type(job_t), intent(in) :: job
-      !> The case, for the heads of the files
-      type(case_t), intent(in) :: case
-      character(len=*), intent(in) :: title
-      type(moduli_t), intent(in) :: moduli
-      !> A row per material
-      type(table_t), intent(out) :: summary
-      character(len=:), allocatable, intent(out) :: files
-      type(error_t), allocatable, intent(out) :: error
-
-      type(table_t) :: curves(2)
-      integer :: i
-
-      files = ''
-      call moduli_tables(moduli, title, case_text(case, complete=.true.), summary, curves(1), &
-         curves(2))
-      if (.not. any(job%writes)) return
-      call make_directory(directory_of(job), error)
-      if (.not. allocated(error) .and. job%writes(1)) call write_csv(job%file(1), summary, error)
-      do i = 1, size(curves)
-         if (.not. allocated(error) .and. job%writes(i + 1)) &
-            call write_csv(job%file(i + 1), curves(i), error)
-      end do
-      if (.not. allocated(error) .and. job%writes(4)) &
-         call write_hdf5(job%file(4), summary, error=error, more=curves)
-      if (.not. allocated(error)) files = job%written()
-   end subroutine write_files
 
    !> What the screen shows
    function report(filename, title, moduli) result(text)

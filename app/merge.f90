@@ -8,7 +8,7 @@ module vcor_app_merge
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : new_grid
    use vcor_error, only : error_file, error_numerical, error_t, raise
-   use vcor_impact_trajectory, only : contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_separated
    use vcor_io_case_reader, only : read_case_text
    use vcor_io_checkpoint, only : read_points
    use vcor_io_file, only : write_stdout
@@ -117,7 +117,6 @@ contains
    function missing(numbers, parts) result(text)
       !> Numbers of the shards that are there
       integer, intent(in) :: numbers(:)
-      !> Number of shards
       integer, intent(in) :: parts
       !> Numbers of the others
       character(len=:), allocatable :: text
@@ -176,7 +175,6 @@ contains
    subroutine judge(identity, summary, error)
       !> What the sweep is about
       type(identity_t), intent(in) :: identity
-      !> Outcomes
       type(summary_t), intent(in) :: summary
       !> Error of code `error_numerical`, unallocated where all points have a result
       type(error_t), allocatable, intent(out) :: error
@@ -203,13 +201,11 @@ contains
       type(job_t), intent(inout) :: job
       !> What the sweep is about
       type(identity_t), intent(in) :: identity
-      !> Outcomes
       type(summary_t), intent(inout) :: summary
       type(error_t), allocatable, intent(out) :: error
 
       type(previous_t) :: previous
-      type(table_t) :: table
-      type(trajectory_t) :: none
+      type(table_t) :: tables(1)
       character(len=:), allocatable :: files, validity
       integer :: i
 
@@ -224,8 +220,8 @@ contains
       call look_back(job, identity, previous)
       validity = points_report(job%sweep%grid, summary)
       if (len(validity) > 0) validity = validity//new_line('a')
-      call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-      call write_files(job, identity, table, none, files, error)
+      call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
+      call write_files(job, tables, files, error, identity)
       if (allocated(error)) return
       call remark(replaced(previous))
       if (.not. request%quiet) call write_stdout(integer_text(size(request%files))//' shards, ' &

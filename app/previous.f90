@@ -34,7 +34,6 @@ contains
       type(job_t), intent(in) :: job
       !> What they should be about
       type(identity_t), intent(in) :: expected
-      !> What is there
       type(previous_t), intent(out) :: previous
 
       type(identity_t) :: identity
@@ -70,9 +69,7 @@ contains
    subroutine heed(request, job, previous, is_finished, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
-      !> What is there
       type(previous_t), intent(in) :: previous
-      !> Whether there is nothing to do
       logical, intent(out) :: is_finished
       !> With --resume: what is there is about something else
       type(error_t), allocatable, intent(out) :: error
@@ -121,7 +118,6 @@ contains
 
    !> Whether the summary in an HDF5 file has all columns: that of an earlier version has fewer
    function has_columns(path)
-      !> Path of the file
       character(len=*), intent(in) :: path
       logical :: has_columns
 
@@ -140,7 +136,6 @@ contains
 
    !> Number of times of the history in an HDF5 file
    function history_rows(path) result(rows)
-      !> Path of the file
       character(len=*), intent(in) :: path
       !> Number of rows, 0 where there is no history
       integer :: rows
@@ -159,7 +154,6 @@ contains
 
    !> Nobody's results are replaced in silence
    function replaced(previous) result(text)
-      !> What was there
       type(previous_t), intent(in) :: previous
       !> What there is to say: nothing if there was nothing else
       character(len=:), allocatable :: text

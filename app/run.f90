@@ -15,7 +15,7 @@ module vcor_app_run
    use vcor_io_file, only : write_stdout
    use vcor_io_identity, only : identity_of, identity_t
    use vcor_text, only : integer_text
-   use vcor_io_results, only : summary_table
+   use vcor_io_results, only : history_table, summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
    use vcor_sweep_summary, only : new_summary, summary_t
@@ -40,7 +40,7 @@ contains
       type(previous_t) :: previous
       type(identity_t) :: identity
       type(summary_t) :: summary
-      type(table_t) :: table
+      type(table_t), allocatable :: tables(:)
       type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
@@ -56,24 +56,25 @@ contains
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
       call summary%put(1, values_of(outcome))
+      if (.not. allocated(error)) call warn_of_bands(job, summary)
+      allocate (tables(merge(2, 1, job%history)))
+      call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
          ! there is no course that could be written
-         call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
          if (error%code == error_numerical .and. size(request%names) > 0) &
-            call write_numbers(request, table, trouble)
+            call write_numbers(request, tables(1), trouble)
          if (allocated(trouble)) call move_alloc(trouble, error)
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-
-      call warn_of_bands(job, summary)
-      call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-      call write_files(job, identity, table, worker%trajectory, files, trouble)
+      if (job%history) call history_table(tables(2), identity%title, identity%case_text, &
+         worker%trajectory)
+      call write_files(job, tables, files, trouble, identity)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then
-         call write_numbers(request, table, trouble)
+         call write_numbers(request, tables(1), trouble)
          if (.not. request%quiet) call remark(about_numbers(job, inexact(outcome), &
             measures_remark(outcome, worker%problem%around)))
       else if (.not. request%quiet) then
@@ -193,7 +194,6 @@ contains
 
       !> One line
       subroutine add(line)
-         !> The remark
          character(len=*), intent(in) :: line
 
          text = text//as_line('note: '//line)

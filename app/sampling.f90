@@ -41,7 +41,6 @@ contains
       type(request_t), intent(in) :: request
       !> CASE.nml or CASE.nml:MATERIAL
       character(len=*), intent(in) :: source
-      !> Whether storage and loss modulus are sampled
       logical, intent(in) :: dynamic
       type(sampled_t), intent(out) :: sampled
       type(samples_t), intent(out) :: samples

@@ -25,11 +25,8 @@ contains
 
    !> Report of one impact
    function report(filename, title, method, outcome, exact, time, files) result(text)
-      !> Case file
       character(len=*), intent(in) :: filename
-      !> Title of the case
       character(len=*), intent(in) :: title
-      !> Method that solved it
       character(len=*), intent(in) :: method
       type(outcome_t), intent(in) :: outcome
       !> The same with exact mechanics; without numbers where there is nothing to be said of it
@@ -38,7 +35,6 @@ contains
       real(wp), intent(in) :: time
       !> Remarks and files written, one to a line
       character(len=*), intent(in) :: files
-      !> Text of several lines
       character(len=:), allocatable :: text
 
       type(quantity_t), allocatable :: columns(:)
@@ -70,7 +66,6 @@ contains
 
       !> A number of the table, 0 where only rounding is left of it
       function shown_value(name) result(value)
-         !> Name of the quantity
          character(len=*), intent(in) :: name
          real(wp) :: value
 
@@ -81,7 +76,6 @@ contains
 
       !> What stands behind a number
       function remark(name)
-         !> Name of the quantity
          character(len=*), intent(in) :: name
          character(len=:), allocatable :: remark
 
@@ -94,9 +88,7 @@ contains
 
    !> Program, case and title, and an empty line
    pure function heading(filename, title) result(text)
-      !> Case file
       character(len=*), intent(in) :: filename
-      !> Title of the case
       character(len=*), intent(in) :: title
       character(len=:), allocatable :: text
 
@@ -114,7 +106,6 @@ contains
       character(len=*), intent(in) :: symbol
       real(wp), intent(in) :: value
       character(len=*), intent(in) :: unit
-      !> What stands behind it
       character(len=*), intent(in) :: remark
       character(len=:), allocatable :: text
 
@@ -171,7 +162,6 @@ contains
       pure function share(energy) result(percent)
          !> Energy [J]
          real(wp), intent(in) :: energy
-         !> Its share
          character(len=10) :: percent
 
          ! a thousandth of a percent is the last digit shown; zero has no sign

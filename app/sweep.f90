@@ -13,7 +13,6 @@ module vcor_app_sweep
    use vcor_app_validity, only : about_numbers, points_remark, points_report
    use vcor_app_watch, only : watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
-   use vcor_impact_trajectory, only : trajectory_t
    use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint, read_points, read_results
    use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout
    use vcor_io_identity, only : identity_of, number_of
@@ -40,7 +39,6 @@ contains
    !> Run the sweep of a case; all ranks call this
    subroutine run_sweep(request, job, error)
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
       !> Error of code `error_numerical` if points have no result, of another if there is worse;
       !> unallocated on success
@@ -83,15 +81,12 @@ contains
    !> Find out where to begin
    subroutine begin(request, job, watch, previous, summary, is_finished, error)
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
-      !> Who watches
       type(watch_t), intent(inout) :: watch
       !> Results that are there
       type(previous_t), intent(out) :: previous
       !> Outcomes that are there, the others pending
       type(summary_t), intent(out) :: summary
-      !> Whether there is nothing to do
       logical, intent(out) :: is_finished
       type(error_t), allocatable, intent(out) :: error
 
@@ -135,7 +130,6 @@ contains
 
    !> Say at the beginning, and how much, if there is not enough memory for a sweep
    subroutine need_memory(job, threads, error)
-      !> The case
       type(job_t), intent(in) :: job
       integer, intent(in) :: threads
       !> Error of code `error_file`, unallocated where there is enough
@@ -161,7 +155,6 @@ contains
    subroutine look_into_shard(previous, watch, summary, is_unfinished, error)
       !> The shard, if it is there
       type(previous_t), intent(in) :: previous
-      !> Who watches
       type(watch_t), intent(in) :: watch
       !> Room for its outcomes
       type(summary_t), intent(inout) :: summary
@@ -180,15 +173,11 @@ contains
    !> After the points: write the results, or say what ended the sweep
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
-      !> Who watches
       type(watch_t), intent(inout) :: watch
       !> Results that were there
       type(previous_t), intent(in) :: previous
-      !> Outcomes
       type(summary_t), intent(inout) :: summary
-      !> What has no result
       type(failures_t), intent(in) :: failures
       !> Signal that ended the sweep; 0 if there was none
       integer, intent(in) :: stopped
@@ -227,18 +216,13 @@ contains
    !> Write the results of a whole sweep
    subroutine finish_whole(request, job, watch, summary, failures, error)
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
-      !> Who watches
       type(watch_t), intent(inout) :: watch
-      !> Outcomes
       type(summary_t), intent(inout) :: summary
-      !> What has no result
       type(failures_t), intent(in) :: failures
       type(error_t), allocatable, intent(out) :: error
 
-      type(table_t) :: table
-      type(trajectory_t) :: none
+      type(table_t) :: tables(1)
       character(len=:), allocatable :: files, validity, less
 
       call warn_of_bands(job, summary)
@@ -248,19 +232,19 @@ contains
          validity = points_report(job%sweep%grid, summary)
       end if
       associate (identity => watch%identity)
-         call summary_table(table, identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(job, identity, table, none, files, error)
+         call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
+         call write_files(job, tables, files, error, identity, threads_of(request))
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
          if (size(request%names) > 0) then
-            call write_numbers(request, table, error)
+            call write_numbers(request, tables(1), error)
             if (request%quiet) return
             less = ''
             if (failures%inexact%count > 0) less = inexact(job, failures)
             call remark(about_numbers(job, less, validity))
          else if (.not. request%quiet) then
-            call write_stdout(sweep_report(job, identity%title, table, failures, validity, &
+            call write_stdout(sweep_report(job, identity%title, tables(1), failures, validity, &
                files), error)
          end if
       end associate
@@ -269,11 +253,8 @@ contains
    !> A shard is finished: its file gets its name
    subroutine finish_shard(request, job, watch, failures, error)
       type(request_t), intent(in) :: request
-      !> The case
       type(job_t), intent(in) :: job
-      !> Who watches
       type(watch_t), intent(inout) :: watch
-      !> What has no result
       type(failures_t), intent(in) :: failures
       type(error_t), allocatable, intent(out) :: error
 
@@ -287,9 +268,7 @@ contains
 
    !> Points without a result make an error of the whole, after all others are done
    subroutine end_of_sweep(job, failures, error)
-      !> The case
       type(job_t), intent(in) :: job
-      !> What has no result
       type(failures_t), intent(in) :: failures
       !> Error of code `error_numerical`, unallocated where all points have a result
       type(error_t), allocatable, intent(out) :: error

@@ -23,15 +23,12 @@ contains
    function sweep_report(job, title, summary, failures, validity, files) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
-      !> Outcomes
       type(table_t), intent(in) :: summary
-      !> What has no result
       type(failures_t), intent(in) :: failures
       !> What is said of the validity, one to a line
       character(len=*), intent(in) :: validity
       !> Files written, one to a line
       character(len=*), intent(in) :: files
-      !> Text of several lines
       character(len=:), allocatable :: text
 
       logical :: history
@@ -53,11 +50,8 @@ contains
    function shard_report(job, title, failures, path) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
-      !> What has no result
       type(failures_t), intent(in) :: failures
-      !> File written
       character(len=*), intent(in) :: path
-      !> Text of several lines
       character(len=:), allocatable :: text
 
       text = swept(job, title)//'  '//integer_text(job%part%count())//' of ' &
@@ -100,9 +94,7 @@ contains
 
    !> What is swept
    function axis_line(axis) result(text)
-      !> The parameter
       type(axis_t), intent(in) :: axis
-      !> The line
       character(len=:), allocatable :: text
 
       associate (n => size(axis%values))
@@ -115,7 +107,6 @@ contains
 
    !> Smallest and largest outcomes
    function ranges(summary) result(text)
-      !> Outcomes
       type(table_t), intent(in) :: summary
       character(len=:), allocatable :: text
 
@@ -154,7 +145,6 @@ contains
    !> What has no result, and why
    function reasons(job, failures) result(text)
       type(job_t), intent(in) :: job
-      !> What has no result
       type(failures_t), intent(in) :: failures
       character(len=:), allocatable :: text
 

@@ -180,9 +180,7 @@ contains
 
    !> Points of a sweep that are not good: how many, by which measure, and where
    function points_report(grid, summary) result(text)
-      !> Points of the sweep
       type(grid_t), intent(in) :: grid
-      !> Outcomes of all of them
       type(summary_t), intent(in) :: summary
       !> Lines, none where all is good
       character(len=:), allocatable :: text
@@ -207,9 +205,7 @@ contains
 
    !> Points of a sweep that are not good, for one line
    function points_remark(grid, summary) result(text)
-      !> Points of the sweep
       type(grid_t), intent(in) :: grid
-      !> Outcomes of all of them
       type(summary_t), intent(in) :: summary
       !> Words, none where all is good
       character(len=:), allocatable :: text
@@ -252,7 +248,6 @@ contains
 
    !> Between what values of the parameters points lie
    function place_of(grid, chosen) result(text)
-      !> Points of the sweep
       type(grid_t), intent(in) :: grid
       !> Which of them, shape (points)
       logical, intent(in) :: chosen(:)

@@ -27,7 +27,6 @@ contains
 
    !> Evaluate the verification table and print it, law by law
    subroutine verify_program(quiet, error)
-      !> Nothing on the screen
       logical, intent(in) :: quiet
       !> Error of code `error_numerical` if a row fails, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -63,7 +62,6 @@ contains
    !> Solve a case by all methods and print what they agree on
    subroutine verify_case(job, quiet, error)
       type(job_t), intent(in) :: job
-      !> Nothing on the screen
       logical, intent(in) :: quiet
       !> Error of code `error_numerical` if they do not agree, unallocated on success
       type(error_t), allocatable, intent(out) :: error

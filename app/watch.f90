@@ -33,7 +33,6 @@ module vcor_app_watch
       type(identity_t) :: identity
       !> Its grid
       type(grid_t) :: grid
-      !> The file, open once there is one
       type(checkpoint_t) :: file
       !> Points that are done
       integer :: done = 0
@@ -63,7 +62,6 @@ contains
       integer, intent(in) :: last
       !> Number of points between them that are new
       integer, intent(in) :: count
-      !> Outcomes of all places
       type(summary_t), intent(inout) :: summary
       !> Set if they cannot be kept; unallocated on success
       type(error_t), allocatable, intent(out) :: error

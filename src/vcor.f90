@@ -29,7 +29,7 @@ module vcor
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
-   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
+   use vcor_solver, only : solve_impact, solver_settings_t
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_part, only : new_part
    use vcor_sweep_points, only : solve_points
@@ -52,8 +52,8 @@ module vcor
    public :: waves_hereditary
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution
-   public :: solve_impact, outcome_t, solver_t, solver_settings_t, new_solver
-   public :: trajectory_t, contact_separated, contact_lasting, contact_sticking
+   public :: solve_impact, outcome_t, solver_settings_t, trajectory_t
+   public :: contact_separated, contact_lasting, contact_sticking
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data
    public :: validate, case_text, problem_t, problem_of_case, material_of_case

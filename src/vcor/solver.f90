@@ -95,7 +95,7 @@ contains
    end subroutine check_settings
 
    !> Solve an impact by the method auto, or as it is to be solved
-   subroutine solve_in_short(impact, outcome, error, settings)
+   subroutine solve_in_short(impact, outcome, error, settings, trajectory)
       type(impact_t), intent(in) :: impact
       !> Its outcome; one that is no separation has a status and no numbers
       type(outcome_t), intent(out) :: outcome
@@ -104,14 +104,17 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> How it is to be solved; absent: all defaults
       type(solver_settings_t), intent(in), optional :: settings
+      !> Its course, for those who ask
+      type(trajectory_t), intent(out), optional :: trajectory
 
       class(solver_t), allocatable :: solver
       type(solver_settings_t) :: wanted
-      type(trajectory_t) :: trajectory
+      type(trajectory_t) :: course
 
       if (present(settings)) wanted = settings
       call new_solver(solver, wanted, impact, error)
-      if (.not. allocated(error)) call solve_by(solver, impact, trajectory, outcome, error)
+      if (.not. allocated(error)) call solve_by(solver, impact, course, outcome, error)
+      if (present(trajectory)) trajectory = course
    end subroutine solve_in_short
 
    !> Build a solver for an impact

@@ -343,7 +343,7 @@ contains
       call add_dimension(more, column_of('time', [0.0_wp], 's', 'time'))
       call add_column(more, column_of('force', [3.0_wp], 'N', 'force'))
       path = join_path(folder, 'round trip é.h5')
-      call write_hdf5(path, summary, error, more=[history, more])
+      call write_hdf5(path, [summary, history, more], error)
       call check(.not. allocated(error), 'the file is written')
 
       call open_hdf5(reader, path, error)

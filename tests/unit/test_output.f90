@@ -284,7 +284,7 @@ contains
       table = small_table()
       call write_csv(path, table, error)
       call check_failed(error, quoted_path(path)//": Not a directory", "csv below a file")
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check_failed(error, quoted_path(path)//": Not a directory", "hdf5 below a file")
       call check_temporaries(0, "after failures")
    end subroutine test_failed_write
@@ -499,38 +499,38 @@ contains
       call new_table(history, "history", "small", "case")
       call add_dimension(history, column_of("time", [0.0_wp, 1.0e-6_wp, 2.0e-6_wp], "s", "time"))
       call add_column(history, column_of("force", [0.0_wp, 1.0_wp, 0.5_wp], "N", "force"))
-      call write_hdf5(path, small_table(), error, more=[history])
+      call write_hdf5(path, [small_table(), history], error)
       call check(.not. allocated(error), "tables can be written as hdf5")
       first = content(path)
       call check(index(first, signature) == 1, "file is hdf5")
       call check_contains(first, "coefficient of restitution", "file has what names mean")
-      call write_hdf5(path, small_table(), error, more=[history])
+      call write_hdf5(path, [small_table(), history], error)
       call check(content(path) == first, "the same tables give the same bytes")
 
-      call write_hdf5(path, small_table(), error=error)
+      call write_hdf5(path, [small_table()], error)
       call check(.not. allocated(error), "hdf5 without history")
       call check(index(content(path), "history") == 0, "no history, no group")
 
       call new_table(table, "summary", "none", "")
       call add_dimension(table, "impact", 0)
       call add_column(table, column_of("status", [character(len=3) ::], "", "status"))
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check(.not. allocated(error), "hdf5 of a table without rows")
 
       ! Names that HDF5 would take for its own
       call new_table(table, "summary", "names", "")
       call add_dimension(table, "impact", 1)
       call add_column(table, column_of("a/b.c", [1], "1", "slash"))
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check(.not. allocated(error), "name with a slash")
       first = content(path)
       call add_column(table, column_of("a_b.c", [1], "1", "no slash"))
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check_failed(error, "HDF5 cannot create 'a_b.c'", "names that differ in a slash only")
       call check(content(path) == first, "a failure of HDF5 leaves the old file")
 
       call large_table(table)
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check(.not. allocated(error), "large table can be written as hdf5")
    end subroutine test_hdf5
 
@@ -598,7 +598,7 @@ contains
       call check_contains(error%message, part, what//": message")
       call write_csv(path, table, error)
       call check(allocated(error), what//": no csv")
-      call write_hdf5(path, table, error=error)
+      call write_hdf5(path, [table], error)
       call check(allocated(error), what//": no hdf5")
       call check(.not. file_exists(path), what//": no file")
    end subroutine check_fault

@@ -25,7 +25,6 @@ contains
    subroutine read_case(case, filename, error)
       !> The case, which starts anew
       type(case_t), intent(inout) :: case
-      !> Name of the file
       character(len=*), intent(in) :: filename
       !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
       !> are wrong
@@ -72,10 +71,8 @@ contains
       type(case_t), intent(inout) :: case
       !> The namelists, after the name of the group
       type(namelist_t), intent(inout) :: namelist
-      !> Name of the group as it is written
       character(len=*), intent(in) :: name
       integer, intent(in) :: line
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       type(statement_t) :: statement
       character(len=:), allocatable :: message
@@ -116,9 +113,7 @@ contains
       !> The namelists the statement is from
       type(namelist_t), intent(in) :: namelist
       type(statement_t), intent(in) :: statement
-      !> Index of its group
       integer, intent(in) :: group
-      !> Number of the item
       integer, intent(in) :: item
       !> What is wrong, unallocated on success
       character(len=:), allocatable, intent(out) :: message

@@ -45,7 +45,6 @@ module vcor_io_checkpoint
 
    !> A file of a sweep under way
    type :: checkpoint_t
-      !> Its path
       character(len=:), allocatable :: path
       !> Stream of C, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
@@ -79,16 +78,14 @@ contains
       type(checkpoint_t), intent(inout) :: self
       !> Its path; nothing may be there
       character(len=*), intent(in) :: path
-      !> What it is about
       type(identity_t), intent(in) :: identity
-      !> Grid of the sweep
       type(grid_t), intent(in) :: grid
       !> Outcomes of all places of the part; those that are pending become NaN
       type(summary_t), intent(inout) :: summary
       !> Set if the file cannot be written, or another process has begun it
       type(error_t), allocatable, intent(out) :: error
 
-      type(table_t) :: table
+      type(table_t) :: tables(1)
       character(len=:), allocatable :: folder, temporary
       integer :: i
 
@@ -97,8 +94,8 @@ contains
       temporary = join_path(folder, 'part.h5')
       call remember(temporary)
       call summary%blank_pending()
-      call lay_out(table, identity, grid, summary%quantities)
-      call write_hdf5(temporary, table, error=error, remarks=remarks_of(identity), &
+      call lay_out(tables(1), identity, grid, summary%quantities)
+      call write_hdf5(temporary, tables, error, remarks_of(identity), &
          changing=size(summary%quantities) + 1)
       if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
       if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
@@ -117,11 +114,8 @@ contains
    !> Points of a part as a table, with columns that have no values yet
    subroutine lay_out(table, identity, grid, quantities)
       type(table_t), intent(out) :: table
-      !> What it is about
       type(identity_t), intent(in) :: identity
-      !> Grid of the sweep
       type(grid_t), intent(in) :: grid
-      !> Columns of the summary
       type(quantity_t), intent(in) :: quantities(:)
 
       type(column_t) :: check
@@ -175,7 +169,6 @@ contains
 
    !> Another process is at work
    subroutine raise_in_use(path, error)
-      !> Path of the file
       character(len=*), intent(in) :: path
       !> Set
       type(error_t), allocatable, intent(inout) :: error
@@ -188,7 +181,6 @@ contains
    subroutine open_checkpoint(self, path, identity, summary, error, anew)
       type(checkpoint_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      !> What it should be about
       type(identity_t), intent(in) :: identity
       !> Outcomes, all pending; on return those that the file has
       type(summary_t), intent(inout) :: summary
@@ -217,7 +209,6 @@ contains
    subroutine attach(self, path, quantities, error)
       type(checkpoint_t), intent(inout) :: self
       character(len=*), intent(in) :: path
-      !> Columns of its summary
       type(quantity_t), intent(in) :: quantities(:)
       !> Set if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -264,11 +255,8 @@ contains
    !> Keep outcomes
    subroutine put(self, first, last, summary, error)
       class(checkpoint_t), intent(in) :: self
-      !> First place
       integer, intent(in) :: first
-      !> Last place
       integer, intent(in) :: last
-      !> Outcomes of all places
       type(summary_t), intent(in), target :: summary
       !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
@@ -298,7 +286,6 @@ contains
 
       !> Write numbers of a column to their places
       subroutine write_at(column, numbers, width)
-         !> Number of the column
          integer, intent(in) :: column
          !> Where the first of the numbers is in memory
          type(c_ptr), intent(in) :: numbers
@@ -361,9 +348,7 @@ contains
 
    !> Refuse a file that is not of a part of a sweep
    subroutine check_part(path, expected, error)
-      !> Path of the file
       character(len=*), intent(in) :: path
-      !> What it should be about
       type(identity_t), intent(in) :: expected
       !> Error of code `error_file`; unallocated if it is
       type(error_t), allocatable, intent(out) :: error
@@ -387,7 +372,6 @@ contains
    !> Read the file of a part
    subroutine read_points(path, identity, summary, error)
       character(len=*), intent(in) :: path
-      !> What it should be about
       type(identity_t), intent(in) :: identity
       !> Outcomes of the points of the part, with room for all of them; on return pending where the
       !> check sum is wrong
@@ -408,7 +392,6 @@ contains
 
    !> Read the results of a finished sweep
    subroutine read_results(path, summary, error)
-      !> Path of the file
       character(len=*), intent(in) :: path
       !> Outcomes, with room for all of its points
       type(summary_t), intent(inout) :: summary
@@ -490,7 +473,6 @@ contains
 
    !> Path of the dataset of a column
    pure function path_of(name) result(path)
-      !> Name of the column
       character(len=*), intent(in) :: name
       !> Its path in the file
       character(len=:), allocatable :: path
@@ -501,11 +483,8 @@ contains
    !> Check sums of points: CRC-32 of their numbers as the file has them, in the order of columns,
    !> and of their places, so that two points that have changed places are found
    pure function checks_of(summary, first, last) result(checks)
-      !> Outcomes
       type(summary_t), intent(in) :: summary
-      !> First place
       integer, intent(in) :: first
-      !> Last place
       integer, intent(in) :: last
       !> The sums, 1 in place of 0; 0 where the point is pending, and nowhere else
       integer :: checks(last - first + 1)

@@ -84,9 +84,7 @@ contains
    !> Whether a line names what stands between the columns, as `sep=;`, which Excel asks for: the
    !> lines that follow show it
    pure function names_separator(content) result(yes)
-      !> The line
       character(len=*), intent(in) :: content
-      !> True if so
       logical :: yes
 
       yes = len(content) == 5
@@ -95,7 +93,6 @@ contains
 
    !> Make points of the decimal commas of a line
    pure subroutine take_decimals(content, decimals)
-      !> The line
       character(len=*), intent(inout) :: content
       !> How its numbers are written, on return
       type(decimals_t), intent(out) :: decimals
@@ -111,9 +108,7 @@ contains
 
    !> Whether each comma of a line is between two digits, and something else between its columns
    pure function has_decimal_commas(content) result(yes)
-      !> The line
       character(len=*), intent(in) :: content
-      !> True if so
       logical :: yes
       character(len=*), parameter :: digits = "0123456789"
       integer :: first, i, last
@@ -134,7 +129,6 @@ contains
    !> Find the columns of a line: between commas or semicolons if there are any, else between tabs
    !> in a line of words (a cell may be empty there), else between blanks
    pure subroutine split(content, columns, from, to)
-      !> The line
       character(len=*), intent(in) :: content
       !> Their number, 0 in a blank line
       integer, intent(out) :: columns

@@ -24,14 +24,12 @@ module vcor_io_csv
    use vcor_io_number, only : decimal_t, decimal_text, longest_integer, longest_real, new_decimal, &
       put_integer, put_real
    use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
-      row_count, table_t, text_value
+      row_count, table_t
    implicit none
    private
 
    public :: write_csv, write_rows
 
-   !> Characters that are collected before they are written
-   integer, parameter :: block_length = 65536
    !> What makes quotation marks necessary; `#` begins a comment for most readers
    character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
 
@@ -48,39 +46,24 @@ module vcor_io_csv
 contains
 
    !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
-   subroutine write_csv(filename, table, error)
+   subroutine write_csv(filename, table, error, threads)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
-      !> Table to write
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
+      !> Threads that turn numbers into text, absent: 1
+      integer, intent(in), optional :: threads
 
       type(output_file_t) :: file
-      type(text_block_t), allocatable :: block
-      integer :: i, row
+      integer :: i
 
       call check_table(table, error)
       if (.not. allocated(error)) call create_file(file, filename, error)
       if (.not. allocated(error)) call put(file, head_of(table), error)
-      if (allocated(error)) return
-      call new_block(block, table)
-      do row = 1, row_count(table)
-         do i = 1, size(table%dimensions)
-            if (table%dimensions(i)%is_index) cycle
-            call put_value(block, table%dimensions(i), coordinate_row(table, i, row), ',', .true.)
-         end do
-         do i = 1, size(table%columns)
-            call put_value(block, table%columns(i), row, ',', .true.)
-         end do
-         ! the line ends in place of the last comma
-         block%text(block%last:block%last) = c_new_line
-         if (block%last < block_length) cycle
-         call put(file, block%text(:block%last), error)
-         if (allocated(error)) return
-         block%last = 0
-      end do
-      call put(file, block%text(:block%last), error)
+      if (.not. allocated(error)) call put_rows(table, pack([(i, i=1, size(table%dimensions) &
+         + size(table%columns))], [.not. table%dimensions%is_index, &
+         (.true., i=1, size(table%columns))]), ',', error, file, threads)
       if (.not. allocated(error)) call commit(file, error)
    end subroutine write_csv
 
@@ -93,59 +76,105 @@ contains
       !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
 
-      type(text_block_t), allocatable :: block
-      integer :: i, row
-
-      call new_block(block, table)
-      do row = 1, row_count(table)
-         do i = 1, size(places)
-            associate (column => places(i) - size(table%dimensions))
-               if (column > 0) then
-                  call put_value(block, table%columns(column), row, ' ', .false.)
-               else
-                  call put_value(block, table%dimensions(places(i)), &
-                     coordinate_row(table, places(i), row), ' ', .false.)
-               end if
-            end associate
-         end do
-         block%text(block%last:block%last) = c_new_line
-         if (block%last < block_length) cycle
-         call write_stdout(block%text(:block%last), error)
-         if (allocated(error)) return
-         block%last = 0
-      end do
-      call write_stdout(block%text(:block%last), error)
+      call put_rows(table, places, ' ', error)
    end subroutine write_rows
 
-   !> Make room for a block of text and one more row
-   subroutine new_block(block, table)
-      !> Block without text
-      type(text_block_t), allocatable, intent(out) :: block
+   !> Write rows: threads turn some of them into text at a time, and write it in their order
+   subroutine put_rows(table, places, separator, error, file, threads)
+      type(table_t), intent(in) :: table
+      !> Places of dimensions and columns, shape (n), n > 0
+      integer, intent(in) :: places(:)
+      !> What stands between values; where it is a comma text stands between quotation marks if need
+      !> be
+      character, intent(in) :: separator
+      !> Set if they could not be written; the file is discarded then
+      type(error_t), allocatable, intent(out) :: error
+      !> Open file; absent: the standard output
+      type(output_file_t), intent(inout), optional :: file
+      !> Absent: 1
+      integer, intent(in), optional :: threads
+
+      ! a few milliseconds: long against what threads wait for each other
+      integer, parameter :: some = 2048
+      integer :: rows, team
+
+      rows = row_count(table)
+      team = 1
+      if (present(threads)) team = min(threads, rows/some + 1)
+!$omp parallel default(none) num_threads(team) &
+!$omp shared(table, places, separator, error, file, rows)
+      block
+         type(text_block_t) :: lines
+         integer :: first, row
+
+         call new_block(lines, table, places, some)
+!$omp do ordered schedule(static, 1)
+         do first = 1, rows, some
+            lines%last = 0
+            do row = first, min(rows, first + some - 1)
+               call put_row(lines, table, places, row, separator)
+            end do
+!$omp ordered
+            if (.not. allocated(error) .and. present(file)) &
+               call put(file, lines%text(:lines%last), error)
+            if (.not. allocated(error) .and. .not. present(file)) &
+               call write_stdout(lines%text(:lines%last), error)
+!$omp end ordered
+         end do
+!$omp end do
+      end block
+!$omp end parallel
+   end subroutine put_rows
+
+   !> Add a row
+   subroutine put_row(block, table, places, row, separator)
+      !> Text with room for the row
+      type(text_block_t), intent(inout) :: block
+      type(table_t), intent(in) :: table
+      integer, intent(in) :: places(:)
+      integer, intent(in) :: row
+      character, intent(in) :: separator
+
+      integer :: i, n
+
+      n = size(table%dimensions)
+      do i = 1, size(places)
+         if (places(i) > n) then
+            call put_value(block, table%columns(places(i) - n), row, separator)
+         else
+            call put_value(block, table%dimensions(places(i)), &
+               coordinate_row(table, places(i), row), separator)
+         end if
+      end do
+      ! the line ends in place of the last separator
+      block%text(block%last:block%last) = c_new_line
+   end subroutine put_row
+
+   !> Make room for a block of text
+   pure subroutine new_block(block, table, places, rows)
+      type(text_block_t), intent(out) :: block
       !> Table whose rows it is for
       type(table_t), intent(in) :: table
+      !> Places of the values in a row
+      integer, intent(in) :: places(:)
+      integer, intent(in) :: rows
 
-      integer :: columns, width
+      integer :: width
 
-      columns = size(table%dimensions) + size(table%columns)
       width = max(0, maxval(table%dimensions%width), maxval(table%columns%width))
-      allocate (block)
       call new_decimal(block%decimal)
       ! each letter of a text may be a quotation mark, which is written twice
-      allocate (character(len=block_length + columns*max(longest_real + 1, longest_integer + 1, &
+      allocate (character(len=rows*size(places)*max(longest_real + 1, longest_integer + 1, &
          2*width + 3)) :: block%text)
    end subroutine new_block
 
    !> Add one value and what stands behind it
-   subroutine put_value(block, column, row, separator, quotes)
+   subroutine put_value(block, column, row, separator)
       !> Text with room for the value
       type(text_block_t), intent(inout) :: block
       type(column_t), intent(in) :: column
-      !> Number of the value
       integer, intent(in) :: row
-      !> What stands behind it
       character, intent(in) :: separator
-      !> Whether text stands between quotation marks where it has to
-      logical, intent(in) :: quotes
 
       select case (column%kind)
       case (real_column)
@@ -153,23 +182,13 @@ contains
       case (integer_column)
          call put_integer(column%integers(row), block%text, block%last)
       case default
-         if (quotes) then
-            call put_text(field(text_value(column, row)))
-         else
-            call put_text(text_value(column, row))
-         end if
+         associate (last => column%integers(row)*column%width)
+            call put_field(column%texts(last - column%width + 1:last), separator == ',', &
+               block%text, block%last)
+         end associate
       end select
-      call put_text(separator)
-
-   contains
-
-      !> Add text
-      subroutine put_text(text)
-         character(len=*), intent(in) :: text
-
-         block%text(block%last + 1:block%last + len(text)) = text
-         block%last = block%last + len(text)
-      end subroutine put_text
+      block%last = block%last + 1
+      block%text(block%last:block%last) = separator
    end subroutine put_value
 
    !> What describes a table, and the line of the names
@@ -208,7 +227,12 @@ contains
       subroutine add_column(column)
          type(column_t), intent(in) :: column
 
-         names = names//','//field(column%name)
+         character(len=2*len(column%name) + 2) :: name
+         integer :: last
+
+         last = 0
+         call put_field(column%name, .true., name, last)
+         names = names//','//name(:last)
          if (column%unit == '') then
             call add_comments(head, '  '//column%name//' '//column%long_name)
          else
@@ -239,24 +263,43 @@ contains
       end do
    end subroutine add_comments
 
-   !> A text as a field of a row
-   pure function field(text)
-      !> Any text
+   !> Add a text as a field of a row
+   subroutine put_field(text, quotes, buffer, last)
+      !> Any text; blanks at its end do not count
       character(len=*), intent(in) :: text
-      !> The text, between quotation marks if need be
-      character(len=:), allocatable :: field
+      !> Whether it stands between quotation marks if need be
+      logical, intent(in) :: quotes
+      !> Buffer with room for it
+      character(len=*), intent(inout) :: buffer
+      !> Last character in use, before and after
+      integer, intent(inout) :: last
 
-      integer :: i
+      integer :: i, n
 
-      field = text
+      n = len_trim(text)
       ! An empty field might make an empty line, which readers skip
-      if (text /= '' .and. index(text, ' ') /= 1 .and. scan(text, special) == 0) return
-      field = '"'
-      do i = 1, len(text)
-         field = field//text(i:i)
-         if (text(i:i) == '"') field = field//'"'
+      if (.not. quotes .or. (n > 0 .and. index(text, ' ') /= 1 &
+                             .and. scan(text, special) == 0)) then
+         buffer(last + 1:last + n) = text(:n)
+         last = last + n
+         return
+      end if
+      call add('"')
+      do i = 1, n
+         if (text(i:i) == '"') call add('"')
+         call add(text(i:i))
       end do
-      field = field//'"'
-   end function field
+      call add('"')
+
+   contains
+
+      !> Add a letter
+      subroutine add(letter)
+         character, intent(in) :: letter
+
+         last = last + 1
+         buffer(last:last) = letter
+      end subroutine add
+   end subroutine put_field
 
 end module vcor_io_csv

@@ -63,7 +63,6 @@ contains
    !> Path of the data file of a material, from the folder of the case file
    pure function data_file(case, item) result(path)
       type(case_t), intent(in) :: case
-      !> Number of the material
       integer, intent(in) :: item
       !> The path; empty when there is no such file
       character(len=:), allocatable :: path
@@ -74,9 +73,7 @@ contains
 
    !> Read the points
    subroutine read_points(text, name, scale, times, moduli, error)
-      !> Contents of the file
       character(len=*), intent(in) :: text
-      !> Its name for messages
       character(len=*), intent(in) :: name
       !> Units of times and moduli [s], [Pa]
       real(wp), intent(in) :: scale(2)
@@ -153,7 +150,6 @@ contains
    !> than those of the case. A line of other than two names is a title
    subroutine check_header(header, name, scale, error)
       type(header_t), intent(in) :: header
-      !> Name of the file
       character(len=*), intent(in) :: name
       !> Units of times and moduli by the case [s], [Pa]
       real(wp), intent(in) :: scale(2)
@@ -204,9 +200,7 @@ contains
 
       !> Names of a column, for messages
       pure function example(i) result(text)
-         !> Number of the column
          integer, intent(in) :: i
-         !> Some names
          character(len=:), allocatable :: text
 
          text = "t or time"
@@ -216,7 +210,6 @@ contains
 
    !> Compare a point with the one before it
    pure subroutine compare(before, point, line, message)
-      !> The point before
       real(wp), intent(in) :: before(2)
       real(wp), intent(in) :: point(2)
       !> Line of the point before

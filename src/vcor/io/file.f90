@@ -65,7 +65,6 @@ contains
 
    !> Begin a file: nothing is seen under its real name before `commit`
    subroutine create_file(file, path, error)
-      !> The open file
       type(output_file_t), intent(out) :: file
       !> Its real name; the directory must be there
       character(len=*), intent(in) :: path
@@ -180,7 +179,6 @@ contains
 
    !> Check that a file may have that name
    subroutine check_target(path, error)
-      !> Name to check
       character(len=*), intent(in) :: path
       !> Set if it may not
       type(error_t), allocatable, intent(out) :: error
@@ -202,7 +200,6 @@ contains
 
       !> Refuse the name
       subroutine refuse(reason)
-         !> Why
          character(len=*), intent(in) :: reason
 
          call raise(error, error_file, 'cannot write '//quoted_path(path)//': '//reason)
@@ -211,7 +208,6 @@ contains
 
    !> Check that a file is open
    subroutine check_open(file, error)
-      !> File to check
       type(output_file_t), intent(in) :: file
       !> Set if it is not
       type(error_t), allocatable, intent(out) :: error
@@ -224,7 +220,6 @@ contains
    subroutine fail(file, reason, error)
       !> Open file; closed afterwards
       type(output_file_t), intent(inout) :: file
-      !> Value of `errno`
       integer(c_int), intent(in) :: reason
       !> Set to the reason
       type(error_t), allocatable, intent(inout) :: error
@@ -235,7 +230,6 @@ contains
 
    !> Give a file another name, in place of what has that name
    subroutine move_file(from, to, error)
-      !> Its name
       character(len=*), intent(in) :: from
       !> Its new name, in the same folder
       character(len=*), intent(in) :: to
@@ -251,7 +245,6 @@ contains
 
    !> Remove a file; none is fine
    subroutine remove_file(path)
-      !> Its name
       character(len=*), intent(in) :: path
 
       integer(c_int) :: ignored

@@ -48,20 +48,16 @@ module vcor_io_hdf5
 
    !> Text that describes a file
    type :: remark_t
-      !> Name of the attribute
       character(len=:), allocatable :: name
-      !> Its value
       character(len=:), allocatable :: text
    end type remark_t
 
    !> A file that is being built. The first failure is kept; what comes after it does
    !> nothing
    type :: writer_t
-      !> The file
       integer(hid_t) :: file = nothing
       !> How to create groups and datasets
       integer(hid_t) :: group_creation = nothing, dataset_creation = nothing
-      !> Type of text
       integer(hid_t) :: text_type = nothing
       !> What the seal of the file leaves out, as in `seal_of`
       integer(int64), allocatable :: left_out(:, :)
@@ -72,18 +68,16 @@ module vcor_io_hdf5
 contains
 
    !> Write tables to a file. It is there as a whole or, if that fails, as it was before
-   subroutine write_hdf5(filename, table, error, remarks, more, changing)
+   subroutine write_hdf5(filename, tables, error, remarks, changing)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
-      !> First table; its version, title and case describe the file
-      type(table_t), intent(in) :: table
+      !> Tables, shape (n), n > 0; version, title and case of the first one describe the file
+      type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
       !> More that describes the file, shape (n)
       type(remark_t), intent(in), optional :: remarks(:)
-      !> Further tables
-      type(table_t), intent(in), optional :: more(:)
-      !> Number of columns of the first table, the last ones, that get their room in the file but no
+      !> Number of columns of the tables, the last ones, that get their room in the file but no
       !> numbers, which the caller puts there: they are no part of the seal
       integer, intent(in), optional :: changing
 
@@ -92,34 +86,28 @@ contains
       type(handler_t) :: handler
       integer :: i, ignored
 
-      call check_table(table, error)
-      if (present(more)) then
-         do i = 1, size(more)
-            if (.not. allocated(error)) call check_table(more(i), error)
-         end do
-      end if
+      do i = 1, size(tables)
+         if (.not. allocated(error)) call check_table(tables(i), error)
+      end do
       if (.not. allocated(error)) call create_file(file, filename, error)
       if (allocated(error)) return
 
       call begin_hdf5(handler, writer%fault)
       if (.not. allocated(writer%fault)) then
-         call begin_file(writer, file, bytes_of(table, more), error)
+         call begin_file(writer, file, bytes_of(tables), error)
          if (.not. allocated(error)) then
             call put_text(writer, writer%file, 'program', 'vcor')
-            call put_text(writer, writer%file, 'version', table%version)
-            call put_text(writer, writer%file, 'title', table%title)
-            call put_text(writer, writer%file, 'case', table%case_text)
+            call put_text(writer, writer%file, 'version', tables(1)%version)
+            call put_text(writer, writer%file, 'title', tables(1)%title)
+            call put_text(writer, writer%file, 'case', tables(1)%case_text)
             if (present(remarks)) then
                do i = 1, size(remarks)
                   call put_text(writer, writer%file, remarks(i)%name, remarks(i)%text)
                end do
             end if
-            call put_table(writer, table, changing)
-            if (present(more)) then
-               do i = 1, size(more)
-                  call put_table(writer, more(i))
-               end do
-            end if
+            do i = 1, size(tables)
+               call put_table(writer, tables(i), changing)
+            end do
             ! what is still open in it after a failure goes with the file
             call h5fclose_f(writer%file, i)
             call note(writer, i, 'close the file')
@@ -184,28 +172,25 @@ contains
    end subroutine begin_file
 
    !> Room that tables take in a file, somewhat more
-   pure recursive function bytes_of(table, more) result(bytes)
-      !> First table
-      type(table_t), intent(in) :: table
-      !> Further tables
-      type(table_t), intent(in), optional :: more(:)
-      !> Number of bytes
+   pure function bytes_of(tables) result(bytes)
+      type(table_t), intent(in) :: tables(:)
       integer(int64) :: bytes
 
       ! what HDF5 needs at most for a dataset and for a text, beside its values
       integer(int64), parameter :: per_dataset = 4096_int64, per_text = 44_int64
-      integer :: i
+      integer :: i, j
 
-      bytes = 65536_int64 + len(table%case_text, kind=int64)
-      do i = 1, size(table%dimensions)
-         bytes = bytes + bytes_of_column(table%dimensions(i))
-      end do
-      do i = 1, size(table%columns)
-         bytes = bytes + bytes_of_column(table%columns(i))
-      end do
-      if (.not. present(more)) return
-      do i = 1, size(more)
-         bytes = bytes + bytes_of(more(i))
+      bytes = 0
+      do j = 1, size(tables)
+         associate (table => tables(j))
+            bytes = bytes + 65536_int64 + len(table%case_text, kind=int64)
+            do i = 1, size(table%dimensions)
+               bytes = bytes + bytes_of_column(table%dimensions(i))
+            end do
+            do i = 1, size(table%columns)
+               bytes = bytes + bytes_of_column(table%columns(i))
+            end do
+         end associate
       end do
 
    contains
@@ -213,7 +198,6 @@ contains
       !> Room for one column
       pure function bytes_of_column(column) result(bytes)
          type(column_t), intent(in) :: column
-         !> Number of bytes
          integer(int64) :: bytes
 
          bytes = 8_int64
@@ -226,9 +210,7 @@ contains
 
    !> Write a table as a group
    subroutine put_table(writer, table, changing)
-      !> Writer with a file
       type(writer_t), intent(inout) :: writer
-      !> Table to write
       type(table_t), intent(in) :: table
       !> Number of columns that get their room only, the last ones
       integer, intent(in), optional :: changing
@@ -275,11 +257,8 @@ contains
 
    !> Write a column as a dataset and leave it open
    subroutine put_column(writer, group, column, lengths, dataset, is_room)
-      !> Writer with a file
       type(writer_t), intent(inout) :: writer
-      !> Group to write to
       integer(hid_t), intent(in) :: group
-      !> Column to write
       type(column_t), intent(in), target :: column
       !> Lengths of its dimensions, the slowest first
       integer, intent(in) :: lengths(:)
@@ -350,7 +329,6 @@ contains
    subroutine set_fill_text(column, type_id, creation, status)
       !> Text column
       type(column_t), intent(in) :: column
-      !> Type of text
       integer(hid_t), intent(in) :: type_id
       !> How the dataset is created
       integer(hid_t), intent(in) :: creation
@@ -369,9 +347,7 @@ contains
    subroutine write_texts(column, dataset, type_id, status)
       !> Text column
       type(column_t), intent(in) :: column
-      !> Dataset to write to
       integer(hid_t), intent(in) :: dataset
-      !> Type of text
       integer(hid_t), intent(in) :: type_id
       !> Negative on failure
       integer, intent(out) :: status
@@ -411,7 +387,6 @@ contains
 
    !> Write a text attribute
    subroutine put_text(writer, object, name, text)
-      !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> What the attribute belongs to
       integer(hid_t), intent(in) :: object
@@ -428,11 +403,9 @@ contains
 
    !> Write a number as an attribute
    subroutine put_number(writer, object, name, number)
-      !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> What the attribute belongs to
       integer(hid_t), intent(in) :: object
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       real(wp), intent(in), target :: number
 
@@ -441,11 +414,9 @@ contains
 
    !> Write an attribute
    subroutine put_attribute(writer, object, name, file_type, memory_type, value)
-      !> Writer with a file
       type(writer_t), intent(inout) :: writer
       !> What the attribute belongs to
       integer(hid_t), intent(in) :: object
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Type of the value in the file and in memory
       integer(hid_t), intent(in) :: file_type, memory_type
@@ -467,7 +438,6 @@ contains
    !> Keep the first failure
    pure subroutine note(writer, status, what)
       type(writer_t), intent(inout) :: writer
-      !> Status of HDF5, negative on failure
       integer, intent(in) :: status
       !> What was asked of HDF5
       character(len=*), intent(in) :: what
@@ -477,7 +447,6 @@ contains
 
    !> A name as HDF5 may take it
    pure function link_name(name) result(link)
-      !> Name of a column
       character(len=*), intent(in) :: name
       !> The name without slashes, which would name groups
       character(len=len(name)) :: link

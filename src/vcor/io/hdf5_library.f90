@@ -12,7 +12,6 @@ module vcor_io_hdf5_library
 
    !> What handled errors before
    type :: handler_t
-      !> The handler
       type(c_funptr), private :: handler
       !> What it is called with
       type(c_ptr), private :: client
@@ -24,7 +23,6 @@ module vcor_io_hdf5_library
       !> Ask for the handler of errors
       function c_get_handler(stack, handler, client) result(status) bind(c, name="H5Eget_auto2")
          import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
          integer(c_int64_t), intent(in), value :: stack
          !> Handler, null if there is none
          type(c_funptr), intent(out) :: handler
@@ -37,7 +35,6 @@ module vcor_io_hdf5_library
       !> Set the handler of errors
       function c_set_handler(stack, handler, client) result(status) bind(c, name="H5Eset_auto2")
          import :: c_funptr, c_int, c_int64_t, c_ptr
-         !> Error stack
          integer(c_int64_t), intent(in), value :: stack
          !> Handler, null for none
          type(c_funptr), intent(in), value :: handler

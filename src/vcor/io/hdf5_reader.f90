@@ -49,7 +49,6 @@ module vcor_io_hdf5_reader
 
    !> A member of a group
    type :: member_t
-      !> Its name
       character(len=:), allocatable :: name
       !> Whether it is a group itself
       logical :: is_group = .false.
@@ -69,9 +68,7 @@ contains
 
    !> Open a file
    subroutine open_hdf5(reader, filename, error)
-      !> The open file
       type(reader_t), intent(out) :: reader
-      !> Its name
       character(len=*), intent(in) :: filename
       !> Error of code `error_input` if it is no HDF5 file, `error_file` if it is damaged or cannot
       !> be read
@@ -133,7 +130,6 @@ contains
 
    !> Members of a group, in the order they were written where the file knows it, else by name
    subroutine list_members(reader, path, members, error)
-      !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the group, `/` for the file
       character(len=*), intent(in) :: path
@@ -181,11 +177,9 @@ contains
 
    !> A text attribute of a group or a dataset
    function text_attribute(reader, path, name) result(text)
-      !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the group or the dataset, `/` for the file
       character(len=*), intent(in) :: path
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Its value; empty if there is none or it is no single text
       character(len=:), allocatable :: text
@@ -211,11 +205,9 @@ contains
 
    !> A number as attribute of a group or a dataset
    function number_attribute(reader, path, name) result(number)
-      !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the group or the dataset, `/` for the file
       character(len=*), intent(in) :: path
-      !> Name of the attribute
       character(len=*), intent(in) :: name
       !> Its value; NaN if there is none or it is no single number
       real(wp) :: number
@@ -237,7 +229,6 @@ contains
 
    !> Open an attribute of one value
    subroutine open_attribute(reader, path, name, attribute, space, status)
-      !> Open file
       type(reader_t), intent(in) :: reader
       !> Path of the group or the dataset, and name of the attribute
       character(len=*), intent(in) :: path, name
@@ -264,9 +255,7 @@ contains
 
    !> Read a dataset with its unit and meaning
    subroutine read_dataset(reader, path, dataset, error)
-      !> Open file
       type(reader_t), intent(in) :: reader
-      !> Path of the dataset
       character(len=*), intent(in) :: path
       type(dataset_t), intent(out), target :: dataset
       !> Set if there is none or it cannot be read
@@ -313,9 +302,7 @@ contains
 
    !> Read a column of a table, of which it is known what it has
    subroutine read_column(reader, path, kind, length, dataset, error)
-      !> Open file
       type(reader_t), intent(in) :: reader
-      !> Path of the dataset
       character(len=*), intent(in) :: path
       !> Kind of its values
       integer, intent(in) :: kind
@@ -339,9 +326,7 @@ contains
 
    !> Find where in the file a dataset is that is stored in one piece
    subroutine find_place(reader, path, offset, error)
-      !> Open file
       type(reader_t), intent(in) :: reader
-      !> Path of the dataset
       character(len=*), intent(in) :: path
       !> Bytes before its first number
       integer(c_int64_t), intent(out) :: offset
@@ -364,9 +349,7 @@ contains
 
    !> Open a dataset
    subroutine open_dataset(reader, path, set, space, lengths, error)
-      !> Open file
       type(reader_t), intent(in) :: reader
-      !> Path of the dataset
       character(len=*), intent(in) :: path
       !> The dataset and its space
       integer(hid_t), intent(out) :: set, space
@@ -416,7 +399,6 @@ contains
    subroutine read_texts(object, is_attribute, space, type_id, column, status)
       !> The dataset or the attribute
       integer(hid_t), intent(in) :: object
-      !> Whether it is an attribute
       logical, intent(in) :: is_attribute
       integer(hid_t), intent(in) :: space
       !> Its type in the file
@@ -506,7 +488,6 @@ contains
    subroutine copy_at(place, text)
       !> Where it begins, or null
       type(c_ptr), intent(in) :: place
-      !> The text, padded with blanks
       character(len=*), intent(out) :: text
 
       character(kind=c_char), pointer :: letters(:)

@@ -21,13 +21,11 @@ module vcor_io_header
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
       role_tangent, role_complex
 
-   !> Units of time
    character(len=*), parameter :: time_units = "ns us ms s min h"
    !> Units of angular frequency
    character(len=*), parameter :: angular_units = "rad/s krad/s"
    !> Units of frequency, angular or not
    character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
-   !> Units of modulus
    character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
    !> Most columns of a file
    integer, parameter :: most_columns = 64
@@ -54,7 +52,6 @@ module vcor_io_header
 
    !> What a column may hold
    type :: role_t
-      !> In words
       character(len=18) :: words = ""
       !> Unit where nothing tells it
       character(len=5) :: unit = ""
@@ -105,11 +102,9 @@ module vcor_io_header
       integer :: line = 0
       !> Number of the columns
       integer :: count = 0
-      !> The columns
       type(column_name_t) :: columns(most_columns)
       !> Units from comments, by name
       type(column_name_t) :: hints(most_columns)
-      !> Number of these
       integer :: hint_count = 0
    end type header_t
 
@@ -136,9 +131,7 @@ contains
    !> Read the line of the names
    pure subroutine read_names(header, content, line)
       type(header_t), intent(inout) :: header
-      !> The line
       character(len=*), intent(in) :: content
-      !> Its number
       integer, intent(in) :: line
 
       integer :: i, k, columns, from(most_columns), to(most_columns)
@@ -171,9 +164,7 @@ contains
 
    !> Whether a line tells the names of columns: one of several at least is a known one
    pure function names_columns(content) result(yes)
-      !> The line
       character(len=*), intent(in) :: content
-      !> True if it does
       logical :: yes
 
       type(header_t) :: header
@@ -195,9 +186,7 @@ contains
    !> Read the line of the units
    pure subroutine read_units(header, content, line)
       type(header_t), intent(inout) :: header
-      !> The line
       character(len=*), intent(in) :: content
-      !> Its number
       integer, intent(in) :: line
 
       integer :: i, columns, from(most_columns), to(most_columns)
@@ -227,7 +216,6 @@ contains
 
    !> A unit without brackets around it
    pure function without_brackets(cell) result(text)
-      !> The unit
       character(len=*), intent(in) :: cell
       !> The same without brackets
       character(len=:), allocatable :: text
@@ -288,7 +276,6 @@ contains
    pure function is_tangent(name) result(yes)
       !> The name, lower case
       character(len=*), intent(in) :: name
-      !> True if it is
       logical :: yes
 
       character(len=*), parameter :: angles = " d del delta "//char(206)//char(180)//" phi "
@@ -369,7 +356,6 @@ contains
    pure function names_shear(name) result(yes)
       !> The name, lower case, `_` for blanks
       character(len=*), intent(in) :: name
-      !> True if it does
       logical :: yes
 
       character(len=*), parameter :: letters = "abcdefghijklmnopqrsuvwxyz"
@@ -393,7 +379,6 @@ contains
 
    !> A unit in that of the SI: s, rad/s or Pa
    pure function unit_size(unit) result(scale)
-      !> One of the units
       character(len=*), intent(in) :: unit
       !> In seconds, rad/s or Pa
       real(wp) :: scale

@@ -20,11 +20,8 @@ module vcor_io_identity
 
    !> What a file is about
    type :: identity_t
-      !> Version of the program
       character(len=:), allocatable :: version
-      !> Title of the case
       character(len=:), allocatable :: title
-      !> Full case
       character(len=:), allocatable :: case_text
       !> Sum over the points of its data files
       character(len=:), allocatable :: data
@@ -40,7 +37,6 @@ contains
       type(case_t), intent(in) :: case
       !> Points of the run
       type(part_t), intent(in) :: part
-      !> What it is about
       type(identity_t) :: identity
 
       identity%version = version
@@ -81,7 +77,6 @@ contains
    pure function number_of(identity) result(number)
       !> What a run is about
       type(identity_t), intent(in) :: identity
-      !> Any number
       integer :: number
 
       character(len=:), allocatable :: text
@@ -96,7 +91,6 @@ contains
 
    !> What a file says about itself beside version, title and case
    function remarks_of(identity) result(remarks)
-      !> What it is about
       type(identity_t), intent(in) :: identity
       !> Attributes
       type(remark_t) :: remarks(4)
@@ -113,7 +107,6 @@ contains
 
    !> What an HDF5 file is about
    subroutine read_identity(path, identity, is_ours, error)
-      !> Path of the file
       character(len=*), intent(in) :: path
       !> What it is about; one shard without points where it says nothing of those
       type(identity_t), intent(out) :: identity
@@ -144,7 +137,6 @@ contains
 
       !> An attribute of the file
       function attribute(name) result(text)
-         !> Name of the attribute
          character(len=*), intent(in) :: name
          !> Its text; empty where there is none
          character(len=:), allocatable :: text
@@ -154,7 +146,6 @@ contains
 
       !> A number in an attribute
       function number(name)
-         !> Name of the attribute
          character(len=*), intent(in) :: name
          !> The number; 0 where there is none
          integer :: number
@@ -172,7 +163,6 @@ contains
 
    !> What a CSV file is about, from its head, and how many rows it has if that is asked for
    subroutine read_csv(path, identity, is_ours, rows)
-      !> Path of the file
       character(len=*), intent(in) :: path
       !> What it is about; its data are not known
       type(identity_t), intent(out) :: identity
@@ -226,7 +216,6 @@ contains
 
       !> Take a line: of the head, or one that counts
       subroutine take(line)
-         !> The line, complete
          character(len=*), intent(in) :: line
 
          character(len=*), parameter :: program = '# vcor ', title = '# title: ', case = '# case:'
@@ -246,11 +235,8 @@ contains
 
    !> Refuse a file that is not about the same; which of the shards it has does not matter
    subroutine check_same(path, found, expected, error)
-      !> Path of the file
       character(len=*), intent(in) :: path
-      !> What it is about
       type(identity_t), intent(in) :: found
-      !> What it should be about
       type(identity_t), intent(in) :: expected
       !> Error of code `error_file` with the reason, unallocated if it is about the same
       type(error_t), allocatable, intent(out) :: error

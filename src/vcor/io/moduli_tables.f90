@@ -26,49 +26,44 @@ module vcor_io_moduli_tables
 contains
 
    !> Moduli as tables
-   subroutine moduli_tables(moduli, title, case_text, summary, relaxation, dynamic)
+   subroutine moduli_tables(moduli, title, case_text, tables)
       type(moduli_t), intent(in) :: moduli
-      !> Title of the case
       character(len=*), intent(in) :: title
-      !> Full case
       character(len=*), intent(in) :: case_text
-      !> A row per material
-      type(table_t), intent(out) :: summary
-      !> A row per material and time
-      type(table_t), intent(out) :: relaxation
-      !> A row per material and frequency
-      type(table_t), intent(out) :: dynamic
+      !> A row per material; per material and time; per material and frequency
+      type(table_t), intent(out) :: tables(3)
 
       integer, allocatable :: all(:), soft(:)
       real(wp), allocatable :: storage(:), loss(:)
-      integer :: i
+      integer :: i, longest
 
       all = [(i, i=1, size(moduli%materials))]
       soft = pack(all, .not. moduli%materials%rigid)
+      longest = maxval([(len(moduli%materials(i)%name), i=1, size(all))])
 
-      call begin(summary, 'summary', all)
-      call add_summary(summary, moduli%materials)
+      call begin(tables(1), 'summary', all)
+      call add_summary(tables(1), moduli%materials)
 
-      call begin(relaxation, 'relaxation', soft)
-      call add_dimension(relaxation, column_of('time', moduli%times, 's', &
+      call begin(tables(2), 'relaxation', soft)
+      call add_dimension(tables(2), column_of('time', moduli%times, 's', &
          'time since the strain step'))
-      call add_column(relaxation, column_of('relaxation_modulus', &
+      call add_column(tables(2), column_of('relaxation_modulus', &
          [(moduli%materials(soft(i))%relaxation, i=1, size(soft))], 'Pa', &
          'relaxation modulus E(t)'))
-      call add_column(relaxation, column_of('in_window', &
+      call add_column(tables(2), column_of('in_window', &
          spread_out(moduli%times <= moduli%contact_time), &
          '1', window_meaning))
 
       storage = [(moduli%materials(soft(i))%storage, i=1, size(soft))]
       loss = [(moduli%materials(soft(i))%loss, i=1, size(soft))]
-      call begin(dynamic, 'dynamic', soft)
-      call add_dimension(dynamic, column_of('frequency', moduli%frequencies, 'rad/s', &
+      call begin(tables(3), 'dynamic', soft)
+      call add_dimension(tables(3), column_of('frequency', moduli%frequencies, 'rad/s', &
          'angular frequency'))
-      call add_column(dynamic, column_of('storage_modulus', storage, 'Pa', "storage modulus E'"))
-      call add_column(dynamic, column_of('loss_modulus', loss, 'Pa', "loss modulus E''"))
-      call add_column(dynamic, column_of('loss_tangent', loss_tangent(storage, loss), '1', &
+      call add_column(tables(3), column_of('storage_modulus', storage, 'Pa', "storage modulus E'"))
+      call add_column(tables(3), column_of('loss_modulus', loss, 'Pa', "loss modulus E''"))
+      call add_column(tables(3), column_of('loss_tangent', loss_tangent(storage, loss), '1', &
          "loss tangent E''/E'"))
-      call add_column(dynamic, column_of('in_window', &
+      call add_column(tables(3), column_of('in_window', &
          spread_out(moduli%frequencies >= moduli%min_frequency), '1', window_meaning))
 
    contains
@@ -80,7 +75,8 @@ contains
          !> Numbers of the materials
          integer, intent(in) :: items(:)
 
-         integer :: longest, k
+         character(len=longest) :: names(size(items))
+         integer :: k
 
          call new_table(table, name, title, case_text)
          if (moduli%contact_time > 0.0_wp) then
@@ -89,29 +85,11 @@ contains
             call add_fact(table, 'min_frequency', moduli%min_frequency, 'rad/s', &
                'lowest frequency of interest, 2 pi/t0')
          end if
-         longest = 1
-         do k = 1, size(items)
-            longest = max(longest, len(moduli%materials(items(k))%name))
-         end do
-         call add_names(table, items, longest)
-      end subroutine begin
-
-      !> Add the dimension of the materials
-      subroutine add_names(table, items, longest)
-         type(table_t), intent(inout) :: table
-         !> Numbers of the materials
-         integer, intent(in) :: items(:)
-         !> Length of the longest name
-         integer, intent(in) :: longest
-
-         character(len=longest) :: names(size(items))
-         integer :: k
-
          do k = 1, size(items)
             names(k) = moduli%materials(items(k))%name
          end do
          call add_dimension(table, column_of('material', names, '', 'name of the material'))
-      end subroutine add_names
+      end subroutine begin
 
       !> Whether points are in the window, for each of the materials
       pure function spread_out(inside) result(column)

@@ -75,7 +75,7 @@ contains
    end subroutine new_decimal
 
    !> Write a real number into a buffer
-   subroutine put_real(decimal, x, buffer, last)
+   pure subroutine put_real(decimal, x, buffer, last)
       !> Powers of ten
       type(decimal_t), intent(in) :: decimal
       !> Any number, NaN and infinity included
@@ -116,8 +116,7 @@ contains
    end subroutine put_real
 
    !> Write an integer into a buffer
-   subroutine put_integer(number, buffer, last)
-      !> Any number
+   pure subroutine put_integer(number, buffer, last)
       integer, intent(in) :: number
       !> Buffer with room for `longest_integer` characters after `last`
       character(len=*), intent(inout) :: buffer
@@ -205,7 +204,7 @@ contains
    end subroutine find_digits
 
    !> The 17 digits of a number as the compiler rounds them
-   subroutine ask_compiler(x, digits, power)
+   pure subroutine ask_compiler(x, digits, power)
       !> A finite number
       real(wp), intent(in) :: x
       !> The digits, 10^16 to 10^17 - 1
@@ -265,7 +264,6 @@ contains
 
    !> Write a text into a buffer
    pure subroutine put_text(text, buffer, last)
-      !> Text to write
       character(len=*), intent(in) :: text
       !> Buffer with room after `last`
       character(len=*), intent(inout) :: buffer

@@ -20,9 +20,7 @@ contains
    !> Whether there is a file, a device or a pipe of that name, a directory excepted; a link counts
    !> as what it points at
    function file_exists(path) result(exists)
-      !> Path to look at
       character(len=*), intent(in) :: path
-      !> True if there is one
       logical :: exists
 
       exists = all(kind_of(path, follows=.true.) /= [nothing_there, folder])
@@ -31,9 +29,7 @@ contains
    !> Whether there is a file of that name that can be looked into without consequences; a link
    !> counts as what it points at
    function plain_file_exists(path) result(exists)
-      !> Path to look at
       character(len=*), intent(in) :: path
-      !> True if there is one
       logical :: exists
 
       exists = kind_of(path, follows=.true.) == plain_file
@@ -43,7 +39,6 @@ contains
    function directory_exists(path) result(exists)
       !> Path to look at; empty is the current directory
       character(len=*), intent(in) :: path
-      !> True if there is one
       logical :: exists
 
       exists = path == '' .or. kind_of(path, follows=.true.) == folder
@@ -51,9 +46,7 @@ contains
 
    !> Whether there is anything of that name, be it a link that leads nowhere
    function anything_at(path) result(exists)
-      !> Path to look at
       character(len=*), intent(in) :: path
-      !> True if there is
       logical :: exists
 
       exists = kind_of(path, follows=.false.) /= nothing_there
@@ -61,7 +54,6 @@ contains
 
    !> Check that what has a name is a file itself, or nothing
    subroutine check_plain(path, error)
-      !> Path to look at
       character(len=*), intent(in) :: path
       !> Set if it is a link, whatever that leads to, a pipe, a folder or a device
       type(error_t), allocatable, intent(out) :: error
@@ -73,7 +65,6 @@ contains
 
    !> What there is at a path
    function kind_of(path, follows) result(kind)
-      !> Path to look at
       character(len=*), intent(in) :: path
       !> Whether a link counts as what it points at
       logical, intent(in) :: follows
@@ -139,11 +130,8 @@ contains
 
    !> Whether two paths lead to one file, which need not be there: by its name and its folder
    function same_file(one, other) result(same)
-      !> A path
       character(len=*), intent(in) :: one
-      !> Another path
       character(len=*), intent(in) :: other
-      !> Whether both are the same
       logical :: same
 
       integer :: a, b
@@ -158,7 +146,6 @@ contains
 
    !> A path as it stands in a message: between quotes, on one line
    pure function quoted_path(path) result(quoted)
-      !> Any path
       character(len=*), intent(in) :: path
       !> The path between quotes, `?` for every control character
       character(len=:), allocatable :: quoted
@@ -175,7 +162,6 @@ contains
    !> A path as the shell takes it, and as a program takes it that gives a meaning to a name's first
    !> character: gnuplot reads `|name` as a pipe, many programs `-name` as an option
    pure function for_shell(path) result(word)
-      !> Any path
       character(len=*), intent(in) :: path
       !> The path in single quotes; it begins with a slash, a point, a letter or a digit
       character(len=:), allocatable :: word
@@ -193,7 +179,6 @@ contains
 
    !> Check that something of that name may be written
    subroutine check_name(path, error)
-      !> Path to check
       character(len=*), intent(in) :: path
       !> Set if it may not, see `name_flaw`
       type(error_t), allocatable, intent(out) :: error
@@ -208,9 +193,7 @@ contains
    subroutine raise_system(error, what, reason)
       !> The error, allocated on return
       type(error_t), allocatable, intent(inout) :: error
-      !> What failed
       character(len=*), intent(in) :: what
-      !> Value of `errno`
       integer(c_int), intent(in) :: reason
 
       call raise(error, error_file, what//': '//system_reason(reason))

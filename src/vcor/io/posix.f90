@@ -209,7 +209,6 @@ contains
 
    !> A text as C wants it
    pure function c_text(text) result(terminated)
-      !> Any text
       character(len=*), intent(in) :: text
       !> The text and a NUL
       character(len=len(text)+1, kind=c_char) :: terminated
@@ -219,7 +218,6 @@ contains
 
    !> What there is at a path
    function file_at(path, follows) result(id)
-      !> Path to look at
       character(len=*), intent(in) :: path
       !> Whether a link counts as what it points at
       logical, intent(in) :: follows
@@ -233,7 +231,6 @@ contains
 
    !> The file behind a descriptor
    function open_file(descriptor) result(id)
-      !> File descriptor
       integer(c_int), intent(in) :: descriptor
       type(file_id_t) :: id
 
@@ -248,7 +245,6 @@ contains
       !> Where a relative path begins
       integer(c_int), intent(in) :: directory
       character(len=*), intent(in) :: path
-      !> Flags of `statx`
       integer(c_int), intent(in) :: flags
       type(file_id_t) :: id
 
@@ -275,9 +271,7 @@ contains
    !> Whether two files are one, and there is one
    pure function same_file_id(one, other) result(same)
       type(file_id_t), intent(in) :: one
-      !> Another file
       type(file_id_t), intent(in) :: other
-      !> Whether both are the same
       logical :: same
 
       same = one%kind /= nothing_there .and. all(one%bits == other%bits)
@@ -285,7 +279,6 @@ contains
 
    !> Value of `errno`: to be asked for right after the call that failed
    function last_errno() result(number)
-      !> Number of the last failure
       integer(c_int) :: number
 
       integer(c_int), pointer :: place
@@ -296,7 +289,6 @@ contains
 
    !> What the system says about a failure
    function system_reason(number) result(reason)
-      !> Value of `errno`
       integer(c_int), intent(in) :: number
       !> Text such as `No space left on device`
       character(len=:), allocatable :: reason

@@ -1,9 +1,6 @@
-!> Outcomes and trajectories as tables, and the files of a summary
+!> Outcomes and trajectories as tables
 module vcor_io_results
-   use vcor_error, only : error_t
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
-   use vcor_io_csv, only : write_csv
-   use vcor_io_hdf5, only : remark_t, write_hdf5
    use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
       move_column, new_table, real_column, table_t, text_column
    use vcor_kinds, only : wp
@@ -14,7 +11,7 @@ module vcor_io_results
    implicit none
    private
 
-   public :: summary_table, history_table, write_summary, axis_column, quantity_column
+   public :: summary_table, history_table, axis_column, quantity_column
 
 contains
 
@@ -22,11 +19,8 @@ contains
    !> has the dimension `impact` of length one
    subroutine summary_table(table, title, case_text, grid, summary)
       type(table_t), intent(out) :: table
-      !> Title of the case
       character(len=*), intent(in) :: title
-      !> Full case
       character(len=*), intent(in) :: case_text
-      !> Points
       type(grid_t), intent(in) :: grid
       !> Their outcomes; they move to the table, so that there are not two of a million
       type(summary_t), intent(inout) :: summary
@@ -64,7 +58,6 @@ contains
 
    !> A column of what is swept
    pure function axis_column(axis, values) result(column)
-      !> The parameter
       type(axis_t), intent(in) :: axis
       !> Its values, in the unit of the parameter
       real(wp), intent(in) :: values(:)
@@ -107,9 +100,7 @@ contains
    !> History: a row per time
    subroutine history_table(table, title, case_text, trajectory)
       type(table_t), intent(out) :: table
-      !> Title of the case
       character(len=*), intent(in) :: title
-      !> Full case
       character(len=*), intent(in) :: case_text
       type(trajectory_t), intent(in) :: trajectory
 
@@ -130,22 +121,5 @@ contains
          end associate
       end do
    end subroutine history_table
-
-   !> Write a summary. HDF5 comes last: where it is there, all is there
-   subroutine write_summary(csv, hdf5, table, remarks, error)
-      !> Name of the CSV file; empty: none
-      character(len=*), intent(in) :: csv
-      !> Name of the HDF5 file; empty: none
-      character(len=*), intent(in) :: hdf5
-      !> A row per impact
-      type(table_t), intent(in) :: table
-      !> More that describes the HDF5 file, shape (n)
-      type(remark_t), intent(in) :: remarks(:)
-      type(error_t), allocatable, intent(out) :: error
-
-      if (csv /= '') call write_csv(csv, table, error)
-      if (allocated(error) .or. hdf5 == '') return
-      call write_hdf5(hdf5, table, error, remarks)
-   end subroutine write_summary
 
 end module vcor_io_results

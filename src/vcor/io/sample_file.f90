@@ -33,7 +33,6 @@ module vcor_io_sample_file
       !> Units by the option, one word per column, blank for one that the file tells; shape (0), (2)
       !> or (3)
       character(len=longest_word), allocatable :: units(:)
-      !> Whether the moduli are shear moduli
       logical :: shear = .false.
       !> Poisson's ratio [-]; beyond 0.5: not given
       real(wp) :: poisson_ratio = 1.0_wp
@@ -49,7 +48,6 @@ module vcor_io_sample_file
       integer, allocatable :: roles(:)
       !> Their units
       character(len=longest_word), allocatable :: units(:)
-      !> Whether the moduli are shear moduli
       logical :: shear = .false.
       !> How the numbers are written
       type(decimals_t) :: decimals
@@ -114,11 +112,8 @@ contains
 
    !> How a file was understood
    pure function described(plan, n) result(text)
-      !> What was read
       type(plan_t), intent(in) :: plan
-      !> Number of points
       integer, intent(in) :: n
-      !> In words
       character(len=:), allocatable :: text
 
       integer :: i
@@ -134,13 +129,10 @@ contains
 
    !> Read the points
    subroutine read_points(text, name, reading, plan, points, n, lines, error)
-      !> Contents of the file
       character(len=*), intent(in) :: text
-      !> Its name for messages
       character(len=*), intent(in) :: name
       !> What the user says about it
       type(reading_t), intent(in) :: reading
-      !> What was read
       type(plan_t), intent(out) :: plan
       !> Points, shape (2 or 3, >= n)
       real(wp), allocatable, intent(out) :: points(:, :)
@@ -148,7 +140,6 @@ contains
       integer, intent(out) :: n
       !> Lines of the first and the last of them
       integer, intent(out) :: lines(2)
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(header_t) :: header
@@ -241,7 +232,6 @@ contains
 
    !> Line that names the columns: the last one before the numbers that has a known name
    function line_of_names(text) result(found)
-      !> Contents of the file
       character(len=*), intent(in) :: text
       !> Number of the line; 0 if there is none
       integer :: found
@@ -285,7 +275,6 @@ contains
       integer, intent(in) :: columns
       !> What the user says
       type(reading_t), intent(in) :: reading
-      !> Name of the file
       character(len=*), intent(in) :: name
       !> First line of numbers
       integer, intent(in) :: line

@@ -92,7 +92,6 @@ contains
 
    !> Whether a seal is that of the file
    function is_sealed(unit, bytes) result(is_sound)
-      !> The open file
       integer, intent(in) :: unit
       !> Its length
       integer(int64), intent(in) :: bytes
@@ -116,7 +115,6 @@ contains
 
    !> Check sum of a file and of where its parts are that are left out
    function sum_of_file(unit, length, left_out) result(number)
-      !> The open file
       integer, intent(in) :: unit
       !> Number of bytes before the seal
       integer(int64), intent(in) :: length
@@ -147,7 +145,6 @@ contains
 
    !> Check sum of what is not left out of a part of a file
    pure function sum_of(bytes, start, left_out, before) result(sum)
-      !> The part
       integer(int8), intent(in), contiguous :: bytes(:)
       !> Number of bytes before it in the file
       integer(int64), intent(in) :: start
@@ -172,7 +169,6 @@ contains
 
    !> Whether a file ends where HDF5 says, or does not say where it ends in the way of this program
    function ends_well(unit, bytes) result(is_sound)
-      !> The open file
       integer, intent(in) :: unit
       !> Its length
       integer(int64), intent(in) :: bytes

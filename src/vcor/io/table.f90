@@ -57,9 +57,7 @@ module vcor_io_table
    type :: fact_t
       !> One word
       character(len=:), allocatable :: name
-      !> The number
       real(wp) :: value = 0.0_wp
-      !> Its unit
       character(len=:), allocatable :: unit
       !> What it is, one line
       character(len=:), allocatable :: long_name
@@ -71,7 +69,6 @@ module vcor_io_table
       character(len=:), allocatable :: name
       !> Version of the program that made it
       character(len=:), allocatable :: version
-      !> Title of the case
       character(len=:), allocatable :: title
       !> Full case, any number of lines
       character(len=:), allocatable :: case_text
@@ -106,7 +103,6 @@ contains
       type(table_t), intent(out) :: table
       !> What its group in an HDF5 file is called
       character(len=*), intent(in) :: name
-      !> Title of the case
       character(len=*), intent(in) :: title
       !> Full case, any number of lines
       character(len=*), intent(in) :: case_text
@@ -120,7 +116,6 @@ contains
 
    !> Check that a table is complete and sound
    pure subroutine check_table(table, error)
-      !> Table to check
       type(table_t), intent(in) :: table
       !> Error of code `error_internal`: the first fault in building the table
       type(error_t), allocatable, intent(out) :: error
@@ -136,7 +131,6 @@ contains
    pure function row_count(table) result(rows)
       !> Table with at least one dimension
       type(table_t), intent(in) :: table
-      !> Number of rows
       integer :: rows
 
       rows = product(table%dimensions%length)
@@ -145,9 +139,7 @@ contains
    !> Which coordinate of a dimension a row has
    pure function coordinate_row(table, number, row) result(place)
       type(table_t), intent(in) :: table
-      !> Number of the dimension, from 1
       integer, intent(in) :: number
-      !> Number of the row, from 1
       integer, intent(in) :: row
       !> Number of the coordinate, from 1
       integer :: place
@@ -159,7 +151,6 @@ contains
    !> Place of a dimension or a column
    pure function place_in_table(table, name) result(place)
       type(table_t), intent(in) :: table
-      !> Name to look for
       character(len=*), intent(in) :: name
       !> Number of the dimension, or of the column after all dimensions; 0 if there is neither
       integer :: place
@@ -177,7 +168,6 @@ contains
    pure function text_value(column, row) result(text)
       !> Text column
       type(column_t), intent(in) :: column
-      !> Number of the value, from 1
       integer, intent(in) :: row
       !> The value, without blanks at its end
       character(len=:), allocatable :: text
@@ -189,7 +179,6 @@ contains
 
    !> Add a number that holds for a table as a whole
    pure subroutine add_fact(table, name, value, unit, long_name)
-      !> Table to add to
       type(table_t), intent(inout) :: table
       !> One word
       character(len=*), intent(in) :: name
@@ -263,9 +252,7 @@ contains
 
    !> Add a dimension with the coordinates 1, 2, 3 ...
    pure subroutine add_index_dimension(table, name, length)
-      !> Table to add to
       type(table_t), intent(inout) :: table
-      !> Name of the dimension
       character(len=*), intent(in) :: name
       !> Its length, not negative
       integer, intent(in) :: length
@@ -280,7 +267,6 @@ contains
 
    !> Add a dimension with coordinates
    pure subroutine add_coordinates(table, coordinates)
-      !> Table to add to
       type(table_t), intent(inout) :: table
       type(column_t), intent(in) :: coordinates
 
@@ -296,7 +282,6 @@ contains
 
    !> Add a column
    pure subroutine add_column(table, column)
-      !> Table to add to
       type(table_t), intent(inout) :: table
       type(column_t), intent(in) :: column
 
@@ -308,7 +293,6 @@ contains
 
    !> Move a column to a table: there are not two of a million values then
    pure subroutine move_column(table, column)
-      !> Table to add to
       type(table_t), intent(inout) :: table
       !> The column; without values afterwards
       type(column_t), intent(inout) :: column

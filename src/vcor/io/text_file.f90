@@ -20,9 +20,7 @@ contains
 
    !> Read a file as it is
    subroutine read_text_file(filename, text, error, kind)
-      !> Name of the file
       character(len=*), intent(in) :: filename
-      !> Its bytes
       character(len=:), allocatable, intent(out) :: text
       !> Error of code `error_file` when it cannot be read, `error_input` when it is too large
       type(error_t), allocatable, intent(out) :: error
@@ -77,13 +75,10 @@ contains
    subroutine read_pipe(unit, filename, expected, text, error)
       !> Unit, open for stream access
       integer, intent(in) :: unit
-      !> Name for messages
       character(len=*), intent(in) :: filename
       !> What the file is to be, for messages
       character(len=*), intent(in) :: expected
-      !> The bytes
       character(len=:), allocatable, intent(out) :: text
-      !> Error, unallocated on success
       type(error_t), allocatable, intent(inout) :: error
       type(buffer_t) :: buffer
       character(len=256) :: message

@@ -23,7 +23,13 @@ module vcor_numeric_crc
       bits5(0:255) = ieor(shiftr(bits4, 1), iand(bits4, 1_int32)*divisor), &
       bits6(0:255) = ieor(shiftr(bits5, 1), iand(bits5, 1_int32)*divisor), &
       bits7(0:255) = ieor(shiftr(bits6, 1), iand(bits6, 1_int32)*divisor), &
-      remainders(0:255) = ieor(shiftr(bits7, 1), iand(bits7, 1_int32)*divisor)
+      bits8(0:255) = ieor(shiftr(bits7, 1), iand(bits7, 1_int32)*divisor)
+   !> Remainders of a byte, and of a byte with 1, 2 and 3 bytes of zeros behind it: with them four
+   !> bytes in a row need not wait for each other
+   integer(int32), parameter :: last = 255_int32, &
+      bits16(0:255) = ieor(shiftr(bits8, 8), bits8(iand(bits8, last))), &
+      bits24(0:255) = ieor(shiftr(bits16, 8), bits8(iand(bits16, last))), &
+      bits32(0:255) = ieor(shiftr(bits24, 8), bits8(iand(bits24, last)))
 
 contains
 
@@ -38,9 +44,13 @@ contains
       integer(int64) :: k
 
       crc = not(before)
-      do k = 1, size(bytes, kind=int64)
-         crc = ieor(shiftr(crc, 8), &
-            remainders(iand(ieor(crc, int(bytes(k), int32)), 255_int32)))
+      do k = 1, size(bytes, kind=int64) - 3, 4
+         crc = ieor(crc, transfer(bytes(k:k + 3), crc))
+         crc = ieor(ieor(bits32(iand(crc, last)), bits24(iand(shiftr(crc, 8), last))), &
+            ieor(bits16(iand(shiftr(crc, 16), last)), bits8(shiftr(crc, 24))))
+      end do
+      do k = k, size(bytes, kind=int64)
+         crc = ieor(shiftr(crc, 8), bits8(iand(ieor(crc, int(bytes(k), int32)), last)))
       end do
       crc = not(crc)
    end function crc32

@@ -12,7 +12,6 @@ module vcor_sweep_failures
 
    !> One reason
    type :: failure_t
-      !> Number of points
       integer :: count = 0
       !> First of them
       integer :: first = huge(1)
@@ -24,7 +23,6 @@ module vcor_sweep_failures
    type :: failures_t
       !> Number of points without a result
       integer :: count = 0
-      !> Number of reasons
       integer :: reasons = 0
       !> Reasons; those in use are 1 to `reasons`
       type(failure_t) :: reason(most_reasons)

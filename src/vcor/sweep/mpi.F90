@@ -51,7 +51,6 @@ contains
 
    !> Number of ranks
    function rank_count() result(number)
-      !> Number, at least 1
       integer :: number
 
       number = ranks
@@ -152,7 +151,6 @@ contains
 
    !> A text as numbers
    pure function numbers_of(text) result(numbers)
-      !> The text
       character(len=*), intent(in) :: text
       !> Its letters, with blanks behind them that fill the last number
       real(wp), allocatable :: numbers(:)

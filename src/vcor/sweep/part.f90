@@ -17,7 +17,6 @@ module vcor_sweep_part
    type :: part_t
       !> Number of the part, from 1 to `parts`
       integer :: number = 1
-      !> Number of parts
       integer :: parts = 1
       !> Points of all parts together
       integer :: points = 0

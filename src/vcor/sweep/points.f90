@@ -52,7 +52,6 @@ module vcor_sweep_points
          integer, intent(in) :: last
          !> Number of points between them that are new
          integer, intent(in) :: count
-         !> Outcomes of all places
          type(summary_t), intent(inout) :: summary
          !> What ends the sweep: its results cannot be kept, say; unallocated on success
          type(error_t), allocatable, intent(out) :: error

@@ -42,7 +42,6 @@ contains
    !> Make room; all points are pending, and have no values yet
    subroutine new_summary(self, points, error)
       type(summary_t), intent(out) :: self
-      !> Number of points
       integer, intent(in) :: points
       !> Error of code `error_file` if there is not enough memory, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -107,7 +106,6 @@ contains
 
    !> Keep the outcomes of a part
    pure subroutine put_part(self, part, outcomes)
-      !> Outcomes of all points
       class(summary_t), intent(inout) :: self
       type(part_t), intent(in) :: part
       !> Outcomes of its points

@@ -107,7 +107,6 @@ contains
 
       !> Whether a parameter has a part in the error: by its path, or by its name in any material
       pure function has_part(axis)
-         !> The parameter
          type(axis_t), intent(in) :: axis
          logical :: has_part
 
@@ -142,7 +141,6 @@ contains
    !> Build the impact of a point
    subroutine build_point(self, point, worker, error)
       type(sweep_t), intent(in) :: self
-      !> Number of the point
       integer, intent(in) :: point
       !> Its impact is built
       type(worker_t), intent(inout) :: worker
@@ -174,7 +172,6 @@ contains
 
    !> Why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)
-      !> Status of its outcome
       integer, intent(in) :: status
       !> In words; empty where it has one
       character(len=:), allocatable :: reason
