@@ -1,22 +1,30 @@
 """Figures: what they show, and how the command answers."""
 
+import itertools
+import os
 import re
+import shutil
 import subprocess
 import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
+import h5py
+import matplotlib as mpl
+import matplotlib.style
 import numpy as np
 import pytest
-from conftest import PAPER, SWEEPS
+from conftest import PAPER, ROOT, SWEEPS
 
 import vcor
-from vcor.plot import figure, main, save
+from vcor import _command
+from vcor.data import Data
+from vcor.plot import KINDS, STYLE, figure, main, save
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     """Files of results of all kinds."""
-    import os
-
     folder = tmp_path_factory.mktemp("results")
     sls, velocity = PAPER / "sls.nml", SWEEPS / "sls_velocity.nml"
     for words in (
@@ -60,6 +68,7 @@ def test_a_history(results):
         assert line.get_xdata()[-1] == pytest.approx(end)
         assert line.get_ydata()[-1] == pytest.approx(float(at_end), abs=2e-3)
         assert np.max(line.get_ydata()) <= 1.001
+    assert velocity.get_ydata()[0] == -1.0
     dashed = [line for line in axis.lines if line.get_linestyle() == "--"]
     assert len(dashed) == 3
     assert dashed[0].get_xdata()[-1] > end
@@ -67,9 +76,14 @@ def test_a_history(results):
 
 
 def test_two_histories(results):
-    made = figure([results / "sls_ghost.h5", results / "butyl_prony_ghost.h5"])
+    names = ["sls_ghost.h5", "butyl_prony_ghost.h5"]
+    made = figure([results / name for name in names])
     assert [axis.get_title(loc="left") for axis in made.axes] == ["(a)", "(b)", "(c)"]
     assert len(texts(made)) == 2 and all("COR 0." in text for text in texts(made))
+    one, other = (vcor.open(results / name) for name in names)
+    first = made.axes[1].lines
+    assert first[0].get_ydata()[-1] == pytest.approx(float(one.cor), abs=2e-3)
+    assert curves(made.axes[1])[1].get_ydata()[-1] == pytest.approx(float(other.cor), abs=2e-3)
     assert made.get_size_inches()[0] == pytest.approx(17 / 2.54)
 
 
@@ -103,7 +117,7 @@ def test_a_sweep(results):
     np.testing.assert_array_equal(curves(made.axes[0])[0].get_ydata(), data.cor)
     np.testing.assert_allclose(curves(made.axes[1])[0].get_ydata(), 1e3 * data.contact_time)
     assert made.axes[1].get_ylabel() == "contact time [ms]"
-    assert any("rubber.beta = 900" in text for text in texts(made))
+    assert "beta = 900 1/s" in texts(made)
     given = figure([results / "sweep.h5", results / "soft.h5"], legends=["one", "two"])
     assert texts(given)[:2] == ["one", "two"]
 
@@ -173,6 +187,188 @@ def test_axes_that_are_wanted(results):
     assert made.get_size_inches()[0] == pytest.approx(12 / 2.54)
 
 
+def test_moduli_of_a_fit(tmp_path):
+    """A group of vcor fit and the data that it comes from."""
+    data = ROOT / "examples/soft_rubber_data.csv"
+    fit = vcor.fit(data, model="mittag_leffler", density=1100.0)
+    (tmp_path / "soft.nml").write_text(fit.group)
+    relaxation, *_ = figure([tmp_path / "soft.nml", data]).axes
+    (bar,) = relaxation.containers
+    times, moduli = bar.lines[0].get_data()
+    assert len(times) == 57
+    line = relaxation.lines[0]
+    assert line.get_xdata()[0] == pytest.approx(times[0])
+    found = np.interp(np.log(times), np.log(line.get_xdata()), line.get_ydata())
+    np.testing.assert_allclose(found, moduli, rtol=2e-3)
+    # moduli as instruments write them
+    (tmp_path / "dynamic.txt").write_text("f, E_stor, E_loss\nHz, MPa, MPa\n1,5,1\n2,6,2\n")
+    axes = figure([tmp_path / "soft.nml", tmp_path / "dynamic.txt"]).axes
+    (bar,) = axes[1].containers[:1]
+    np.testing.assert_allclose(bar.lines[0].get_xdata(), 2 * np.pi * np.array([1, 2]))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "velocity [m/s]\tcor\n5\t0.42\n10\t0.43\n",
+        "# drops\nvelocity cor\n5 0.42\n10 0.43\n",
+        "velocity (m/s);cor\n5,0;0,42\n10,0;0,43\n",
+        "velocity [mm/s], cor [%]\n5e3, 42\n1e4, 43\n",
+        "impact.velocity, e\n5, 0.42\n10, 0.43\n",
+    ],
+)
+def test_ways_to_write_data(tmp_path, text):
+    (tmp_path / "drops.csv").write_text(text, encoding="utf-8-sig")
+    data = Data(tmp_path / "drops.csv")
+    np.testing.assert_allclose(data.find("impact.velocity")[0], [5, 10])
+    np.testing.assert_allclose(data.find("cor")[0], [0.42, 0.43])
+
+
+def test_levels_of_a_map(results):
+    cube = results / "cube.h5"
+    axis, bar = figure([cube], levels=[0.4, 0.5, 0.6]).axes
+    np.testing.assert_array_equal(bar.get_yticks(), [0.4, 0.5, 0.6])
+    cor = vcor.open(cube).cor
+    _, bar = figure([cube], levels=4).axes
+    ticks = bar.get_yticks()
+    assert 3 <= len(ticks) <= 7 and ticks[0] <= cor.min() and ticks[-1] >= cor.max()
+    _, bar = figure([cube], log="z", quantities=["max_force"]).axes
+    assert bar.get_yscale() == "log" and {f"{tick:e}"[0] for tick in bar.get_yticks()} <= set("125")
+
+
+def test_the_switch_of_the_hatching(results):
+    for name in ("sweep.h5", "cube.h5"):
+        made = figure([results / name], hatch=False)
+        assert "outside of the model's validity" not in texts(made)
+        assert not [patch for patch in made.axes[0].patches if patch.get_hatch()]
+        assert "outside of the model's validity" in texts(figure([results / name]))
+
+
+def write_points(path, axes, **columns):
+    """A file of results made by h5py."""
+    with h5py.File(path, "w") as file:
+        file.attrs["title"] = np.bytes_(columns.pop("title", ""))
+        for name, values in axes.items():
+            file[f"summary/{name}"] = values
+            file[f"summary/{name}"].make_scale(name)
+        for name, values in columns.items():
+            file[f"summary/{name}"] = values
+            for place, axis in enumerate(axes):
+                file[f"summary/{name}"].dims[place].attach_scale(file[f"summary/{axis}"])
+
+
+def test_a_map_with_holes(tmp_path):
+    z = np.array([[1.0, 2.0, 3.0], [np.nan, 4.0, 5.0], [3.0, 5.0, 6.0]])
+    axes = {"impact.velocity": [1.0, 2.0, 3.0], "sphere.radius": [1.0, 2.0, 3.0]}
+    write_points(tmp_path / "holes.h5", axes, cor=z)
+    axis, _ = figure([tmp_path / "holes.h5"]).axes
+    assert axis.get_xlabel() == "impact velocity" and axis.get_ylabel() == "sphere radius"
+    paths = [path for one in axis.collections[:1] for path in one.get_paths()]
+    assert not any(path.contains_point((1.99, 1.01)) for path in paths)
+    write_points(tmp_path / "none.h5", axes, cor=np.full((3, 3), np.nan))
+    with pytest.raises(vcor.InputError, match="no value at any point"):
+        figure([tmp_path / "none.h5"])
+
+
+def test_values_in_any_order(tmp_path):
+    for kind in (">f4", "<f8", "<i2"):
+        values = np.array([4, 1, 2], dtype=kind)
+        write_points(tmp_path / "a.h5", {"sphere.radius": values}, cor=np.array([3, 2, 1.0]))
+        (line,) = figure([tmp_path / "a.h5"]).axes[0].lines
+        np.testing.assert_array_equal(line.get_data(), [[1, 2, 4], [2, 1, 3]])
+
+
+def test_equal_ratios_are_logarithmic(tmp_path):
+    for values, scale in (([1, 10, 100.0], "log"), ([1, 2, 3.0], "linear"), ([1, 2.0], "linear")):
+        write_points(tmp_path / "a.h5", {"sphere.radius": values}, cor=values)
+        assert figure([tmp_path / "a.h5"]).axes[0].get_xscale() == scale
+
+
+def test_a_curve_for_each_value(tmp_path):
+    axes = {"impact.velocity": [1.0, 2.0, 3.0], "sphere.radius": [1.0, 2.0]}
+    write_points(tmp_path / "a.h5", axes, cor=np.arange(6.0).reshape(3, 2))
+    made = figure([tmp_path / "a.h5"], kind="sweep")
+    assert texts(made) == ["sphere radius = 1", "sphere radius = 2"]
+    np.testing.assert_array_equal(curves(made.axes[0])[1].get_ydata(), [1, 3, 5])
+
+
+TITLE = "a_b {c} <d> & \"e\" 'f' h^2 @x ~y `z` $HOME$ $\\frac$ 100% α \\n"
+
+
+def test_texts_stand_for_themselves(results, tmp_path):
+    """No title is a formula, none leaves its line, and a long one is cut."""
+    files = [results / "sweep.h5", results / "soft.h5"]
+    main([*map(str, files), "--legend", TITLE, "--legend", "plain", "--output", f"{tmp_path}/a.svg",
+          "--quantity", "cor,max_force", "--quiet"])  # fmt: skip
+    ElementTree.parse(tmp_path / "a.svg")
+    made = figure(files, legends=[TITLE, "ä" * 300], quantities=["cor", "max_force"])
+    shown = texts(made)
+    assert shown[0] == TITLE
+    assert re.fullmatch("ä{90,110}\nä{90,110} …", shown[1])
+    shutil.copy(results / "sweep.h5", tmp_path / "other.h5")
+    with h5py.File(tmp_path / "other.h5", "a") as file:
+        file.attrs["title"] = "two\nlines \x1b[31m"
+        file["summary/cor"].attrs["long_name"] = "$x^$ \x07"
+    made = figure([tmp_path / "other.h5", results / "soft.h5"])
+    assert texts(made)[0] == "two lines ?[31m"
+    save(made, tmp_path / "b.svg")
+
+
+def test_damage_in_what_others_wrote(results, tmp_path):
+    """HDF5 takes the seal off a file that it changes: it is drawn as before."""
+    path = tmp_path / "a.h5"
+    shutil.copy(results / "sls_ghost.h5", path)
+    assert path.read_bytes().endswith(b"vcorseal")
+    with h5py.File(path, "r+") as file:
+        file.attrs["remark"] = "looks good"
+    assert b"vcorseal" not in path.read_bytes()
+    figure([path])
+
+
+def lightness(colour):
+    """L* of a colour, 0 to 100 (CIE 1976; sRGB, IEC 61966-2-1)."""
+    parts = np.array(mpl.colors.to_rgb(colour))
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    luminance = linear @ [0.2126, 0.7152, 0.0722]
+    return 116 * luminance ** (1 / 3) - 16 if luminance > 0.008856 else 903.3 * luminance
+
+
+def test_curves_can_be_told_apart_in_grey():
+    """No two styles share a lightness, a marker or a line; the first four are far apart."""
+    with mpl.style.context(STYLE):
+        styles = list(mpl.rcParams["axes.prop_cycle"])
+    light = [lightness(style["color"]) for style in styles]
+    assert len(styles) == 8 and max(light) <= 72
+    assert min(np.diff(sorted(light))) >= 4
+    assert min(np.diff(sorted(light[:4]))) >= 13
+    for key in ("marker", "linestyle"):
+        assert len({str(style[key]) for style in styles}) == 8
+
+
+@pytest.mark.parametrize("velocity", [0.02, 0.5, 90.0])
+def test_room_for_the_ticks(results, tmp_path, velocity):
+    """The labels of an axis stand apart, and within the picture, however long the contact is."""
+    case = vcor.read(PAPER / "sls.nml")
+    case["impact.velocity"] = velocity
+    case.save(tmp_path / "case.nml")
+    run = [os.environ["VCOR"], "run", tmp_path / "case.nml", "--quiet", "--output", tmp_path]
+    subprocess.run(run, check=True)
+    (path,) = tmp_path.glob("*.h5")
+    for files, kind in (([path], "history"), ([path, path], "history"), ([path], "loop")):
+        made = figure(files, kind=kind)
+        made.draw_without_rendering()
+        for axis in made.axes:
+            for which in (axis.xaxis, axis.yaxis):
+                low, high = which.get_view_interval()
+                ticks = [tick for tick in which.get_major_ticks() if low <= tick.get_loc() <= high]
+                boxes = [tick.label1.get_window_extent() for tick in ticks]
+                assert len(boxes) >= 3
+                assert not any(a.overlaps(b) for a, b in itertools.pairwise(boxes))
+        inside = made.get_tightbbox().padded(-0.02)
+        width, height = made.get_size_inches()
+        assert inside.x0 >= 0 and inside.y0 >= 0 and inside.x1 <= width and inside.y1 <= height
+
+
 # ---------------------------------------------------------------------------------- command
 
 
@@ -203,24 +399,132 @@ def test_a_folder(results, tmp_path):
     assert [path.name for path in folder.iterdir()] == ["cube_map.png"]
 
 
+@pytest.fixture(scope="module")
+def bad(results):
+    """Files that are not what is needed."""
+    (results / "text.h5").write_text("hello\n" * 1000)
+    (results / "nothing.h5").write_bytes(b"")
+    whole = (results / "sweep.h5").read_bytes()
+    (results / "cut.h5").write_bytes(whole[:3000])
+    (results / "bit.h5").write_bytes(whole[:3000] + bytes([whole[3000] ^ 1]) + whole[3001:])
+    (results / "folder.h5").mkdir()
+    (results / "link.svg").symlink_to("/dev/null")
+    for name, values in (("still", [0.0, 0.0, 0.0]), ("part", None)):
+        with h5py.File(results / f"{name}.h5", "w") as file:
+            file["summary/cor"] = [0.5]
+            for column in ("time", "indentation", "relative_velocity", "force"):
+                if values:
+                    file[f"history/{column}"] = [0.0, 1.0, 2.0] if column == "time" else values
+            if not values:
+                file["history/time"] = [0.0, 1.0]
+    with h5py.File(results / "radius.h5", "w") as file:
+        file["summary/sphere.radius"] = [1.0, 2.0]
+        file["summary/sphere.radius"].make_scale()
+        file["summary/cor"] = [0.5, 0.6]
+        file["summary/cor"].dims[0].attach_scale(file["summary/sphere.radius"])
+    with h5py.File(results / "empty.h5", "w"):
+        pass
+    (results / "few.csv").write_text("velocity,cor\n")
+    (results / "words.csv").write_text("velocity,cor\n1,high\n")
+    (results / "no_range.nml").write_text("&material name = 'x', model = 'rigid' /\n")
+    return results
+
+
 @pytest.mark.parametrize(
     "words, code, line",
     [
         (["gone.h5"], 4, r"gone\.h5: there is no such file"),
+        (["text.h5"], 3, "this is no HDF5 file"),
+        (["nothing.h5"], 3, "this is no HDF5 file"),
+        (["cut.h5"], 4, "cannot be read"),
+        (["bit.h5"], 4, "damaged"),
+        (["folder.h5"], 4, "found a folder"),
+        (["empty.h5"], 3, "no group 'summary'"),
+        (["still.h5"], 3, "not that of an impact"),
+        (["part.h5"], 3, "no 'indentation' in 'history'"),
         (["sweep.h5", "sls_ghost.h5"], 3, "for a figure of kind history"),
+        (["sweep.h5", "radius.h5"], 3, "over 'sphere.radius', that of the first file"),
         (["sweep.h5", "--quantity", "force"], 2, "no quantity 'force', expected one of cor,"),
+        (["sweep.h5", "--quantity", "status"], 2, "no quantity 'status'"),
         (["sweep.h5", "--kind", "loop"], 3, "no time history"),
+        (["sls_ghost.h5", "--kind", "moduli"], 3, "no moduli"),
+        (["sls_ghost.h5", "--kind", "sweep"], 3, "found 0 swept parameters"),
+        (["sweep.h5", "--kind", "map"], 3, "a map needs a sweep of two parameters"),
+        (["cube.h5", "cube.h5"], 2, "a map shows one file"),
+        (["cube.h5", "--legend", "a"], 2, "without a legend"),
+        (["sls_ghost.h5", "--legend", "a"], 2, "found --legend"),
+        (["sls_material.h5", "--legend", "a"], 2, "found --legend"),
         (["bare.h5"], 3, r"output\.history = \.true\."),
+        (["sls_ghost.h5"] * 9, 2, "at most 8"),
+        (["few.csv"], 3, "at least one row"),
+        (["sweep.h5", "words.csv"], 3, "'cor' holds more than numbers"),
+        (["no_range.nml"], 3, "valid_from"),
         (["sweep.h5", "--legend", "a", "--legend", "b"], 2, "found 2 --legend for 1"),
-        (["sweep.h5", "--range", "x=1"], 2, r"expected such as x=0\.1:10"),
+        (["sweep.h5", "--legend", "a\tb"], 2, "control character"),
+        (["sweep.h5", "a\nb.h5"], 2, "control character"),
+        (["sweep.h5", "--range", "x=1"], 2, r"expected a range such as x=0\.1:10"),
+        (["sweep.h5", "--range", "x=nan:1"], 2, "expected a range"),
+        (["cube.h5", "--levels", "a"], 2, "or levels such as"),
+        (["cube.h5", "--levels", "0.5"], 2, "expected two or more"),
+        (["sweep.h5", "--log", "w"], 2, "expected letters among x, y, z"),
+        (["sweep.h5", "--width", "1"], 2, "a width of 1 cm"),
         (["cube.h5", "--kind", "sweep"], 3, "expected --kind map"),
-        (["sweep.h5", "--output", "a.svg", "--format", "pdf"], 2, "contradicts --format pdf"),
+        (["sweep.h5", "--kind", "histroy"], 2, "'histroy'.*history"),
+        (["sweep.h5", "--scrpt"], 2, "--scrpt.*--help"),
+        ([], 2, "required: FILE"),
+        (["sweep.h5", "--output", "a.svg", "--format", "pdf"], 2, "--format is pdf"),
+        (["sweep.h5", "--output", "a.svgg"], 2, "unknown format 'svgg'"),
+        (["sweep.h5", "--output", "link.svg"], 4, "device"),
+        (["sweep.h5", "--output", "/proc/none/x.svg"], 4, "/proc/none"),
+        (["sweep.h5", "--output", "text.h5/x.svg"], 4, "text.h5"),
+        (["sweep.h5", "--output", "|touch x.svg"], 2, "pipe"),
+        (["sweep.h5", "--output", "a/<x/"], 2, "pipe"),
     ],
 )
-def test_errors(results, monkeypatch, capsys, words, code, line):
-    monkeypatch.chdir(results)
+def test_errors(bad, monkeypatch, capsys, words, code, line):
+    monkeypatch.chdir(bad)
+    before = sorted(bad.iterdir())
     with pytest.raises(SystemExit) as caught:
         main(words)
     out, err = capsys.readouterr()
     assert (caught.value.code, out) == (code, "")
-    assert re.fullmatch(rf"vcor: error: .*{line}.*\n", err)
+    assert re.fullmatch(rf"vcor: error: .*{line}.*\n", err), err
+    assert sorted(bad.iterdir()) == before
+
+
+def test_a_name_that_begins_a_pipe(results, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(results / "sweep.h5", "|touch x.h5")
+    with pytest.raises(SystemExit) as caught:
+        main(["|touch x.h5"])
+    assert caught.value.code == 4 and "pipe" in capsys.readouterr().err
+    main(["|touch x.h5", "--output", "figure.svg", "--quiet"])
+    assert Path("figure.svg").exists()
+
+
+def test_results_are_not_replaced(results, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "points.svg").write_text("velocity,cor\n5,0.4\n")
+    words = [str(results / "sweep.h5"), "points.svg", "--output", "./points.svg"]
+    with pytest.raises(SystemExit) as caught:
+        main(words)
+    assert caught.value.code == 2 and "would replace" in capsys.readouterr().err
+
+
+def test_the_package_that_is_missing(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "vcor.plot")
+    with pytest.raises(SystemExit) as caught:
+        _command.plot()
+    assert caught.value.code == 2
+    line = "vcor: error: vcor plot needs the Python package matplotlib, expected: pip install"
+    assert capsys.readouterr().err == f"{line} matplotlib\n"
+
+
+def test_help(capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(["--help"])
+    page = capsys.readouterr().out
+    assert caught.value.code == 0 and page.startswith("usage: vcor plot ")
+    for word in ("--kind", "--log", "--range", "--levels", "--no-hatch", "--script", *KINDS):
+        assert word in page

@@ -1,18 +1,21 @@
 """Figures of results: histories, hysteresis loops, moduli, sweeps and maps.
 
 `figure` makes one from files of the program and measured data; the command `vcor plot` calls it.
-Lengths, times and the like are shown in units that suit them; measured data and files are in SI.
+Lengths, times and the like are shown in units that suit them; files are in SI units.
 """
 
 from __future__ import annotations
 
-import argparse
-import csv
+import contextlib
+import io
 import math
 import os
 import re
 import sys
+import textwrap
+import warnings
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +25,16 @@ import matplotlib.style
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import FixedLocator
+from matplotlib.patheffects import withStroke
+from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from . import _library
-from ._library import Error, FileError, Floats, InputError, UsageError
+from . import _command
+from ._command import printable
+from ._library import Error, FileError, Floats, Handle, InputError, UsageError
+from .case import Case
+from .data import PREFIXES, Data
 from .results import open as open_results
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
@@ -36,38 +44,48 @@ FORMATS = ("svg", "pdf", "png")
 COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
 #: Results or curves that can be told apart
 MOST = 8
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _SCALED = ("m", "s", "N", "Pa", "J", "kg", "W")
-#: Names of columns of measured data beside those of vcor
-_OTHER_NAMES = {"t": "time", "E": "relaxation_modulus", "omega": "frequency", "e": "cor"}
 _WORDS = {"cor": "coefficient of restitution", "min_frequency": "lowest frequency of interest"}
 _OUTSIDE = "outside of the model's validity"
+#: What completes a file of &material groups to a case that has their moduli
+_AROUND = "&impact velocity = 1.0 /\n&sphere radius = 1.0, mass = 1.0, material = '{name}' /\n" + (
+    "&plate waves = 'none', material = '{name}' /\n"
+)
+_Range = tuple[float | None, float | None]
 
 
 class Result:
-    """A file of results: its summary, and what else it holds."""
+    """A file of results, or of materials: its summary, and what else it holds."""
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
-        self.summary = open_results(path)
-        with h5netcdf.File(self.path, "r") as file:
-            self.groups = set(file.groups)
+        self._moduli: dict[str, xr.Dataset] = {}
+        if self.path.endswith(".nml"):
+            self.summary, self._moduli = xr.Dataset(), _moduli_of(self.path)
+            self.groups = set(self._moduli)
+        else:
+            self.summary = open_results(path)
+            with h5netcdf.File(self.path, "r") as file:
+                self.groups = set(file.groups)
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
-        self.case: str = str(self.summary.attrs.get("case", ""))
-        self.title = str(self.summary.attrs.get("title", ""))
+        self.case = str(self.summary.attrs.get("case", ""))
+        self.title = printable(str(self.summary.attrs.get("title", "")))
 
-    def group(self, name: str, what: str) -> xr.Dataset:
-        """A group of the file; refused if there is none."""
+    def group(self, name: str, what: str, *columns: str) -> xr.Dataset:
+        """A group of the file with some columns; refused if there is none."""
         if name not in self.groups:
             raise InputError(f"{self.path}: there is no {what} in this file")
-        return open_results(self.path, name)
+        found = self._moduli[name] if self._moduli else open_results(self.path, name)
+        for column in columns:
+            if column not in found:
+                raise InputError(f"{self.path}: there is no '{column}' in '{name}' of this file")
+        return found
 
     def kind(self) -> str:
         """Kind of figure that the file is for."""
-        if "relaxation" in self.groups:
-            return "moduli"
-        if "history" in self.groups:
-            return "history"
+        for group, kind in (("relaxation", "moduli"), ("history", "history")):
+            if group in self.groups:
+                return kind
         if self.axes:
             return "map" if len(self.axes) == 2 else "sweep"
         raise InputError(
@@ -91,38 +109,58 @@ class Result:
         return self.summary[name]
 
 
-class Data:
-    """Measured points: columns by the names of their header, in SI units."""
+def _moduli_of(path: str) -> dict[str, xr.Dataset]:
+    """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}") from None
+    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
+    if not names:
+        raise InputError(f"{path}: there is no material with a name in this file")
+    alone = not re.search(r"^\s*&impact\b", text, re.MULTILINE | re.IGNORECASE)
+    case = Case(text + (_AROUND.format(name=names[0]) if alone else ""), name=path)
+    parts: list[xr.Dataset] = []
+    for name in names:
+        address = name.replace(" ", "_")
+        first, last = (case[f"{address}.valid_{end}"] for end in ("from", "to"))
+        if not (isinstance(first, float) and isinstance(last, float)):
+            continue
+        time = np.geomspace(first, last, 200)
+        material, frequency = case.material(name), 1.0 / time[::-1]
+        modulus = material.complex_modulus(frequency)
+        dynamic = {"storage_modulus": modulus.real, "loss_modulus": modulus.imag}
+        dynamic["loss_tangent"] = modulus.imag / modulus.real
+        for at, over, columns in (
+            ("time", time, {"relaxation_modulus": material.relaxation(time)}),
+            ("frequency", frequency, dynamic),
+        ):
+            data = {key: (at, column) for key, column in columns.items()}
+            parts.append(xr.Dataset(data, {at: over, "material": name}))
+    if not parts:
+        raise InputError(
+            f"{path}: no material has valid_from and valid_to, between which its moduli are drawn; "
+            "draw the file that vcor material makes"
+        )
+    both = {"relaxation": parts[::2], "dynamic": parts[1::2]}
+    return {key: xr.concat(some, "material", join="outer") for key, some in both.items()}
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.fspath(path)
-        try:
-            text = Path(path).read_text(encoding="utf-8-sig")
-        except OSError as error:
-            raise FileError(f"{self.path}: {error.strerror}") from None
-        lines = [line for line in text.splitlines() if line.split("#")[0].strip()]
-        if len(lines) < 2:
-            raise InputError(f"{self.path}: expected a header and at least one row of numbers")
-        delimiter = next((mark for mark in ";,\t" if mark in lines[0]), " ")
-        rows = list(csv.reader(lines, delimiter=delimiter, skipinitialspace=True))
-        self.columns: dict[str, Floats] = {}
-        for i, head in enumerate(rows[0]):
-            found = re.fullmatch(r"\s*([\w.]+)\s*(?:[\[(](.*)[\])])?\s*", head)
-            if not found:
-                raise InputError(f"{self.path}:1: found '{head}' as name of a column")
-            name, unit = found.groups()
-            try:
-                values = [float(row[i]) if row[i].strip() else math.nan for row in rows[1:]]
-            except (ValueError, IndexError):
-                raise InputError(f"{self.path}: column '{name}' holds more than numbers") from None
-            self.columns[_OTHER_NAMES.get(name, name)] = np.array(values) * _size(unit, self.path)
 
-    def find(self, name: str) -> tuple[Floats | None, Floats | None]:
-        """Values and standard errors of a quantity or an address, None where there are none."""
-        for key in (name, name.rpartition(".")[2]):
-            if key in self.columns:
-                return self.columns[key], self.columns.get(f"{key}_sigma")
-        return None, None
+@dataclass
+class _Wishes:
+    """What a figure shows, and how."""
+
+    results: list[Result]
+    #: A text for each result, and whether the user gave them
+    texts: list[str]
+    given: bool
+    data: list[Data]
+    quantities: Sequence[str]
+    log: str | None
+    ranges: dict[str, _Range]
+    levels: int | Sequence[float]
+    hatch: bool
+    width: float | None
 
 
 def figure(
@@ -132,7 +170,9 @@ def figure(
     quantities: Sequence[str] = ("cor",),
     legends: Sequence[str] = (),
     log: str | None = None,
-    ranges: dict[str, tuple[float | None, float | None]] | None = None,
+    ranges: dict[str, _Range] | None = None,
+    levels: int | Sequence[float] = 8,
+    hatch: bool = True,
     width: float | None = None,
 ) -> Figure:
     """Make a figure.
@@ -140,7 +180,8 @@ def figure(
     Parameters
     ----------
     files
-        Files of results (.h5) of one kind, and of measured points (any other ending).
+        Files of results (.h5) or materials (.nml) of one kind, and of measured points (any other
+        ending).
     kind
         One of `KINDS`; None: what the first file is for.
     quantities
@@ -148,10 +189,14 @@ def figure(
     legends
         A text for each file of results; none: titles, or what differs in the cases.
     log
-        Axes that are logarithmic, letters among x and y, "" for none; None: those whose values are
-        in equal ratios, and moduli.
+        Axes that are logarithmic, letters among x, y and z (levels of a map), "" for none; None:
+        those whose values are in equal ratios, and moduli.
     ranges
-        First and last value of the axes x, y and of the colours z, in the units that are drawn.
+        First and last value of the axes x, y and of the levels z, in the units that are drawn.
+    levels
+        Levels of a map in the unit that is drawn, or about how many.
+    hatch
+        Whether to hatch where the model does not hold.
     width
         Width [cm]; None: 8.5 for one panel, 17 for several.
 
@@ -168,150 +213,40 @@ def figure(
         raise UsageError(f"found {len(results)} results, expected at most {MOST} in one figure")
     if legends and len(legends) != len(results):
         raise UsageError(
-            f"found {len(legends)} --legend for {len(results)} file(s) of results, "
-            "expected one for each"
+            f"found {len(legends)} --legend for {len(results)} file(s) of results, expected one "
+            "for each"
         )
     kind = kind or results[0].kind()
     if kind not in KINDS:
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
+    if width is not None and not COLUMN / 2 <= width <= 10 * PAGE:
+        raise UsageError(f"found a width of {width:g} cm, expected 4.25 to 170")
     for result in results[1:]:
         if result.kind() != results[0].kind():
             raise InputError(
                 f"{result.path}: this file is for a figure of kind {result.kind()}, "
                 f"{results[0].path} for one of kind {results[0].kind()}"
             )
-    texts = list(legends) or _legends(results)
-    draw: Callable[..., Figure] = globals()[f"_{kind}"]
+    texts = list(map(printable, legends)) or _legends(results)
+    wishes = _Wishes(
+        results, texts, bool(legends), data, quantities, log, ranges or {}, levels, hatch, width
+    )
+    draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
-        if kind in ("sweep", "map"):
-            made = draw(results, texts, data, bool(legends), quantities)
-        else:
-            made = draw(results, texts, data, bool(legends))
-        _adjust(made, log, ranges or {}, width)
-    return made
-
-
-def _is_result(name: str | os.PathLike[str]) -> bool:
-    return os.fspath(name).endswith(".h5")
-
-
-def _new(panels: int, columns: int) -> tuple[Figure, list[Axes]]:
-    """A figure with panels, and letters on them if there are several."""
-    rows = -(-panels // columns)
-    wide = COLUMN if columns == 1 else PAGE
-    made = Figure(figsize=(wide / 2.54, rows * HEIGHT / 2.54))
-    axes = [made.add_subplot(rows, columns, i + 1) for i in range(panels)]
-    if panels > 1:
-        for letter, axis in zip("abcdefghijklmnop", axes, strict=False):
-            axis.set_title(f"({letter})", loc="left")
-    return made, axes
-
-
-def _legend(made: Figure, *axes: Axes) -> None:
-    """Legend above the panels, of the curves of some of them."""
-    found: dict[str, Any] = {}
-    for axis in axes:
-        for handle, text in zip(*axis.get_legend_handles_labels(), strict=True):
-            found.setdefault(text, handle)
-    if _OUTSIDE in found:
-        found[_OUTSIDE] = found.pop(_OUTSIDE)
-    if found:
-        width, height = made.get_size_inches()
-        columns = 2 if width > 4 and len(found) > 2 and max(map(len, found)) < 45 else 1
-        made.legend(list(found.values()), list(found), loc="outside upper left", ncols=columns)
-        # room for its lines
-        made.set_size_inches(width, height + 0.17 * -(-len(found) // columns))
-
-
-def _curve(axis: Axes, number: int, x: Any, y: Any, text: str | None, **options: Any) -> Any:
-    """A curve in a style of its own, by its number; with a marker every so often."""
-    style = list(mpl.rcParams["axes.prop_cycle"])[number % MOST]
-    settings: dict[str, Any] = {**style, "label": text, **options}
-    if "marker" not in options and len(x) > 10:
-        settings["markevery"] = 0.1
-    return axis.plot(x, y, **settings)
-
-
-def _scale(unit: str, *values: Any) -> tuple[float, str]:
-    """Factor and unit in which some values are between 1 and 1000."""
-    if unit not in _SCALED:
-        return 1.0, "" if unit == "1" else unit
-    sizes = [np.nanmax(np.abs(v), initial=0.0) for v in values]
-    largest = max((float(s) for s in sizes if np.isfinite(s)), default=0.0)
-    power = 3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3) if largest > 0 else 0
-    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
-    if unit == "kg":
-        return (1e3, "g") if power < 0 else (1.0, "kg")
-    return 10.0**-power, _PREFIXES[power] + unit
-
-
-def _size(unit: str | None, path: str) -> float:
-    """A unit of measured data in SI units."""
-    if not unit or unit in ("1", "-"):
-        return 1.0
-    known = (*_SCALED, "m/s", "rad/s", "1/s", "kg/m3", "K", "N s", "Hz")
-    if unit in known and unit != "Hz":
-        return 1.0
-    for power, prefix in _PREFIXES.items():
-        if prefix and unit.replace("μ", "µ").startswith(prefix) and unit[1:] in (*known, "g"):
-            return float(10.0**power) * {"Hz": 2 * math.pi, "g": 1e-3}.get(unit[1:], 1.0)
-    if unit in ("g", "Hz", "%"):
-        return {"g": 1e-3, "Hz": 2 * math.pi, "%": 0.01}[unit]
-    raise InputError(f"{path}: unknown unit '{unit}', expected such as s, ms, MPa, rad/s")
-
-
-def _with_unit(text: str, unit: str) -> str:
-    return f"{text} [{unit}]" if unit else text
-
-
-def _name_of(address: str) -> str:
-    """A parameter in words."""
-    group, _, key = address.rpartition(".")
-    words = key.replace("_", " ")
-    known = ("impact", "sphere", "plate", "solver")
-    return f"{group} {words}" if group in known else f"{words} of {group.replace('_', ' ')}"
-
-
-def _label(array: xr.DataArray, unit: str) -> str:
-    name = str(array.name)
-    text = _WORDS.get(name) or array.attrs.get("long_name") or name
-    if "." in name:
-        text = _name_of(name)
-    return _with_unit(text, unit)
-
-
-def _is_geometric(values: Floats) -> bool:
-    """Whether values are in equal ratios, and not in equal steps too."""
-    if len(values) < 3 or not (values > 0).all():
-        return False
-    steps = np.diff(np.log(np.sort(values)))
-    return bool(np.ptp(steps) < 1e-6 * steps.max())
-
-
-def _points(axis: Axes, data: list[Data], x: str, y: str, fx: float, fy: float) -> None:
-    """Measured points with their errors."""
-    for number, one in enumerate(data):
-        (at, at_sigma), (values, sigma) = one.find(x), one.find(y)
-        if at is None or values is None:
-            continue
-        axis.errorbar(
-            fx * at, fy * values,
-            None if sigma is None else fy * sigma, None if at_sigma is None else fx * at_sigma,
-            fmt="osD^v"[number % 5], color="0.3", mfc="white", capsize=1.5, elinewidth=0.7, ls="",
-            label=Path(one.path).stem.replace("_", " "), zorder=5,
-        )  # fmt: skip
-
-
-def _refuse_unused(made: Figure, data: list[Data]) -> Figure:
-    """Measured points that no panel shows are a mistake in their header."""
+        made = draw(wishes)
+        _adjust(made, wishes)
     shown = {text for axis in made.axes for text in axis.get_legend_handles_labels()[1]}
     for one in data:
-        if Path(one.path).stem.replace("_", " ") not in shown:
+        if _stem(one) not in shown:
             raise InputError(
                 f"{one.path}: found the columns {', '.join(one.columns)}, none of which the figure "
                 "shows; expected those of its axes"
             )
     return made
+
+
+def _is_result(name: str | os.PathLike[str]) -> bool:
+    return os.fspath(name).endswith((".h5", ".nml"))
 
 
 # ------------------------------------------------------------------------------- kinds
@@ -320,238 +255,228 @@ def _refuse_unused(made: Figure, data: list[Data]) -> Figure:
 def _courses(results: list[Result]) -> list[dict[str, Any]]:
     """Histories up to the end of contact, and after it."""
     courses = []
+    names = ("indentation", "relative_velocity", "force")
     for result in results:
-        history = result.group("history", "time history (a sweep has none)")
-        end = result.number("contact_time")
-        time = history.time.values
-        course: dict[str, Any] = {"time": time, "end": end}
-        for name in ("indentation", "relative_velocity", "force"):
-            course[name] = history[name].values
+        history = result.group("history", "time history (a sweep has none)", "time", *names)
+        time, end = history.time.values, result.number("contact_time")
+        course: dict[str, Any] = {name: history[name].values for name in names}
+        course |= {"end": end, "contact": slice(None), "ghost": slice(0, 0)}
         if not (course["relative_velocity"].max() > 0 and course["force"].max() > 0):
             raise InputError(f"{result.path}: the history in this file is not that of an impact")
         if np.isfinite(end) and end < time[-1] * (1 - 1e-9):
             n = int(np.searchsorted(time, end))
-            for name in ("indentation", "relative_velocity", "force"):
+            for name in names:
                 course[name] = np.insert(course[name], n, np.interp(end, time, course[name]))
-            course["time"] = np.insert(time, n, end)
-            course["contact"] = slice(None, n + 1)
-            course["ghost"] = slice(n, None)
-        else:
-            course["contact"], course["ghost"] = slice(None), slice(0, 0)
-        courses.append(course)
+            time = np.insert(time, n, end)
+            course |= {"contact": slice(None, n + 1), "ghost": slice(n, None)}
+        courses.append(course | {"time": time})
     return courses
 
 
-def _history(results: list[Result], texts: list[str], data: list[Data], _: bool) -> Figure:
+def _history(wishes: _Wishes) -> Figure:
     """Indentation, velocity and force over time, each over its largest value."""
-    courses = _courses(results)
+    courses = _courses(wishes.results)
     factor, unit = _scale("s", *[course["time"] for course in courses])
     names = {
-        "indentation": r"indentation $s/s_{\max}$",
-        "relative_velocity": r"velocity $-s'/v_0$",
-        "force": r"force $F/F_{\max}$",
+        "indentation": "indentation s/sₘₐₓ",
+        "relative_velocity": "velocity −s′/v₀",
+        "force": "force F/Fₘₐₓ",
     }
-    one = len(results) == 1
-    made, axes = _new(1, 1) if one else _new(3, 3)
-    for i, (result, course, text) in enumerate(zip(results, courses, texts, strict=True)):
+    one = len(courses) == 1
+    if one and wishes.given:
+        raise UsageError("found --legend, which a history of one file does not show")
+    made, axes = _new(wishes, 1 if one else 3, 1 if one else 3)
+    for i, (result, course, text) in enumerate(
+        zip(wishes.results, courses, wishes.texts, strict=True)
+    ):
         end, cor = factor * course["end"], result.number("cor")
-        if not one:
-            ended = f"COR {cor:.4g}, $t_0$ = {end:.4g} {unit}"
-            text += f": {ended if np.isfinite(cor) else 'no separation'}"
-        largest = {
-            "indentation": result.number("max_indentation"),
-            "relative_velocity": -course["relative_velocity"].max(),
-            "force": result.number("max_force"),
-        }
+        ended = np.isfinite(end)
+        text += f": COR {cor:.4g}, t₀ = {end:.4g} {unit}" if ended else ": no separation"
         for k, (name, label) in enumerate(names.items()):
-            axis = axes[0] if one else axes[k]
-            size = largest[name]
-            size = size if np.isfinite(size) else course[name].max()
-            shown = label if one else text
-            number = k if one else i
+            axis, number, shown = (axes[0], k, label) if one else (axes[k], i, text)
+            size = result.number({"indentation": "max_indentation"}.get(name, "max_force"))
+            if name == "relative_velocity" or not np.isfinite(size):
+                size = -course[name][0] if name == "relative_velocity" else course[name].max()
             time, values = factor * course["time"], course[name] / size
-            _curve(
-                axis,
-                number,
-                time[course["contact"]],
-                values[course["contact"]],
-                shown,
-                linestyle="-",
-            )
-            rest = course["ghost"]
-            options = {"linestyle": "--", "marker": ""}
-            _curve(axis, number, time[rest], values[rest], None, **options)
-            if np.isfinite(end):
+            contact, ghost = course["contact"], course["ghost"]
+            _curve(axis, number, time[contact], values[contact], shown, linestyle="-")
+            _curve(axis, number, time[ghost], values[ghost], None, linestyle="--", marker="")
+            if ended:
                 _curve(axis, number, [end], [np.interp(end, time, values)], None, linestyle="")
-            if one or i == 0:
-                _points(axis, data, "time", name, factor, 1.0 / size)
-        if one and np.isfinite(end):
+            if i == 0:
+                _points(axis, wishes.data, "time", name, factor, 1.0 / size)
+        if one and ended:
             axes[0].axvline(end, color="0.5", lw=0.6, ls=":")
-            note = {"fontsize": 8, "va": "center", "xycoords": ("axes fraction", "data")}
+            axes[0].set_title(f"t₀ = {end:.4g} {unit}")
             residual = result.number("residual_ratio")
-            # the lines where the values are, the words far enough apart
-            room = max(0.0, 0.16 - abs(residual - cor)) / 2
-            apart = room if residual > cor else -room
-            for value, shift, words in (
-                (cor, -apart, f"COR {cor:.4g}"),
-                (residual, apart, f"{residual:.4g}"),
-            ):
-                axes[0].axhline(value, color="0.5", lw=0.6, ls=":")
-                axes[0].annotate(words, (1.02, value + shift), **note)  # type: ignore[arg-type]
-            axes[0].set_title(f"$t_0$ = {end:.4g} {unit}")
+            # lines where the values are, words far enough apart
+            room = math.copysign(max(0.0, 0.16 - abs(residual - cor)) / 2, residual - cor)
+            for y, shift, words in ((cor, -room, f"COR {cor:.4g}"), (residual, room, "")):
+                axes[0].axhline(y, color="0.5", lw=0.6, ls=":")
+                axes[0].annotate(words or f"{y:.4g}", (1.02, y + shift), va="center",
+                                 xycoords=("axes fraction", "data"))  # fmt: skip
     for axis, label in zip(axes, ["normalised response"] if one else names.values(), strict=True):
-        axis.set_xlabel(_with_unit("time", unit))
+        axis.set_xlabel(f"time [{unit}]")
         axis.set_ylabel(label)
         axis.set_xlim(0, factor * max(course["time"][-1] for course in courses))
     _legend(made, axes[0])
-    return _refuse_unused(made, data)
+    return made
 
 
-def _loop(results: list[Result], texts: list[str], data: list[Data], given: bool) -> Figure:
+def _loop(wishes: _Wishes) -> Figure:
     """Force over indentation up to the end of contact, with the energy lost."""
-    courses = _courses(results)
+    courses = _courses(wishes.results)
     fx, x_unit = _scale("m", *[course["indentation"] for course in courses])
     fy, y_unit = _scale("N", *[course["force"] for course in courses])
-    made, (axis,) = _new(1, 1)
-    for i, (result, course, text) in enumerate(zip(results, courses, texts, strict=True)):
+    made, (axis,) = _new(wishes, 1, 1)
+    for i, (result, course, text) in enumerate(
+        zip(wishes.results, courses, wishes.texts, strict=True)
+    ):
         lost = result.number("hysteresis_energy")
         # three times the stated error of cor, as an energy
-        error = 6.0 * result.number("initial_energy") * result.number("cor_error")
-        shown = max(lost, error) if np.isfinite(error) else lost
-        factor, unit = _scale("J", shown)
+        error = np.nan_to_num(6.0 * result.number("initial_energy") * result.number("cor_error"))
+        factor, unit = _scale("J", max(lost, error))
         words = f"energy loss {factor * lost:.4g} {unit}"
         if abs(lost) < error:
             words = f"energy loss < {factor * error:.1g} {unit}"
-        parts = [text] if len(results) > 1 or given else []
-        part = course["contact"]
-        _curve(axis, i, fx * course["indentation"][part], fy * course["force"][part],
+        parts = [text] if len(courses) > 1 or wishes.given else []
+        contact = course["contact"]
+        _curve(axis, i, fx * course["indentation"][contact], fy * course["force"][contact],
                ", ".join([*parts, words] if np.isfinite(lost) else parts), marker="")  # fmt: skip
-    _points(axis, data, "indentation", "force", fx, fy)
+    _points(axis, wishes.data, "indentation", "force", fx, fy)
     axis.set_xlabel(_with_unit("indentation", x_unit))
     axis.set_ylabel(_with_unit("contact force", y_unit))
     axis.set_xlim(left=0)
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]) if data else 0)
+    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]) if wishes.data else 0)
     _legend(made, axis)
-    return _refuse_unused(made, data)
+    return made
 
 
-def _moduli(results: list[Result], texts: list[str], data: list[Data], _: bool) -> Figure:
+def _moduli(wishes: _Wishes) -> Figure:
     """Relaxation modulus over time, storage and loss modulus and loss tangent over frequency."""
+    columns = ("relaxation_modulus", "storage_modulus", "loss_modulus", "loss_tangent")
     curves = []
-    for result, text in zip(results, texts, strict=True):
-        relaxation = result.group("relaxation", "moduli (vcor material makes a file of them)")
-        dynamic = result.group("dynamic", "moduli")
+    several = len(wishes.results) > 1
+    for result, text in zip(wishes.results, wishes.texts, strict=True):
+        needed = "moduli (vcor material makes a file of them)"
+        both = [result.group("relaxation", needed, "time", columns[0]),
+                result.group("dynamic", needed, "frequency", *columns[1:])]  # fmt: skip
+        ends = [
+            float(both[0].attrs.get(key, math.nan)) for key in ("contact_time", "min_frequency")
+        ]
         # what does not relax is no curve
-        names = [str(name) for name in dynamic.material.values
-                 if (dynamic.loss_modulus.sel(material=name) > 0).any()]  # fmt: skip
-        end = float(relaxation.attrs.get("contact_time", math.nan))
-        low = float(relaxation.attrs.get("min_frequency", math.nan))
-        for name in names:
-            words = name if len(results) == 1 else text if len(names) == 1 else f"{text}: {name}"
-            one = xr.merge([relaxation.sel(material=name, drop=True).drop_vars("in_window"),
-                            dynamic.sel(material=name, drop=True).drop_vars("in_window")],
-                           combine_attrs="drop")  # fmt: skip
-            curves.append((words, one, end, low))
+        loss = both[1].loss_modulus
+        names = [name for name in loss.material.values if (loss.sel(material=name) > 0).any()]
         if not names:
             raise InputError(f"{result.path}: no material in this file relaxes")
+        for name in names:
+            words = printable(str(name))
+            if several or wishes.given:
+                words = text if len(names) == 1 else f"{text}: {words}"
+            curves.append((words, [one.sel(material=name) for one in both], ends))
     if len(curves) > MOST:
         raise InputError(f"found {len(curves)} materials, expected at most {MOST} in one figure")
-    factor, unit = _scale("Pa", *[one.storage_modulus.values for _, one, *_ in curves])
-    columns = ("relaxation_modulus", "storage_modulus", "loss_modulus", "loss_tangent")
+    factor, unit = _scale("Pa", *[both[1].storage_modulus.values for _, both, _ in curves])
     single = len(curves) == 1
-    made, axes = _new(2, 2) if single else _new(4, 2)
+    if single and wishes.given:
+        raise UsageError("found --legend, which moduli of one material do not show")
+    made, axes = _new(wishes, 2 if single else 4, 2)
     if single:
         axes = [axes[0], axes[1], axes[1], axes[1].twinx()]
-    places = dict(zip(columns, axes, strict=True))
-    for i, (text, one, end, low) in enumerate(curves):
-        for k, name in enumerate(columns):
-            axis = places[name]
-            over = "time" if k == 0 else "frequency"
+    for i, (text, both, ends) in enumerate(curves):
+        if several and np.isfinite(ends).all():
+            time, shown = _scale("s", ends[0])
+            text += f": t₀ = {time * ends[0]:.4g} {shown}, ωₘᵢₙ = {ends[1]:.4g} rad/s"
+        for k, (axis, name) in enumerate(zip(axes, columns, strict=True)):
+            number, label = (max(0, k - 1), name.replace("_", " ")) if single else (i, text)
+            one, over = (both[0], "time") if k == 0 else (both[1], "frequency")
             fy = 1.0 if name == "loss_tangent" else factor
-            label = text if not single else name.replace("_", " ") if k > 0 else None
             values = fy * one[name].where(one[name] > 0)
-            number = max(0, k - 1) if single else i
-            _curve(axis, number, one[over], values, label, marker="")
-            mark, where = (end, "$t_0$") if k == 0 else (low, r"$\omega_{\min}$")
-            if np.isfinite(mark) and not (single and k > 1):
-                axis.axvline(mark, color="0.5", lw=0.6, ls=":")
-                if single or len(results) == 1:
-                    scale, shown = _scale("s", mark) if k == 0 else (1.0, "rad/s")
-                    axis.set_title(f"{where} = {scale * mark:.4g} {shown}")
+            _curve(axis, number, one[over], values, None if single and k == 0 else label, marker="")
+            mark = ends[k > 0]
+            if np.isfinite(mark) and not (single and k > 1) and (several or i == 0):
+                color = axis.lines[-1].get_color() if several else "0.5"
+                axis.axvline(mark, color=color, lw=0.6, ls=":")
+                if not several:
+                    time, shown = _scale("s", mark) if k == 0 else (1.0, "rad/s")
+                    axis.set_title(f"{'ωₘᵢₙ' if k else 't₀'} = {time * mark:.4g} {shown}")
             if i == 0:
-                _points(axis, data, over, name, 1.0, fy)
-    for name, axis in places.items():
-        over_time = name == "relaxation_modulus"
-        axis.set_xlabel(_with_unit("time", "s") if over_time else "angular frequency [rad/s]")
+                _points(axis, wishes.data, over, name, 1.0, fy)
+    for k, (axis, name) in enumerate(zip(axes, columns, strict=True)):
+        axis.set_xlabel("angular frequency [rad/s]" if k else "time [s]")
         axis.set_xscale("log")
+        words = name.replace("_", " ")
         if name == "loss_tangent":
-            axis.set_ylabel("loss tangent")
+            axis.set_ylabel(words)
             axis.set_ylim(bottom=0)
-        else:
-            low, high = axis.dataLim.intervaly
-            axis.set_yscale("log" if high > 10 * low else "linear")
-            words = "storage and loss modulus" if single and not over_time else name
-            axis.set_ylabel(_with_unit(words.replace("_", " "), unit))
-            _label_short_decades(axis)
+            continue
+        low, high = axis.dataLim.intervaly
+        axis.set_yscale("log" if high > 10 * low else "linear")
+        axis.set_ylabel(_with_unit("storage and loss modulus" if single and k else words, unit))
     _legend(made, *(axes[1:] if single else axes[:1]))
-    return _refuse_unused(made, data)
+    return made
 
 
-def _sweep(
-    results: list[Result], texts: list[str], data: list[Data], given: bool, names: Sequence[str]
-) -> Figure:
+def _sweep(wishes: _Wishes) -> Figure:
     """Quantities over a parameter; of two parameters a curve for each value of one."""
+    results, names = wishes.results, wishes.quantities
     lines: list[tuple[str | None, xr.Dataset]] = []
     across = _across(results[0])
-    for result, text in zip(results, texts, strict=True):
+    for result, text in zip(results, wishes.texts, strict=True):
         if _across(result) != across:
             raise InputError(
                 f"{result.path}: this sweep is over '{_across(result)}', that of the first file "
                 f"over '{across}'"
             )
         if len(result.axes) == 1:
-            lines.append((text if len(results) > 1 or given else None, result.summary))
+            shown = len(results) > 1 or wishes.given
+            lines.append((text if shown else None, result.summary))
             continue
         if len(results) > 1:
-            raise InputError(f"{result.path}: this sweep has two parameters; with several files in "
-                             "one figure expected one")  # fmt: skip
+            raise InputError(
+                f"{result.path}: this sweep has two parameters; with several files in one figure "
+                "expected one"
+            )
         (other,) = (axis for axis in result.axes if axis != across)
         values = result.summary[other]
         if len(values) > MOST:
-            raise InputError(f"{result.path}: a curve for each of the {len(values)} values of "
-                             f"'{other}' is more than the {MOST} that can be told apart; expected "
-                             "--kind map")  # fmt: skip
+            raise InputError(
+                f"{result.path}: a curve for each of the {len(values)} values of '{other}' is more "
+                f"than the {MOST} that can be told apart; expected --kind map"
+            )
         factor, unit = _scale(values.attrs.get("units", ""), values.values)
         lines += [
-            (f"{_name_of(other)} = {factor * float(v):.5g} {unit}".strip(),
-             result.summary.sel({other: v}))
-            for v in values
-        ]  # fmt: skip
-    made, axes = _new(len(names), min(2, len(names)))
+            (
+                f"{_name_of(other)} = {factor * float(value):.5g} {unit}".strip(),
+                result.summary.sel({other: value}),
+            )
+            for value in values
+        ]
+    made, axes = _new(wishes, len(names), min(2, len(names)))
+    lines = [(words, line.sortby(across)) for words, line in lines]
     at = [line[across] for _, line in lines]
     fx, x_unit = _scale(at[0].attrs.get("units", ""), *[one.values for one in at])
-    log = all(_is_geometric(one.values) for one in at)
     for name, axis in zip(names, axes, strict=True):
-        first = [result.column(name) for result in results][0]
-        fy, y_unit = _scale(first.attrs.get("units", ""), *[line[name].values for _, line in lines])
+        unit = [result.column(name) for result in results][0].attrs.get("units", "")
+        fy, y_unit = _scale(unit, *[line[name].values for _, line in lines])
         for i, (words, line) in enumerate(lines):
-            ordered = line.sortby(across)
-            _curve(axis, i, fx * ordered[across], fy * ordered[name], words)
-        _hatch_span(axis, [line for _, line in lines], across, fx)
-        _points(axis, data, across, name, fx, fy)
-        if log:
+            _curve(axis, i, fx * line[across], fy * line[name], words)
+        if wishes.hatch:
+            _hatch_span(axis, [line for _, line in lines], across, fx)
+        _points(axis, wishes.data, across, name, fx, fy)
+        if all(_is_geometric(one.values) for one in at):
             axis.set_xscale("log")
         axis.set_xlabel(_label(at[0], x_unit))
-        axis.set_ylabel(_label(first, y_unit))
+        axis.set_ylabel(_label(results[0].summary[name], y_unit))
     _legend(made, axes[0])
-    return _refuse_unused(made, data)
+    return made
 
 
 def _across(result: Result) -> str:
     """The parameter that a sweep is drawn over: the one with more values."""
     if len(result.axes) not in (1, 2):
-        raise InputError(f"{result.path}: found {len(result.axes)} swept parameters, expected one "
-                         "or two")  # fmt: skip
+        found = len(result.axes)
+        raise InputError(f"{result.path}: found {found} swept parameters, expected one or two")
     return max(result.axes, key=lambda axis: result.summary.sizes[axis])
 
 
@@ -570,95 +495,226 @@ def _hatch_span(axis: Axes, lines: list[xr.Dataset], across: str, factor: float)
                      label=_OUTSIDE, zorder=0)  # fmt: skip
 
 
-def _map(
-    results: list[Result], texts: list[str], data: list[Data], given: bool, names: Sequence[str]
-) -> Figure:
-    """A quantity over two parameters, as filled contours with labelled lines."""
-    result = results[0]
-    if len(results) > 1:
-        raise UsageError(f"a map shows one file of results, found {len(results)}")
+def _map(wishes: _Wishes) -> Figure:
+    """Quantities over two parameters, as filled contours with labelled lines."""
+    result, names = wishes.results[0], wishes.quantities
+    if len(wishes.results) > 1 or wishes.given:
+        found = "--legend" if wishes.given else f"{len(wishes.results)} of them"
+        raise UsageError(f"a map shows one file of results without a legend, found {found}")
     if len(result.axes) != 2 or min(result.summary.sizes[axis] for axis in result.axes) < 2:
-        raise InputError(f"{result.path}: a map needs a sweep of two parameters, with two values "
-                         "of each or more")  # fmt: skip
+        raise InputError(
+            f"{result.path}: a map needs a sweep of two parameters, with two values of each or more"
+        )
     ordered = result.summary.sortby(result.axes)
     x, y = (ordered[axis] for axis in result.axes)
     (fx, x_unit), (fy, y_unit) = (_scale(a.attrs.get("units", ""), a.values) for a in (x, y))
-    made, axes = _new(len(names), min(2, len(names)))
+    made, axes = _new(wishes, len(names), min(2, len(names)))
     for name, axis in zip(names, axes, strict=True):
         column = result.column(name)
         fz, z_unit = _scale(column.attrs.get("units", ""), column.values)
         z = np.ma.masked_invalid(fz * ordered[name].values.T)
-        filled = axis.contourf(fx * x, fy * y, z, levels=10)
+        levels = _levels(wishes, float(z.min()), float(z.max()))
+        extend = ("min" if z.min() < levels[0] else "") + ("max" if z.max() > levels[-1] else "")
+        norm = (LogNorm if "z" in (wishes.log or "") else Normalize)(levels[0], levels[-1])
+        filled = axis.contourf(fx * x, fy * y, z, levels=levels, norm=norm,
+                               extend={"": "neither", "minmax": "both"}.get(extend, extend)
+                               )  # fmt: skip
+        for values, setter in ((x, axis.set_xscale), (y, axis.set_yscale)):
+            if _is_geometric(values.values):
+                setter("log")
         if np.ptp(z) > 0:
-            drawn = axis.contour(fx * x, fy * y, z, levels=filled.levels, colors="0.1")
-            axis.clabel(drawn, fontsize=7)
-        made.colorbar(filled, ax=axis, label=_label(column, z_unit))
-        if "validity" in ordered and (ordered.validity == "outside").any():
+            drawn = axis.contour(fx * x, fy * y, z, levels=levels, colors="0.1")
+            for text in axis.clabel(drawn, fontsize=7, inline=False, fmt="%.4g", colors="k"):
+                text.set_path_effects([withStroke(linewidth=1.6, foreground="w")])
+                u, v = axis.transAxes.inverted().transform(
+                    axis.transData.transform(text.get_position())
+                )
+                # no label over the frame
+                text.set_visible(0.08 < u < 0.92 and 0.05 < v < 0.95)
+        bar = made.colorbar(filled, ax=axis, label=_label(column, z_unit), ticks=levels)
+        bar.ax.minorticks_off()
+        bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
+        if wishes.hatch and "validity" in ordered and (ordered.validity == "outside").any():
             outside = (ordered.validity == "outside").values.T.astype(float)
             with mpl.rc_context({"hatch.color": "0.55"}):
                 axis.contourf(fx * x, fy * y, outside, levels=[0.5, 1.5], colors="none",
                               hatches=["////"])  # fmt: skip
             axis.fill([], [], fill=False, hatch="////", ec="0.55", lw=0, label=_OUTSIDE)
-        for one in data:
+        for one in wishes.data:
             (px, _), (py, _), (pz, _) = (one.find(n) for n in (*result.axes, name))
             if px is None or py is None:
                 continue
             options = {"color": "white"} if pz is None else {"c": fz * pz, "norm": filled.norm}
             axis.scatter(fx * px, fy * py, s=18, edgecolors="k", linewidths=0.6, zorder=5,
-                         label=Path(one.path).stem.replace("_", " "), **options)  # fmt: skip
-        for values, setter in ((x, axis.set_xscale), (y, axis.set_yscale)):
-            if _is_geometric(values.values):
-                setter("log")
+                         label=_stem(one), **options)  # fmt: skip
         axis.set_xlabel(_label(x, x_unit))
         axis.set_ylabel(_label(y, y_unit))
-        _label_short_decades(axis)
     _legend(made, axes[0])
-    return _refuse_unused(made, data)
+    return made
+
+
+def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
+    """Levels of a map: those that are wanted, or round numbers over its range."""
+    bounds = wishes.ranges.get("z", (None, None))
+    low, high = (end if end is not None else e for end, e in zip(bounds, (low, high), strict=True))
+    if not isinstance(wishes.levels, int):
+        levels = sorted({float(level) for level in wishes.levels})
+    elif "z" in (wishes.log or ""):
+        if not 0 < low < high:
+            raise InputError(f"found values from {low:g} to {high:g}, of which no logarithm is")
+        ends = math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1
+        levels = [m * 10.0**k for k in range(*ends) for m in (1, 2, 5)]
+        first = max(i for i, level in enumerate(levels) if level <= low * (1 + 1e-9))
+        levels = levels[first : next(i for i, v in enumerate(levels) if v >= high * (1 - 1e-9)) + 1]
+        if len(levels) > 2 * wishes.levels:
+            levels = [level for level in levels if f"{level:e}".startswith("1.0")]
+    else:
+        ticks = MaxNLocator(wishes.levels, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
+        levels = [float(round(tick, 12)) for tick in ticks]
+    if len(levels) < 2:
+        raise UsageError("found one level, expected two or more")
+    return levels
 
 
 # ----------------------------------------------------------------------------- details
 
 
-def _label_short_decades(axis: Axes) -> None:
-    """Plain numbers where a logarithmic axis has less than two decades."""
-    for which in (axis.xaxis, axis.yaxis):
-        low, high = sorted(which.get_view_interval())
-        if which.get_scale() != "log" or not 0 < low < high < 100 * low:
+def _new(wishes: _Wishes, panels: int, columns: int) -> tuple[Figure, list[Axes]]:
+    """A figure with panels, and letters on them if there are several."""
+    rows = -(-panels // columns)
+    wide = wishes.width or (COLUMN if columns == 1 else PAGE)
+    made = Figure(figsize=(wide / 2.54, rows * HEIGHT / 2.54))
+    axes = [made.add_subplot(rows, columns, i + 1) for i in range(panels)]
+    if panels > 1:
+        for letter, axis in zip("abcdefghijklmnop", axes, strict=False):
+            axis.set_title(f"({letter})", loc="left")
+    return made, axes
+
+
+def _legend(made: Figure, *axes: Axes) -> None:
+    """Legend above the panels, of the curves of some of them."""
+    found: dict[str, Any] = {}
+    for axis in axes:
+        for handle, text in zip(*axis.get_legend_handles_labels(), strict=True):
+            found.setdefault(text, handle)
+    if _OUTSIDE in found:
+        found[_OUTSIDE] = found.pop(_OUTSIDE)
+    if not found:
+        return
+    width, height = made.get_size_inches()
+    # letters that a line has room for
+    room = round(16.5 * width) - 7
+    columns = 2 if len(found) > 2 and max(map(len, found)) < room / 2 - 7 else 1
+    texts = []
+    for text in found:
+        first, *rest = textwrap.wrap(text, room) or [""]
+        cut = rest[1:] and f"{rest[0][: room - 2]} …"
+        texts.append("\n".join([first, *([cut] if cut else rest)]))
+    lines = -(-sum(text.count("\n") + 1 for text in texts) // columns)
+    above = 0.165 * lines + 0.06
+    made.set_size_inches(width, height + above)
+    made.set_layout_engine("constrained", rect=(0, 0, 1, height / (height + above)))
+    made.legend(list(found.values()), texts, loc="upper left", ncol=columns, borderaxespad=0.2)
+
+
+def _curve(axis: Axes, number: int, x: Any, y: Any, text: str | None, **options: Any) -> None:
+    """A curve in a style of its own, by its number; with a marker every so often."""
+    settings = {**list(mpl.rcParams["axes.prop_cycle"])[number % MOST], "label": text, **options}
+    if "marker" not in options and len(x) > 10:
+        settings["markevery"] = (0.02 * (1 + number % 3), 0.1)
+    axis.plot(x, y, **settings)
+
+
+def _points(axis: Axes, data: list[Data], x: str, y: str, fx: float, fy: float) -> None:
+    """Measured points with their errors."""
+    for number, one in enumerate(data):
+        (at, at_sigma), (values, sigma) = one.find(x), one.find(y)
+        if at is None or values is None:
             continue
-        power = 10.0 ** math.floor(math.log10(low))
-        marks = np.array([n * power * 10**k for k in range(3) for n in (1, 2, 5)])
-        marks = marks[(marks >= low * 0.999) & (marks <= high * 1.001)]
-        if len(marks) > 1:
-            which.set_major_locator(FixedLocator(list(marks)))
-            which.set_major_formatter(lambda value, _: f"{value:g}")
-            which.set_minor_formatter(lambda *_: "")
+        axis.errorbar(
+            fx * at, fy * values,
+            None if sigma is None else fy * sigma, None if at_sigma is None else fx * at_sigma,
+            fmt="osD^v"[number % 5], color="0.3", mfc="white", capsize=1.5, elinewidth=0.7, ls="",
+            label=_stem(one), zorder=5,
+        )  # fmt: skip
 
 
-def _adjust(
-    made: Figure,
-    log: str | None,
-    ranges: dict[str, tuple[float | None, float | None]],
-    width: float | None,
-) -> None:
-    """What the user wants otherwise: logarithmic axes, ranges, width."""
+def _stem(data: Data) -> str:
+    """Measured data in the legend."""
+    return printable(Path(data.path).stem.replace("_", " "))
+
+
+def _scale(unit: str, *values: Any) -> tuple[float, str]:
+    """Factor and unit in which some values are between 1 and 1000."""
+    if unit not in _SCALED:
+        return 1.0, "" if unit == "1" else printable(unit)
+    sizes = [np.nanmax(np.abs(v), initial=0.0) for v in values]
+    largest = max((float(s) for s in sizes if np.isfinite(s)), default=0.0)
+    power = 3 * math.floor(math.log10(largest * (1 + 1e-9)) / 3) if largest > 0 else 0
+    power = min(max(power, min(PREFIXES)), max(PREFIXES))
+    if unit == "kg":
+        return (1e3, "g") if power < 0 else (1.0, "kg")
+    return 10.0**-power, PREFIXES[power] + unit
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return f"{text} [{unit}]" if unit else text
+
+
+def _name_of(address: str) -> str:
+    """A parameter in words."""
+    group, _, key = printable(address).replace("_", " ").rpartition(".")
+    return f"{group} {key}"
+
+
+def _label(array: xr.DataArray, unit: str) -> str:
+    name = str(array.name)
+    text = _WORDS.get(name) or printable(str(array.attrs.get("long_name") or name))
+    return _with_unit(_name_of(name) if "." in name else text, unit)
+
+
+def _is_geometric(values: Floats) -> bool:
+    """Whether values are in equal ratios, and not in equal steps too."""
+    if len(values) < 3 or not (values > 0).all():
+        return False
+    steps = np.diff(np.log(np.sort(values)))
+    return bool(np.ptp(steps) < 1e-6 * steps.max())
+
+
+def _adjust(made: Figure, wishes: _Wishes) -> None:
+    """What the user wants otherwise: logarithmic axes and ranges; nobody's text is a formula."""
     for axis in made.axes:
+        texts = [axis.title, axis.xaxis.label, axis.yaxis.label, *axis.texts]
+        for text in texts:
+            text.set_parse_math(False)
         if axis.get_label() == "<colorbar>":
             continue
-        if log is not None:
-            axis.set_xscale("log" if "x" in log else "linear")
-            axis.set_yscale("log" if "y" in log else "linear")
-            _label_short_decades(axis)
-        if "x" in ranges:
-            axis.set_xlim(*ranges["x"])
-        if "y" in ranges:
-            axis.set_ylim(*ranges["y"])
-        if "z" in ranges:
-            for drawn in axis.collections:
-                if drawn.get_array() is not None:
-                    drawn.set_clim(*ranges["z"])
-    if width:
-        _, height = made.get_size_inches()
-        made.set_size_inches(width / 2.54, height)
+        for letter, which in (("x", axis.xaxis), ("y", axis.yaxis)):
+            if wishes.log is not None:
+                scale = "log" if letter in wishes.log else "linear"
+                axis.set(**{f"{letter}scale": scale})
+                if scale == "log" and min(which.get_view_interval()) <= 0:
+                    axis.autoscale(axis=letter)  # type: ignore[arg-type]
+            if letter in wishes.ranges:
+                axis.set(**{f"{letter}lim": wishes.ranges[letter]})
+            _label_short_decades(which)
+    for legend in made.legends:
+        for text in legend.get_texts():
+            text.set_parse_math(False)
+
+
+def _label_short_decades(which: Any) -> None:
+    """Plain numbers where a logarithmic axis has less than two decades."""
+    low, high = sorted(which.get_view_interval())
+    if which.get_scale() != "log" or not 0 < low < high < 100 * low:
+        return
+    power = 10.0 ** math.floor(math.log10(low))
+    marks = [n * power * 10**k for k in range(3) for n in (1, 2, 5)]
+    marks = [mark for mark in marks if low * 0.999 <= mark <= high * 1.001]
+    if len(marks) > 1:
+        which.set_major_locator(FixedLocator(marks))
+        which.set_major_formatter(lambda value, _: f"{value:g}")
+        which.set_minor_formatter(lambda *_: "")
 
 
 def _legends(results: list[Result]) -> list[str]:
@@ -669,17 +725,29 @@ def _legends(results: list[Result]) -> list[str]:
     values = [_values(result.case) for result in results]
     keys = [key for key in values[0] if len({one.get(key) for one in values}) > 1]
     keys = [key for key in keys if not key.startswith(("case.", "output."))]
-    words = [", ".join(f"{key} = {one.get(key)}" for key in keys) for one in values]
-    if 0 < len(keys) <= 3 and len(set(words)) == len(words):
-        return words
-    return [Path(result.path).stem for result in results]
+    if 0 < len(keys) <= 3:
+        units = {}
+        for key in keys:
+            with contextlib.suppress(Error):
+                units[key] = Handle(results[0].case, results[0].path).describe(key).unit
+        words = [
+            ", ".join(
+                f"{key.rpartition('.')[2].replace('_', ' ')} = "
+                f"{one.get(key, '').removesuffix('.0')} {units.get(key, '')}".strip()
+                for key in keys
+            )
+            for one in values
+        ]
+        if len(set(words)) == len(words):
+            return words
+    return [printable(Path(result.path).stem) for result in results]
 
 
 def _values(case: str) -> dict[str, str]:
     """Addresses and values of a case as it is printed."""
     found: dict[str, str] = {}
     group = ""
-    for line in case.splitlines():
+    for line in map(printable, case.splitlines()):
         if line.startswith("&"):
             group = line[1:].strip()
         key, mark, value = (part.strip() for part in line.partition(" = "))
@@ -697,94 +765,90 @@ def save(made: Figure, path: str | os.PathLike[str]) -> None:
     """Write a figure as SVG, PDF or PNG; the same results give the same bytes."""
     path = Path(path)
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-    try:
-        with mpl.style.context(STYLE):
-            made.savefig(path, metadata=dated.get(path.suffix))
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from None
+    bytes_ = io.BytesIO()
+    with mpl.style.context(STYLE):
+        made.savefig(bytes_, format=path.suffix[1:], metadata=dated.get(path.suffix))
+    _command.write(path, bytes_.getvalue())
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="vcor plot",
-        description="Draw figures of results: FILE.h5 of vcor run or vcor material, and measured "
-        "points in FILE.csv with a header such as: velocity [m/s], cor, cor_sigma",
+def _parser() -> _command.Parser:
+    parser = _command.Parser(
+        "plot",
+        description="Draw figures of results: FILE.h5 of vcor run or vcor material, or materials "
+        "in FILE.nml of vcor fit; and measured points over them in FILE.csv with a header such as: "
+        "velocity [m/s], cor, cor_sigma",
     )
     add = parser.add_argument
-    add("files", nargs="+", metavar="FILE", help="results (.h5), and measured points (.csv)")
+    add("files", nargs="+", metavar="FILE", help="results (.h5, .nml), and measured points (.csv)")
     add("--kind", choices=KINDS, help="kind of figure; default: what the first file is for")
-    add("--quantity", metavar="NAME,NAME", default="cor", help="columns for sweeps and maps")
+    add("--quantity", metavar="NAME,NAME", help="columns for sweeps and maps; default: cor")
     add("--legend", metavar="TEXT", action="append", default=[], help="a text for each result")
-    add("--log", metavar="AXES", help="logarithmic axes: x, y, xy, or none")
+    add("--log", metavar="AXES", help="logarithmic axes: x, y, z (levels), xy ..., or none")
     add("--range", metavar="AXIS=FROM:TO", action="append", default=[],
-        help="range of x, y or the colours z, in the unit that is drawn")  # fmt: skip
+        help="range of x, y or the levels z, in the unit that is drawn; repeatable")  # fmt: skip
+    add("--levels", metavar="N|Z,Z,...", help="levels of a map, or about how many; default: 8")
+    add("--no-hatch", action="store_true", help="do not hatch where the model does not hold")
     add("--width", metavar="CM", type=float, help=f"width; default: {COLUMN} or {PAGE}")
     add("--output", metavar="PATH", help="NAME.svg, .pdf or .png, or a folder")
     add("--format", choices=FORMATS, help="format in a folder; default: svg")
     add("--script", action="store_true", help="leave the Python script that makes the figure")
     add("--quiet", action="store_true", help="say nothing of what is written")
-    add("--version", action="version", version=f"vcor {_library.__version__}")
     return parser
 
 
-def _ranges(words: Sequence[str]) -> dict[str, tuple[float | None, float | None]]:
-    ranges = {}
-    for word in words:
-        found = re.fullmatch(r"([xyz])=([^:]*):([^:]*)", word)
-        try:
-            if not found:
-                raise ValueError
-            low, high = (float(end) if end else None for end in found.groups()[1:])
-        except ValueError:
-            raise UsageError(f"--range {word}: expected such as x=0.1:10 or y=0:") from None
-        ranges[found[1]] = (low, high)
-    return ranges
-
-
-def _target(output: str | None, format_: str | None, usual: str) -> Path:
-    """File of the figure."""
-    if output and Path(output).suffix[1:] in FORMATS and not Path(output).is_dir():
-        if format_ and Path(output).suffix[1:] != format_:
-            raise UsageError(f"the name '{output}' contradicts --format {format_}")
-        return Path(output)
-    folder = Path(output or ".")
+def _settings(options: Any) -> dict[str, Any]:
+    """Arguments of `figure` that differ from their defaults."""
+    settings: dict[str, Any] = {"kind": options.kind, "width": options.width}
+    settings["quantities"] = options.quantity.split(",") if options.quantity else None
+    settings["legends"] = options.legend or None
+    settings["hatch"] = False if options.no_hatch else None
+    if options.log is not None:
+        settings["log"] = "" if options.log == "none" else options.log
+        if options.log != "none" and (not options.log or set(options.log) - set("xyz")):
+            raise UsageError(f"--log {options.log}: expected letters among x, y, z, or none")
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{folder}: {error.strerror}") from None
-    return folder / f"{usual}.{format_ or 'svg'}"
+        word = options.levels
+        if word:
+            levels = [float(level) for level in word.split(",")]
+            settings["levels"] = int(word) if word.isdigit() and 1 < int(word) <= 50 else levels
+        ranges = {}
+        for word in options.range:
+            name, _, ends = word.partition("=")
+            low, high = (float(end) if end else None for end in ends.split(":"))
+            if name not in ("x", "y", "z") or low == high or not _is_finite(low, high):
+                raise ValueError
+            ranges[name] = (low, high)
+    except ValueError:
+        raise UsageError(
+            f"found '{word}', expected a range such as x=0.1:10 or y=0:, or levels such as 10 or "
+            "0.2,0.5"
+        ) from None
+    settings["ranges"] = ranges or None
+    return {name: value for name, value in settings.items() if value is not None}
+
+
+def _is_finite(*ends: float | None) -> bool:
+    return all(end is None or math.isfinite(end) for end in ends)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Command `vcor plot`; exits with the codes of the program."""
-    options = _parser().parse_args(arguments)
-    settings: dict[str, Any] = {"quantities": options.quantity.split(",")}
-    for name in ("kind", "width"):
-        if getattr(options, name) is not None:
-            settings[name] = getattr(options, name)
-    if options.legend:
-        settings["legends"] = options.legend
-    if options.log is not None:
-        settings["log"] = "" if options.log == "none" else options.log
-    try:
-        if options.range:
-            settings["ranges"] = _ranges(options.range)
+    with _command.one_line(), warnings.catch_warnings():
+        # such as letters that the font does not have
+        warnings.simplefilter("ignore")
+        options = _parser().options(arguments)
+        settings = _settings(options)
         made = figure(options.files, **settings)
         first = next(name for name in options.files if _is_result(name))
-        kind = options.kind or Result(first).kind()
-        target = _target(options.output, options.format, f"{Path(first).stem}_{kind}")
-        if any(target.resolve() == Path(name).resolve() for name in options.files):
-            raise InputError(f"{target}: the figure would replace this file")
-        save(made, target)
-        written = [target]
+        usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
+        path = _command.place(options.output, usual, FORMATS, options.format, options.files)
+        save(made, path)
+        written = [path]
         if options.script:
-            written.append(target.with_suffix(".py"))
-            written[-1].write_text(_script(options.files, settings, target), encoding="utf-8")
-    except Error as error:
-        sys.stderr.write(f"vcor: error: {error}\n")
-        sys.exit(error.code)
-    if not options.quiet:
-        sys.stdout.write("".join(f"written {path}\n" for path in written))
+            written.append(path.with_suffix(".py"))
+            _command.write(written[-1], _script(options.files, settings, path).encode())
+        if not options.quiet:
+            sys.stdout.write("".join(f"written {path}\n" for path in written))
 
 
 def _script(files: Sequence[str], settings: dict[str, Any], target: Path) -> str:

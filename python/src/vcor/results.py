@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import mmap
 import os
+import struct
+import zlib
+from pathlib import Path
 
 import xarray as xr
 
 from ._library import FileError, InputError
+
+#: How files of HDF5 begin, and how those of the program end
+_HDF5, _SEAL = b"\x89HDF\r\n\x1a\n", b"vcorseal"
 
 
 def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  # noqa: A001
@@ -29,21 +36,61 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     Raises
     ------
     FileError
-        The file cannot be read.
+        The file cannot be read, or it is damaged.
     InputError
-        It has no such group.
+        It is no HDF5 file, or has no such group.
     """
     path = os.fspath(path)
+    _check(path)
     try:
         with xr.open_dataset(path, engine="h5netcdf") as root:
             attrs = dict(root.attrs)
         with xr.open_dataset(path, engine="h5netcdf", group=group) as data:
             result = data.load()
-    except FileNotFoundError:
-        raise FileError(f"{path}: there is no such file") from None
     except (KeyError, OSError) as error:
-        kind = InputError if "unable to open" not in str(error).lower() else FileError
-        raise kind(f"{path}: there is no group '{group}' of vcor in this file") from error
+        if isinstance(error, KeyError) or "group not found" in str(error):
+            raise InputError(f"{path}: there is no group '{group}' of vcor in this file") from error
+        raise FileError(f"{path}: this file cannot be read: {error}") from None
+    except (ValueError, TypeError, RuntimeError, AttributeError) as error:
+        raise FileError(f"{path}: this file cannot be read: {error}") from None
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)
     return result.assign_attrs(attrs | dict(result.attrs))
+
+
+def _check(path: str) -> None:
+    """Refuse what is no HDF5 file, or damaged: some damage lets HDF5 crash.
+
+    A file of the program ends with parts that its check sum leaves out, their number, the sum
+    (CRC-32 of all bytes before the sum but those parts) and a mark. Who changes it through HDF5
+    takes the mark off.
+    """
+    try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise FileError(f"{path}: found a folder or a device, expected a file of results")
+        with Path(path).open("rb") as file:
+            if file.read(len(_HDF5)) != _HDF5:
+                raise InputError(f"{path}: this is no HDF5 file")
+            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
+                if data[-8:] == _SEAL and not _is_sealed(data):
+                    raise FileError(f"{path}: this file is damaged: its check sum is wrong")
+    except FileNotFoundError:
+        raise FileError(f"{path}: there is no such file") from None
+    except OSError as error:
+        if isinstance(error, FileError):
+            raise
+        raise FileError(f"{path}: {error.strerror}") from None
+
+
+def _is_sealed(data: mmap.mmap) -> bool:
+    """Whether the check sum at the end of a file is that of its bytes."""
+    count, expected = struct.unpack("<2q", data[-24:-8])
+    end = len(data) - 24 - 16 * count
+    if not 0 <= end <= len(data) - 24:
+        return False
+    number, at = 0, 0
+    for first, length in struct.iter_unpack("<2q", data[end:-24]):
+        number = zlib.crc32(data[at:first], number)
+        at = first + length
+    number = zlib.crc32(data[at:end], number)
+    return bool(zlib.crc32(data[end:-16], number) == expected)

@@ -1,0 +1,148 @@
+"""What the commands share: options, errors of one line, names of files, and files written whole."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import importlib
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+from ._library import Error, FileError, UsageError, __version__
+
+
+class Parser(argparse.ArgumentParser):
+    """Options of a command; a mistake is a `UsageError`."""
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
+        self.add_argument("--version", action="version", version=f"vcor {__version__}")
+
+    def error(self, message: str) -> NoReturn:
+        """Refuse the options."""
+        raise UsageError(f"{message} ({self.prog} --help says more)")
+
+    def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:
+        """Options of the command line, without control characters in any."""
+        options = self.parse_args(arguments)
+        for word in vars(options).values():
+            for text in [word] if isinstance(word, str) else word if isinstance(word, list) else []:
+                if printable(text) != text:
+                    raise UsageError(
+                        f"found a control character in '{printable(text)}', expected a text that "
+                        "can be read on one line"
+                    )
+        if (flaw := name_flaw(getattr(options, "output", None) or "")) != "":
+            raise UsageError(f"--output: the name {flaw}, expected another name")
+        return options
+
+
+@contextlib.contextmanager
+def one_line() -> Iterator[None]:
+    """An error in this context is one line on stderr and the exit code of the program."""
+    try:
+        yield
+    except Error as error:
+        sys.stderr.write(f"vcor: error: {printable(str(error))}\n")
+        sys.exit(error.code)
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _run(name: str) -> None:
+    """Run a command, if what it needs is there."""
+    with one_line():
+        try:
+            module = importlib.import_module(f"vcor.{name}")
+        except ModuleNotFoundError as error:
+            raise UsageError(
+                f"vcor {name} needs the Python package {error.name}, expected: "
+                f"pip install {error.name}"
+            ) from None
+        module.main()
+
+
+def plot() -> None:
+    """Run `vcor plot`."""
+    _run("plot")
+
+
+def printable(text: str) -> str:
+    """A text on one line: `?` for each character that has no shape."""
+    return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
+
+
+def name_flaw(name: str) -> str:
+    """What is wrong with the name of a file to be written, empty if nothing is."""
+    for part in name.split("/"):
+        if part[:1] in ("|", "<") and part:
+            return f"'{name}' has a part that begins with '{part[0]}', a pipe to other programs"
+    return ""
+
+
+def place(
+    output: str | None,
+    usual: str,
+    endings: Sequence[str],
+    ending: str | None,
+    inputs: Sequence[str],
+) -> Path:
+    """Where the file of a command goes: a name, or a folder, which is made if it is not there.
+
+    Parameters
+    ----------
+    output
+        Value of --output; a name without an ending, or with a slash at its end, is a folder.
+    usual
+        Name in a folder, without its ending.
+    endings
+        Endings that the file may have; the first one is the usual one.
+    ending
+        Value of --format.
+    inputs
+        Files that must not be replaced.
+    """
+    path = Path(output or ".")
+    if not output or output.endswith("/") or path.is_dir() or path.suffix in ("", "."):
+        path = path / f"{usual}.{ending or endings[0]}"
+    elif path.suffix[1:] not in endings:
+        raise UsageError(
+            f"unknown format '{path.suffix[1:]}' of '{output}', known: {', '.join(endings)}; "
+            "the name of a folder ends with a slash"
+        )
+    elif ending and path.suffix[1:] != ending:
+        raise UsageError(f"the name '{output}' ends with {path.suffix}, but --format is {ending}")
+    if flaw := name_flaw(path.name):
+        raise FileError(f"cannot write the file: the name {flaw}, expected another name")
+    for name in inputs:
+        if path.resolve() == Path(name).resolve():
+            raise UsageError(f"{path} would replace a file that is read, expected another --output")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{path.parent}: {error.strerror}") from None
+    return path
+
+
+def write(path: Path, data: bytes) -> None:
+    """Write a file under another name and rename it, so that there is never half of it."""
+    part = None
+    try:
+        if path.exists() and not path.is_file():
+            raise FileError(f"{path}: found a folder or a device, expected the name of a file")
+        descriptor, part = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name[:100]}.")
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+            os.umask(mask := os.umask(0))
+            os.fchmod(file.fileno(), path.stat().st_mode if path.exists() else 0o666 & ~mask)
+        Path(part).replace(path)
+    except OSError as error:
+        if part:
+            Path(part).unlink(missing_ok=True)
+        if isinstance(error, Error):
+            raise
+        raise FileError(f"{path}: {error.strerror}") from None
