@@ -1,7 +1,7 @@
 !> The command line as a request
 module vcor_app_cli
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_app_commands, only : commands, options_of
+   use vcor_app_commands, only : commands, missing_package, options_of
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
@@ -141,8 +141,10 @@ contains
       end if
       if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
       if (.not. contains_word(commands, request%command)) then
-         call raise(error, error_usage, "unknown command '"//printable(request%command)//"'; " &
-            //suggestion(request%command, commands//' --help --version'))
+         name = missing_package(request%command)
+         if (name == '') name = "unknown command '"//printable(request%command)//"'; " &
+            //suggestion(request%command, commands//' --help --version')
+         call raise(error, error_usage, name)
          return
       end if
 

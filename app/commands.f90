@@ -4,7 +4,7 @@ module vcor_app_commands
    implicit none
    private
 
-   public :: entry_t, commands, get_page, options_of, texts_of
+   public :: entry_t, commands, package_commands, get_page, options_of, texts_of, missing_package
 
    !> Known commands
    character(len=*), parameter :: commands = "run merge check material fit plot verify help"
@@ -222,7 +222,28 @@ module vcor_app_commands
       //"output as one JSON document"), &
       entry_t("example", "vcor help velocity")]
 
+   !> Commands of the Python package, which are programs of their own, and what each does
+   type(entry_t), parameter :: package_commands(*) = [ &
+      entry_t("plot", "draw figures of results"), &
+      entry_t("identify", "find materials in measured impacts, with what the data leave open"), &
+      entry_t("uncertainty", "find how uncertain results are, and because of which values"), &
+      entry_t("export", "write the law of impact for DEM and multibody programs"), &
+      entry_t("card", "write and read materials of finite element programs"), &
+      entry_t("master", "make master curves of moduli at several temperatures")]
+
 contains
+
+   !> What to do about a command of the Python package that is not there
+   pure function missing_package(word) result(text)
+      character(len=*), intent(in) :: word
+      !> One line; empty if the package has no such command
+      character(len=:), allocatable :: text
+
+      text = ""
+      if (any(package_commands%term == word)) text = "there is no vcor-"//word//" in PATH; "//word &
+         //" is a command of the Python package, expected pip install './python[all]' in the " &
+         //"folder of the sources"
+   end function missing_package
 
    !> Page of a command
    pure subroutine get_page(command, page)

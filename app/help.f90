@@ -1,6 +1,8 @@
 !> Screens of help: the commands, and the words of the input and the output
 module vcor_app_help
-   use vcor_app_commands, only : commands, entry_t, get_page, texts_of
+   use vcor_app_commands, only : commands, entry_t, get_page, missing_package, package_commands, &
+      texts_of
+   use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, range_text
    use vcor_error, only : code_names, error_t, error_usage, raise
    use vcor_words, only : nearest_name, suggestion
@@ -63,6 +65,10 @@ contains
          if (text /= "" .and. words /= "") text = text//nl
          text = text//words
          if (text /= "") return
+         if (missing_package(topic) /= "") then
+            call raise(error, error_usage, missing_package(topic))
+            return
+         end if
          ! too many words to list, but not too many to search for a near one
          words = commands//" input output"//all_words()
          if (nearest_name(topic, words) == "") then
@@ -80,7 +86,7 @@ contains
       character(len=:), allocatable :: text
 
       integer, parameter :: column = 30
-      character(len=:), allocatable :: command, usage
+      character(len=:), allocatable :: command, usage, words
       integer :: first, last, i
 
       text = "vcor "//version//": coefficient of restitution of viscoelastic impacts"//nl//nl
@@ -96,7 +102,19 @@ contains
          end associate
          first = last + 2
       end do
-      text = text//"       vcor --version"//nl//nl &
+      text = text//"       vcor --version"//nl//nl
+      associate (names => external_commands())
+         if (size(names) > 0) text = text &
+            //"programs of PATH that vcor NAME runs; see vcor NAME --help:"//nl
+         do i = 1, size(names)
+            first = findloc(package_commands%term == names(i), .true., dim=1)
+            words = "not part of vcor"
+            if (first > 0) words = trim(package_commands(first)%text)
+            text = text//item("       vcor "//names(i), words)
+         end do
+         if (size(names) > 0) text = text//nl
+      end associate
+      text = text &
          //"TOPIC: a command, input, output, or a word of the input or the output."//nl &
          //"vcor help --json prints everything as one JSON document."//nl//nl
       text = text//"exit codes: 0 "//trim(code_names(0))

@@ -1,7 +1,8 @@
 !> Everything that the program knows about its commands, its input and its output as one JSON
 !> document: what `vcor help --json` prints, and what scripts/manual.py makes the manual of
 module vcor_app_help_json
-   use vcor_app_commands, only : commands, entry_t, get_page, options_of, texts_of
+   use vcor_app_commands, only : commands, entry_t, get_page, options_of, package_commands, &
+      texts_of
    use vcor_app_help, only : screen_meanings, screen_words
    use vcor_case_catalogue, only : described_keys, groups, integer_key, key_t, kind_name, &
       logical_key, real_key, text_key
@@ -37,6 +38,13 @@ contains
          first = last + 2
       end do
       text = text//array("commands", list)//","//nl
+
+      list = ""
+      do i = 1, size(package_commands)
+         call add(list, "{"//member("name", package_commands(i)%term)//", " &
+            //member("summary", package_commands(i)%text)//"}")
+      end do
+      text = text//array("package_commands", list)//","//nl
 
       list = ""
       do i = 1, size(groups)

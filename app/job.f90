@@ -134,7 +134,8 @@ contains
 
       call read_case(job%case, filename, error)
       do i = 1, size(request%settings)
-         if (.not. allocated(error)) call override(job%case, request%settings(i)%text, error)
+         if (.not. allocated(error)) call override(job%case, &
+            request%settings(i)%text, error, option='--set')
       end do
       if (.not. allocated(error)) call validate(job%case, error)
       if (.not. allocated(error)) call refuse_unread(job%case, &

@@ -1,4 +1,5 @@
-# Run by cpack before it makes the packages: the licence has its place and name of Debian's policy
+# Run by cpack before it makes the packages: the licence has its place and name of Debian's policy, and
+# what zsh completes is where packages of Debian have it
 file(GLOB folders "${CPACK_TEMPORARY_DIRECTORY}/*")
 foreach(folder IN LISTS folders)
   cmake_path(GET folder FILENAME component)
@@ -10,4 +11,7 @@ foreach(folder IN LISTS folders)
   file(REMOVE "${folder}/usr/share/doc/${package}/LICENSE")
   configure_file("${CMAKE_CURRENT_LIST_DIR}/../LICENSE"
     "${folder}/usr/share/doc/${package}/copyright" COPYONLY)
+  if(component STREQUAL "program")
+    file(RENAME "${folder}/usr/share/zsh/site-functions" "${folder}/usr/share/zsh/vendor-completions")
+  endif()
 endforeach()

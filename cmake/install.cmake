@@ -100,6 +100,14 @@ add_custom_target(vcor_man ALL DEPENDS ${compressed})
 # So that a build of the program alone (scripts/run.sh) can be installed, too
 add_dependencies(vcor_program vcor_man)
 
+# Words of the command line for the shells
+install(FILES completion/vcor.bash RENAME vcor
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
+install(FILES completion/_vcor
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/site-functions" COMPONENT program)
+install(FILES completion/vcor.fish
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
+
 # What users read
 install(FILES README.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Make the references in docs/ and the man pages from what the program knows of itself.
+"""Make the references in docs/, the man pages and completion/ from what the program knows of itself.
 
     scripts/manual.py [--check] [PROGRAM]        default: build/release/vcor
 
@@ -14,7 +14,10 @@ import re
 import subprocess
 import sys
 import textwrap
+import tomllib
 from pathlib import Path
+
+import completion
 
 ROOT = Path(__file__).resolve().parents[1]
 # Page of Markdown, page of man and what it is about
@@ -73,6 +76,16 @@ def commands(document, man):
             blocks.append(item(term, entry["text"]) if term else escaped(entry["text"]))
         blocks.append("```sh\n" + "\n".join(command["examples"]) + "\n```")
     return "\n\n".join(blocks)
+
+
+def package_commands(document, man):
+    """Commands of the Python package, as far as this version has them."""
+    package = tomllib.loads((ROOT / "python/pyproject.toml").read_text(encoding="utf-8"))
+    return "\n".join(
+        item(f"vcor {one['name']}", f"{one['summary']}.")
+        for one in document["package_commands"]
+        if f"vcor-{one['name']}" in package["project"]["scripts"]
+    )
 
 
 def exit_codes(document, man):
@@ -168,6 +181,7 @@ def statuses(document, man):
 PARTS = {
     "synopsis": synopsis,
     "commands": commands,
+    "package_commands": package_commands,
     "exit_codes": exit_codes,
     "groups": groups,
     "summary": lambda document, man: columns(document["summary"], man),
@@ -282,7 +296,7 @@ def pages(document):
     for name, file, about in PAGES:
         found[f"docs/{name}.md"] = markdown(document, name)
         found[f"man/{file}"] = man_page(document, name, file, about)
-    return found
+    return found | completion.files(document)
 
 
 def main():

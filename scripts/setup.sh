@@ -78,6 +78,9 @@ look() {
       # vcor plot draws with it, where it is there
       need "gnuplot" "gnuplot-nox" have gnuplot
       need "python3 with venv" "python3 python3-venv" have_venv
+      # words are completed in them
+      need "zsh" "zsh" have zsh
+      need "fish" "fish" have fish
       # the pages of man are shown, and packages are made
       need "man" "man-db" have man
       need "dpkg-shlibdeps" "dpkg-dev" have dpkg-shlibdeps

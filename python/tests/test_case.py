@@ -116,7 +116,7 @@ def test_a_value_that_is_set_and_not_read(sls, program):
     with pytest.raises(vcor.InputError) as caught:
         sls.solve()
     line = program("run", PAPER / "sls.nml", "--set", "solver.form=b", code=3)
-    assert line == f"vcor: error: {caught.value}\n"
+    assert line == f"vcor: error: --set {caught.value}\n"
 
 
 def test_a_case_from_a_mapping(tmp_path, program):
@@ -188,7 +188,8 @@ def test_errors_are_those_of_the_program(sls, program, setting, error, code):
         sls.run()
     assert caught.value.code == code
     if error is not vcor.NumericalError:
-        assert line == f"vcor: error: {caught.value}\n"
+        # the program says which option the address is from
+        assert line == f"vcor: error: --set {caught.value}\n"
         return
     # the program explains at length why nothing comes back
     assert line.startswith("vcor: error: ")

@@ -88,6 +88,13 @@ def test_everything_is_there(prefix):
     assert any(name.startswith("include/vcor/") and name.endswith("/vcor.mod") for name in files)
 
 
+def test_completion_is_where_shells_look(prefix, packages):
+    for name in ["bash-completion/completions/vcor", "zsh/site-functions/_vcor", "fish/vendor_completions.d/vcor.fish"]:
+        assert (prefix / "share" / name).is_file()
+        name = name.replace("site-functions", "vendor-completions")
+        assert f" ./usr/share/{name}\n" in run("dpkg-deb", "-c", packages["vcor"])
+
+
 def test_no_path_of_the_build(build, prefix):
     """What was installed knows neither sources nor build."""
     for path, text in texts(prefix).items():

@@ -176,7 +176,7 @@ contains
          & "line in the second material")
       call check_text(case%location("solver", "method"), "dir/case.nml", "file without the group")
       call check_text(case%location("material", "beta", 7), "dir/case.nml", "file without the item")
-      call override(case, "sphere.mass=0.1", error)
+      call override(case, "sphere.mass=0.1", error, option="--set")
       call check_text(case%location("sphere", "mass"), "--set sphere.mass", "an option")
    end subroutine test_places
 
@@ -376,7 +376,7 @@ contains
       call check(.not. flag, "logical by option")
       call override(case, "p.1 = x.moduli=1,2", error)
       call check(allocated(error), "a name with an equals sign needs quotes")
-      call override(case, "'p.1 = x'.moduli=1, 2*2", error)
+      call override(case, "'p.1 = x'.moduli=1, 2*2", error, option="--set")
       call case%get("material", "moduli", list, 3)
       call check(size(list) == 3, "list by option")
       call override(case, "solver.method=IVE", error)
@@ -397,7 +397,7 @@ contains
 
       call read_case_text(case, impact//sphere//plate//rubber, "x.nml", error)
       call sets_number(case, "material.beta=300", "material", "beta", 1, 300.0_wp)
-      call override(case, "sphere.material=sls rubber", error)
+      call override(case, "sphere.material=sls rubber", error, option="--set")
       call validate(case, error)
       call check(.not. allocated(error), "an option mends a case")
    end subroutine test_overrides
@@ -651,7 +651,7 @@ contains
       type(error_t), allocatable :: error
       real(wp) :: found
 
-      call override(case, setting, error)
+      call override(case, setting, error, option="--set")
       call check(.not. allocated(error), setting//" is understood")
       call case%get(group, key, found, item)
       call check_close(found, number, 0.0_wp, setting)
@@ -671,7 +671,7 @@ contains
 
       call read_case_text(case, good, "x.nml", error)
       before = case_text(case)
-      call override(case, setting, error)
+      call override(case, setting, error, option="--set")
       call check_error(error, code, "--set |"//words, "--set "//printable(setting))
       call check_text(case_text(case), before, setting//" changes nothing")
    end subroutine refuses_option

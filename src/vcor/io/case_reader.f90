@@ -159,30 +159,35 @@ contains
    end function is_whole
 
    !> Set one value by `path=value`, as the option --set has it
-   subroutine override(case, setting, error)
+   subroutine override(case, setting, error, option)
       type(case_t), intent(inout) :: case
       !> `group.key=value` or `material_name.key=value`; a text may stand without quotes
       character(len=*), intent(in) :: setting
       !> Error of code `error_usage` when path or value cannot be read, `error_input` when the
       !> value is out of range; unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> What messages about the value begin with, before its address; absent: nothing
+      character(len=*), intent(in), optional :: option
+
       type(entry_t) :: entry
-      character(len=:), allocatable :: message, path
+      character(len=:), allocatable :: message, path, by
       type(address_t) :: address
       type(key_t) :: key
       integer :: mark, row
 
+      by = ""
+      if (present(option)) by = option//" "
       if (has_control(setting)) then
-         call raise(error, error_usage, "--set "//shortened(setting)//": found a control character")
+         call raise(error, error_usage, by//shortened(setting)//": found a control character")
          return
       end if
       mark = end_of_path(setting)
       if (mark < 2) then
-         call raise(error, error_usage, "--set "//shortened(setting)//": expected group.key=value")
+         call raise(error, error_usage, by//shortened(setting)//": expected group.key=value")
          return
       end if
       path = trim(adjustl(setting(:mark-1)))
-      entry%origin = "--set "//shortened(path)
+      entry%origin = by//shortened(path)
       call resolve(case, path, address, message)
       if (allocated(message)) then
          call raise(error, error_usage, entry%origin//": "//message)

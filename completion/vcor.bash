@@ -1,0 +1,48 @@
+# Made by scripts/manual.py from vcor help --json
+declare -A _vcor_options=()
+
+_vcor() {
+   local commands='run merge check material fit plot verify help'
+   local line=${COMP_LINE:0:COMP_POINT} command=${COMP_WORDS[1]} word option options= kept= words=
+   # the whole word before the cursor, which readline takes apart at = and :
+   word=${line##*[[:space:]]}
+   line=${line%"$word"}
+   read -ra line <<<"$line"
+   option=${line[-1]}
+   if [ "${#line[@]}" -eq 1 ]; then
+      words="$commands $(compgen -c vcor- | sed 's/^vcor-//')"
+      mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+      return
+   fi
+   if [[ $word == --*=* ]]; then
+      option=${word%%=*}
+      word=${word#*=}
+   fi
+   case $command in
+      run) options='--set --output --print --threads --resume --shard --quiet --help' ;;
+      merge) options='--output --quiet --help' ;;
+      check) options='--set --help' ;;
+      material) options='--set --output --from --to --points --quiet --help' ;;
+      fit) options='--model --terms --fix --units --shear --poisson-ratio --density --name --from-model --dynamic --set --output --from --to --points --quiet --help' ;;
+      plot) options='--kind --quantity --legend --output --format --script --quiet --help' ;;
+      verify) options='--set --quiet --help' ;;
+      help) options='--json --help' ;;
+      *)
+         [ -n "${_vcor_options[$command]}" ] || _vcor_options[$command]="$(
+            "vcor-$command" --help 2>/dev/null </dev/null | grep -oE -e '--[a-z][a-z-]*' | sort -u)"
+         options=${_vcor_options[$command]} ;;
+   esac
+   case $option in
+      --set) words='case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' ;;
+      --print | --quantity)
+         words='cor cor_sphere contact_time max_indentation max_force residual_indentation residual_ratio hysteresis_energy wave_energy initial_energy energy_imbalance min_frequency inelasticity loss_tangent cor_error cor_sphere_error resilience rebound_height contact_radius contact_ratio thickness_ratio plate_wave_number needed_extent deflection_ratio weight_ratio mean_pressure half_space_loss peak_loss_tangent validity validity_cause steps status'
+         kept=${word%"${word##*,}"} ;;
+      help) words='accuracy alpha beta case check coefficient contact contact_radius contact_ratio contact_time continue_after_separation cor cor_error cor_sphere cor_sphere_error count csv deflection_ratio density directory drop_height end_time energy_imbalance equilibrium_modulus exponent extent file fit form glassy_modulus half_space_loss half_thickness hdf5 help history hysteresis_energy impact inelasticity initial_energy input law loss_tangent mass material max_force max_indentation mean_pressure merge method min_frequency model moduli modulus modulus_unit name needed_extent output pair parameter peak_loss_tangent plate plate_wave_number plot poisson_ratio quadrature radius rates rebound_height relaxing_modulus residual_indentation residual_ratio resilience run scheme solver spacing sphere start status stem steps stop surface_radius sweep thickness_ratio time time_step time_unit times title valid_from valid_to validity validity_cause values velocity verify viscosity volterra_coefficient volterra_order wave_energy waves weight_ratio yield_strength' ;;
+      *) [[ $word != -* ]] || words=$options ;;
+   esac
+   # no word is left: names of files
+   mapfile -t COMPREPLY < <(compgen -P "$kept" -W "$words" -- "${word#"$kept"}")
+   if [[ ${COMPREPLY[0]} == *= ]]; then compopt -o nospace 2>/dev/null; fi
+   COMPREPLY=("${COMPREPLY[@]#"${word%"${word##*[=:]}"}"}")
+}
+complete -o default -F _vcor vcor

@@ -1,0 +1,93 @@
+# Made by scripts/manual.py from vcor help --json
+function __vcor_programs
+   set -l found $PATH/vcor-*
+   path filter -fx -- $found | string replace -r '.*/vcor-' ''
+end
+function __vcor_described_programs
+   for name in (__vcor_programs)
+      switch $name
+         case plot
+            echo 'plot	draw figures of results'
+         case identify
+            echo 'identify	find materials in measured impacts, with what the data leave open'
+         case uncertainty
+            echo 'uncertainty	find how uncertain results are, and because of which values'
+         case export
+            echo 'export	write the law of impact for DEM and multibody programs'
+         case card
+            echo 'card	write and read materials of finite element programs'
+         case master
+            echo 'master	make master curves of moduli at several temperatures'
+         case '*'
+            echo $name
+      end
+   end
+end
+function __vcor_quantities
+   printf '%s\n' cor cor_sphere contact_time max_indentation max_force residual_indentation residual_ratio hysteresis_energy wave_energy initial_energy energy_imbalance min_frequency inelasticity loss_tangent cor_error cor_sphere_error resilience rebound_height contact_radius contact_ratio thickness_ratio plate_wave_number needed_extent deflection_ratio weight_ratio mean_pressure half_space_loss peak_loss_tangent validity validity_cause steps status
+end
+function __vcor_options
+   set -l name (commandline -opc)[2]
+   command vcor-$name --help 2>/dev/null </dev/null | string match -ar -- '--[a-z][a-z-]*'
+end
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a '(__vcor_described_programs)'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a run -d 'solve impacts and write the results'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l set -x -a 'case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' -d 'replace a value of the case'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l output -r -d 'folder of the files, created if it does not exist'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l print -x -a '(__fish_complete_list , __vcor_quantities)' -d 'print these numbers only, one line per impact, in place of the table'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l threads -r -d 'threads of a sweep'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l resume -d 'continue an interrupted sweep'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l shard -r -d 'solve part I of N of a sweep and write it to STEM_shard_I_of_N.h5'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l quiet -d 'print nothing but the numbers of --print'
+complete -c vcor -n '__fish_seen_subcommand_from run' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a merge -d 'join the shards of a sweep'
+complete -c vcor -n '__fish_seen_subcommand_from merge' -l output -r -d 'folder of the files'
+complete -c vcor -n '__fish_seen_subcommand_from merge' -l quiet -d 'print nothing'
+complete -c vcor -n '__fish_seen_subcommand_from merge' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a check -d 'validate a case and print it with all defaults'
+complete -c vcor -n '__fish_seen_subcommand_from check' -l set -x -a 'case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' -d 'replace a value of the case, as for run'
+complete -c vcor -n '__fish_seen_subcommand_from check' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a material -d 'compute moduli over time and frequency'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l set -x -a 'case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' -d 'replace a value of the case, as for run'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l output -r -d 'folder of the files, or the one file, as for run'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l from -r -d 'first time [s]'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l to -r -d 'last time [s]'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l points -r -d 'number of times'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l quiet -d 'print nothing'
+complete -c vcor -n '__fish_seen_subcommand_from material' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a fit -d 'identify a material from measured moduli'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l model -r -d 'prony'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l terms -r -d 'terms of a Prony series'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l fix -r -d 'fix a parameter, in SI units'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l units -r -d 'units of the columns, such as s,MPa or Hz,MPa or rad/s,Pa'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l shear -d 'the data are shear moduli G: E = 2'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l poisson-ratio -r -d 'Poisson'\''s ratio of the material'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l density -r -d 'density of the material [kg/m3]'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l name -r -d 'name of the material'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l from-model -r -d 'sample a material of this case in place of data'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l dynamic -d 'with --from-model: sample storage and loss modulus'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l set -x -a 'case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' -d 'with --from-model: replace a value of the case'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l output -r -d 'write the group to PATH if it ends in .nml'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l from -r -d 'with --from-model: first time [s]'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l to -r -d 'with --from-model: last time [s]'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l points -r -d 'with --from-model: number of samples'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l quiet -d 'print nothing'
+complete -c vcor -n '__fish_seen_subcommand_from fit' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a plot -d 'draw figures of results'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l kind -r -d 'default: what the file holds'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l quantity -x -a '(__fish_complete_list , __vcor_quantities)' -d 'columns for sweep'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l legend -r -d 'text of the legend, once per file, in their order'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l output -r -d 'the figure, if PATH ends in .svg, .pdf or .png'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l format -r -d 'svg, pdf or png'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l script -d 'keep the gnuplot script and its data'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l quiet -d 'print nothing'
+complete -c vcor -n '__fish_seen_subcommand_from plot' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a verify -d 'verify the program, or cases'
+complete -c vcor -n '__fish_seen_subcommand_from verify' -l set -x -a 'case.title= impact.velocity= impact.drop_height= sphere.radius= sphere.material= sphere.mass= plate.half_thickness= plate.material= plate.waves=none plate.waves=constant plate.waves=relaxing plate.waves=frozen plate.waves=hereditary plate.surface_radius= plate.extent= contact.law=boltzmann contact.law=receding contact.pair=eq1 contact.pair=series solver.method=auto solver.method=ive solver.method=direct solver.scheme=product solver.scheme=adams_bashforth solver.time_step= solver.end_time= solver.accuracy= solver.form=a solver.form=b solver.quadrature=rectangle solver.quadrature=trapezoid solver.volterra_order= solver.volterra_coefficient= solver.continue_after_separation= output.csv= output.hdf5= output.history= output.directory= output.stem=' -d 'replace a value of the case, as for run'
+complete -c vcor -n '__fish_seen_subcommand_from verify' -l quiet -d 'print nothing'
+complete -c vcor -n '__fish_seen_subcommand_from verify' -l help -d 'explain the command'
+complete -c vcor -n 'not __fish_seen_subcommand_from run merge check material fit plot verify help (__vcor_programs)' -f -a help -d 'explain a command or a word'
+complete -c vcor -n '__fish_seen_subcommand_from help' -l json -d 'print everything that the program knows about its commands'
+complete -c vcor -n '__fish_seen_subcommand_from help' -l help -d 'explain the command'
+complete -c vcor -n '__fish_seen_subcommand_from help' -f -a 'accuracy alpha beta case check coefficient contact contact_radius contact_ratio contact_time continue_after_separation cor cor_error cor_sphere cor_sphere_error count csv deflection_ratio density directory drop_height end_time energy_imbalance equilibrium_modulus exponent extent file fit form glassy_modulus half_space_loss half_thickness hdf5 help history hysteresis_energy impact inelasticity initial_energy input law loss_tangent mass material max_force max_indentation mean_pressure merge method min_frequency model moduli modulus modulus_unit name needed_extent output pair parameter peak_loss_tangent plate plate_wave_number plot poisson_ratio quadrature radius rates rebound_height relaxing_modulus residual_indentation residual_ratio resilience run scheme solver spacing sphere start status stem steps stop surface_radius sweep thickness_ratio time time_step time_unit times title valid_from valid_to validity validity_cause values velocity verify viscosity volterra_coefficient volterra_order wave_energy waves weight_ratio yield_strength'
+complete -c vcor -n '__fish_seen_subcommand_from (__vcor_programs)' -a '(__vcor_options)'
