@@ -147,9 +147,9 @@ contains
       if (ends(1)) before = min(1.0_wp, band(1)/contact_time)
       if (ends(2)) after = max(0.0_wp, 1.0_wp - band(2)/contact_time)
       text = ''
-      if (before > 0.0_wp) text = percent(before)//' of it lies before'
+      if (before > 0.0_wp) text = percent(before, 'all')//' of it lies before'
       if (before > 0.0_wp .and. after > 0.0_wp) text = text//' and '
-      if (after > 0.0_wp) text = text//percent(after)//' of it lies after'
+      if (after > 0.0_wp) text = text//percent(after, 'all')//' of it lies after'
       if (text == '') text = 'hardly any of it lies outside'
    end function share_outside
 

@@ -4,10 +4,14 @@ module vcor_app_commands
    implicit none
    private
 
-   public :: entry_t, commands, package_commands, get_page, options_of, texts_of, missing_package
+   public :: entry_t, commands, command_count, package_commands, get_page, options_of, texts_of
+   public :: missing_package
 
    !> Known commands
    character(len=*), parameter :: commands = "run merge check material fit plot verify help"
+   integer :: k
+   !> Number of these
+   integer, parameter :: command_count = count([(commands(k:k) == " ", k=1, len(commands))]) + 1
 
    !> One line of a command's page. Backquotes stand around what is to be typed as it is
    type :: entry_t

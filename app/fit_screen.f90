@@ -1,6 +1,6 @@
 !> What the screen shows of a fit
 module vcor_app_fit_screen
-   use vcor_app_screen, only : short, significant
+   use vcor_app_screen, only : percent, short, significant
    use vcor_fit, only : fit_t, samples_t, state_bound, state_fixed, unseen_earlier, unseen_later
    use vcor_text, only : integer_text, printable
    use vcor_kinds, only : wp
@@ -61,8 +61,8 @@ contains
 
       text = '! vcor '//version//' fit of '//fit%data%model//terms_of(fit)//' to ' &
          //printable(source)//nl &
-         //'! rms misfit '//trim(adjustl(percent(fit%rms)))//', largest ' &
-         //trim(adjustl(percent(fit%largest)))//place_of(fit, samples)//nl
+         //'! rms misfit '//percent(fit%rms)//', largest ' &
+         //percent(fit%largest)//place_of(fit, samples)//nl
       if (fit%structured) text = text//'! '//no_noise//nl
       if (is_open(fit)) text = text//'! equilibrium_modulus is not seen: 0 to ' &
          //short(most_of(fit))//' Pa'//nl
@@ -121,32 +121,6 @@ contains
          text = ' of the storage modulus at '//short(fit%largest_at)//' rad/s'
       end if
    end function place_of
-
-   !> A ratio in percent, to two digits
-   pure function percent(ratio) result(text)
-      real(wp), intent(in) :: ratio
-      character(len=:), allocatable :: text
-
-      !> Of exact data, rounding
-      real(wp), parameter :: rounding = 1.0e-12_wp
-      character(len=9) :: digits
-      character(len=24) :: buffer
-      character(len=8) :: form
-      integer :: exponent
-
-      write (digits, '(es9.1e3)') 100.0_wp*ratio
-      read (digits(6:), *) exponent
-      if (abs(ratio) < rounding) then
-         text = '0 %'
-      else if (abs(exponent) > 4) then
-         text = short(100.0_wp*ratio)//' %'
-      else
-         write (form, '(a, i0, a)') '(f24.', max(1, 1 - exponent), ')'
-         write (buffer, form) 100.0_wp*ratio
-         if (exponent > 0) write (buffer, '(i0)') nint(100.0_wp*ratio)
-         text = trim(adjustl(buffer))//' %'
-      end if
-   end function percent
 
    !> Under what condition a standard error is one
    pure function condition(fit, i) result(text)

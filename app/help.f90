@@ -1,7 +1,7 @@
 !> Screens of help: the commands, and the words of the input and the output
 module vcor_app_help
-   use vcor_app_commands, only : commands, entry_t, get_page, missing_package, package_commands, &
-      texts_of
+   use vcor_app_commands, only : command_count, commands, entry_t, get_page, missing_package, &
+      package_commands, texts_of
    use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, range_text
    use vcor_error, only : code_names, error_t, error_usage, raise
@@ -86,33 +86,33 @@ contains
       character(len=:), allocatable :: text
 
       integer, parameter :: column = 30
-      character(len=:), allocatable :: command, usage, words
-      integer :: first, last, i
+      character(len=:), allocatable :: usage, words
+      character(len=8) :: names(command_count)
+      integer :: i, place
 
       text = "vcor "//version//": coefficient of restitution of viscoelastic impacts"//nl//nl
-      first = 1
-      do while (first <= len(commands))
-         last = first - 2 + index(commands(first:)//" ", " ")
-         command = commands(first:last)
-         associate (usages => texts_of(command, "usage"), meanings => texts_of(command, "summary"))
+      usage = commands
+      read (usage, *) names
+      do i = 1, size(names)
+         associate (usages => texts_of(names(i), "usage"), &
+                    meanings => texts_of(names(i), "summary"))
             usage = trim(usages(1))
             usage = usage(:index(usage//" [options]", " [options]") - 1)
-            text = text//merge("usage: ", "       ", first == 1)//usage &
+            text = text//merge("usage: ", "       ", i == 1)//usage &
                //repeat(" ", max(1, column - len(usage)))//trim(meanings(1))//nl
          end associate
-         first = last + 2
       end do
       text = text//"       vcor --version"//nl//nl
-      associate (names => external_commands())
-         if (size(names) > 0) text = text &
+      associate (found => external_commands())
+         if (size(found) > 0) text = text &
             //"programs of PATH that vcor NAME runs; see vcor NAME --help:"//nl
-         do i = 1, size(names)
-            first = findloc(package_commands%term == names(i), .true., dim=1)
+         do i = 1, size(found)
+            place = findloc(package_commands%term == found(i), .true., dim=1)
             words = "not part of vcor"
-            if (first > 0) words = trim(package_commands(first)%text)
-            text = text//item("       vcor "//names(i), words)
+            if (place > 0) words = trim(package_commands(place)%text)
+            text = text//item("       vcor "//found(i), words)
          end do
-         if (size(names) > 0) text = text//nl
+         if (size(found) > 0) text = text//nl
       end associate
       text = text &
          //"TOPIC: a command, input, output, or a word of the input or the output."//nl &

@@ -1,8 +1,8 @@
 !> Everything that the program knows about its commands, its input and its output as one JSON
 !> document: what `vcor help --json` prints, and what scripts/manual.py makes the manual of
 module vcor_app_help_json
-   use vcor_app_commands, only : commands, entry_t, get_page, options_of, package_commands, &
-      texts_of
+   use vcor_app_commands, only : command_count, commands, entry_t, get_page, options_of, &
+      package_commands, texts_of
    use vcor_app_help, only : screen_meanings, screen_words
    use vcor_case_catalogue, only : described_keys, groups, integer_key, key_t, kind_name, &
       logical_key, real_key, text_key
@@ -26,60 +26,52 @@ contains
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: list
-      integer :: i, first, last
+      character(len=8) :: names(command_count)
+      integer :: i
 
-      text = "{"//member("program", "vcor")//", "//member("version", version)//","//nl
-
+      text = member("program", "vcor")//member("version", version)
+      list = commands
+      read (list, *) names
       list = ""
-      first = 1
-      do while (first <= len(commands))
-         last = first - 2 + index(commands(first:)//" ", " ")
-         call add(list, command_object(commands(first:last)))
-         first = last + 2
+      do i = 1, size(names)
+         list = list//command_object(trim(names(i)))
       end do
-      text = text//array("commands", list)//","//nl
-
+      text = text//array("commands", list)
       list = ""
       do i = 1, size(package_commands)
-         call add(list, "{"//member("name", package_commands(i)%term)//", " &
-            //member("summary", package_commands(i)%text)//"}")
+         list = list//object(member("name", package_commands(i)%term) &
+            //member("summary", package_commands(i)%text))
       end do
-      text = text//array("package_commands", list)//","//nl
-
+      text = text//array("package_commands", list)
       list = ""
       do i = 1, size(groups)
          associate (group => groups(i))
-            call add(list, "{"//member("name", group%name)//", "//member("meaning", group%meaning) &
-               //", "//flag("required", group%required)//", "//flag("repeated", group%repeated) &
-               //", "//member("label", group%label)//", "//member("selector", group%selector) &
-               //","//nl//array("keys", keys_of(group%name))//"}")
+            list = list//object(member("name", group%name)//member("meaning", group%meaning) &
+               //flag("required", group%required)//flag("repeated", group%repeated) &
+               //member("label", group%label)//member("selector", group%selector) &
+               //array("keys", keys_of(group%name)))
          end associate
       end do
-      text = text//array("groups", list)//","//nl
-      text = text//array("summary", columns(quantities()))//","//nl
-      text = text//array("history", columns(history_quantities))//","//nl
-
+      text = text//array("groups", list)//array("summary", columns(quantities())) &
+         //array("history", columns(history_quantities))
       list = ""
       do i = 1, size(statuses)
-         call add(list, "{"//member("name", statuses(i)%name)//", " &
-            //member("meaning", statuses(i)%meaning)//", " &
-            //member("advice", statuses(i)%advice)//"}")
+         list = list//object(member("name", statuses(i)%name) &
+            //member("meaning", statuses(i)%meaning)//member("advice", statuses(i)%advice))
       end do
-      text = text//array("statuses", list)//","//nl
-
+      text = text//array("statuses", list)
       list = ""
       do i = 1, size(screen_words)
-         call add(list, "{"//array_of_words("words", screen_words(i))//", " &
-            //member("meaning", screen_meanings(i))//"}")
+         list = list//object(words("words", screen_words(i))//member("meaning", screen_meanings(i)))
       end do
-      text = text//array("screen", list)//","//nl
-
+      text = text//array("screen", list)
       list = ""
       do i = lbound(code_names, 1), ubound(code_names, 1)
-         call add(list, "{"//"""code"": "//integer_text(i)//", " &
-            //member("name", code_names(i))//", "//member("meaning", code_meanings(i))//"}")
+         list = list//object("""code"": "//integer_text(i)//", "//member("name", code_names(i)) &
+            //member("meaning", code_meanings(i)))
       end do
-      text = text//array("exit_codes", list)//"}"//nl
+      text = object(text//array("exit_codes", list))
+      text = text(:len(text) - 2)//nl
    end function help_json
 
    !> A command: how it is called, what it does, its options
@@ -97,21 +89,19 @@ contains
          mark = index(page(i)%term//" ", " ")
          name = page(i)%term(:mark - 1)
          if (name == "") then
-            call add(entries, "{"//member("text", page(i)%text)//"}")
+            entries = entries//object(member("text", page(i)%text))
          else if (index(name, "--") == 1) then
-            call add(entries, "{"//member("option", name)//", " &
-               //member("value", page(i)%term(mark:))//", "//member("text", page(i)%text)//"}")
+            entries = entries//object(member("option", name) &
+               //member("value", page(i)%term(mark:))//member("text", page(i)%text))
          else if (all(name /= ["usage  ", "summary", "example"])) then
-            call add(entries, "{"//member("term", page(i)%term)//", " &
-               //member("text", page(i)%text)//"}")
+            entries = entries//object(member("term", page(i)%term)//member("text", page(i)%text))
          end if
       end do
       associate (summaries => texts_of(command, "summary"))
-         text = "{"//member("name", command)//", "//member("summary", summaries(1))//","//nl &
-            //array("usage", strings(texts_of(command, "usage")))//","//nl &
-            //array("examples", strings(texts_of(command, "example")))//","//nl &
-            //array_of_words("options", options_of(command))//","//nl &
-            //array("page", entries)//"}"
+         text = object(member("name", command)//member("summary", summaries(1)) &
+            //array("usage", strings(texts_of(command, "usage"))) &
+            //array("examples", strings(texts_of(command, "example"))) &
+            //words("options", options_of(command))//array("page", entries))
       end associate
    end function command_object
 
@@ -129,19 +119,18 @@ contains
       do i = 1, size(rows)
          associate (key => rows(i))
             if (key%group /= group) cycle
-            text = "{"//member("name", key%name)//", "//member("type", type_name(key%value_kind)) &
-               //", "//member("value", kind_name(key%value_kind))//", " &
-               //member("meaning", key%meaning)//", "//member("unit", key%unit)//", " &
-               //member("range", interval_text(key%range))//", " &
-               //array_of_words("choices", key%choices)//", " &
-               //array_of_words("models", key%models)//", "//flag("required", key%required)
+            text = member("name", key%name)//member("type", type_name(key%value_kind)) &
+               //member("value", kind_name(key%value_kind))//member("meaning", key%meaning) &
+               //member("unit", key%unit)//member("range", interval_text(key%range)) &
+               //words("choices", key%choices)//words("models", key%models) &
+               //flag("required", key%required)
             if (key%default == "''") then
-               text = text//", "//member("default", "")
+               text = text//member("default", "")
             else if (key%default /= "") then
-               text = text//", "//member("default", key%default)
+               text = text//member("default", key%default)
             end if
-            if (key%instead /= "") text = text//", "//member("instead", key%instead)
-            call add(list, text//"}")
+            if (key%instead /= "") text = text//member("instead", key%instead)
+            list = list//object(text)
          end associate
       end do
    end function keys_of
@@ -177,23 +166,13 @@ contains
       list = ""
       do i = 1, size(quantities)
          associate (quantity => quantities(i))
-            call add(list, "{"//member("name", quantity%name)//", " &
-               //member("symbol", quantity%symbol)//", "//member("unit", quantity%unit)//", " &
-               //member("meaning", quantity%meaning)//"}")
+            list = list//object(member("name", quantity%name)//member("symbol", quantity%symbol) &
+               //member("unit", quantity%unit)//member("meaning", quantity%meaning))
          end associate
       end do
    end function columns
 
-   !> Append an element to a list, which is elements with commas between them
-   subroutine add(list, element)
-      character(len=:), allocatable, intent(inout) :: list
-      character(len=*), intent(in) :: element
-
-      if (list /= "") list = list//","//nl
-      list = list//element
-   end subroutine add
-
-   !> Texts as a list of strings
+   !> Texts as strings. Here as below a comma and one character more end every part
    function strings(texts) result(list)
       character(len=*), intent(in) :: texts(:)
       character(len=:), allocatable :: list
@@ -202,43 +181,51 @@ contains
 
       list = ""
       do i = 1, size(texts)
-         call add(list, quoted(texts(i)))
+         list = list//quoted(texts(i))//", "
       end do
    end function strings
+
+   !> Members as an object
+   pure function object(members) result(text)
+      character(len=*), intent(in) :: members
+      character(len=:), allocatable :: text
+
+      text = "{"//members(:len(members) - 2)//"},"//nl
+   end function object
 
    !> A member whose value is a list
    pure function array(name, list) result(text)
       character(len=*), intent(in) :: name, list
       character(len=:), allocatable :: text
 
-      text = quoted(name)//": ["//list//"]"
+      text = quoted(name)//": ["//list(:max(0, len(list) - 2))//"],"//nl
    end function array
 
    !> A member whose value is a list of words, given with single blanks between them
-   pure function array_of_words(name, words) result(text)
-      character(len=*), intent(in) :: name, words
+   pure function words(name, list) result(text)
+      character(len=*), intent(in) :: name, list
       character(len=:), allocatable :: text
 
       integer :: i
 
       text = ""
-      do i = 1, len_trim(words)
-         if (words(i:i) /= " ") then
-            text = text//words(i:i)
+      do i = 1, len_trim(list)
+         if (list(i:i) /= " ") then
+            text = text//list(i:i)
          else if (text /= "") then
             text = text//""", """
          end if
       end do
-      if (text /= "") text = """"//text//""""
+      if (text /= "") text = """"//text//""", "
       text = array(name, text)
-   end function array_of_words
+   end function words
 
    !> A member whose value is a text
    pure function member(name, value) result(text)
       character(len=*), intent(in) :: name, value
       character(len=:), allocatable :: text
 
-      text = quoted(name)//": "//quoted(value)
+      text = quoted(name)//": "//quoted(value)//", "
    end function member
 
    !> A member whose value is true or false
@@ -247,7 +234,7 @@ contains
       logical, intent(in) :: value
       character(len=:), allocatable :: text
 
-      text = quoted(name)//": "//trim(merge("true ", "false", value))
+      text = quoted(name)//": "//trim(merge("true ", "false", value))//", "
    end function flag
 
    !> A text as a string of JSON

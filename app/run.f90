@@ -184,7 +184,7 @@ contains
          call job%case%get('material', 'times', times, item)
          name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
          if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
-            //short(times(1))//' s: '//percent(min(1.0_wp, times(1)/outcome%contact_time)) &
+            //short(times(1))//' s: '//percent(times(1)/outcome%contact_time, 'all') &
             //' of the contact lies before, where the modulus is taken as constant')
          if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
             //short(times(size(times)))//' s: '//percent(1.0_wp - times(size(times)) &

@@ -248,25 +248,33 @@ contains
       end if
    end function scientific
 
-   !> A share in percent, with two digits
-   pure function percent(share) result(text)
-      !> The share, 0 to 1
-      real(wp), intent(in) :: share
-      !> The text; `all` where it is all
+   !> A ratio in percent, with two digits
+   pure function percent(ratio, whole) result(text)
+      real(wp), intent(in) :: ratio
+      !> What a ratio of one or more is called; absent: by its number
+      character(len=*), intent(in), optional :: whole
       character(len=:), allocatable :: text
 
-      character(len=16) :: buffer, form
-      real(wp) :: value
+      ! of exact data, rounding
+      real(wp), parameter :: rounding = 1.0e-12_wp
+      character(len=24) :: buffer
+      character(len=8) :: form
+      integer :: exponent
 
-      text = 'all'
-      if (share >= 1.0_wp) return
-      value = 100.0_wp*share
-      write (form, '(a, i0, a)') '(f16.', max(0, 1 - floor(log10(value))), ')'
-      write (buffer, form) value
-      text = trim(adjustl(buffer))
-      if (index(text, '.') == len(text)) text = text(:len(text) - 1)
-      if (text(1:1) == '.') text = '0'//text
-      text = text//' %'
+      write (buffer, '(es9.1e3)') 100.0_wp*ratio
+      read (buffer(6:), *) exponent
+      if (present(whole) .and. ratio >= 1.0_wp) then
+         text = whole
+      else if (abs(ratio) < rounding) then
+         text = '0 %'
+      else if (abs(exponent) > 4) then
+         text = short(100.0_wp*ratio)//' %'
+      else
+         write (form, '(a, i0, a)') '(f24.', max(1, 1 - exponent), ')'
+         write (buffer, form) 100.0_wp*ratio
+         if (exponent > 0) write (buffer, '(i0)') nint(100.0_wp*ratio)
+         text = trim(adjustl(buffer))//' %'
+      end if
    end function percent
 
 end module vcor_app_screen

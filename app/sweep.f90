@@ -2,14 +2,15 @@
 !>
 !> The first rank alone reads and writes files and talks to the user.
 module vcor_app_sweep
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : threads_of, write_files, write_numbers
    use vcor_app_job, only : directory_of, job_t, shard_text
    use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
+   use vcor_app_screen, only : heading, padded, right, shown, significant
    use vcor_app_signals, only : catch_signals, release_signals, signal_name
-   use vcor_app_sweep_screen, only : inexact, shard_report, sweep_report
    use vcor_app_validity, only : about_numbers, points_remark, points_report
    use vcor_app_watch, only : watch_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
@@ -19,11 +20,13 @@ module vcor_app_sweep
    use vcor_text, only : integer_text
    use vcor_io_path, only : anything_at, make_directory, quoted_path
    use vcor_io_results, only : summary_table
-   use vcor_io_table, only : table_t
+   use vcor_io_table, only : place_in_table, table_t
+   use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
    use vcor_sweep_points, only : clock, solve_points
-   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities
+   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities, &
+      quantity_place, quantity_t
    use vcor_sweep_summary, only : new_summary, summary_t
    implicit none
    private
@@ -33,6 +36,8 @@ module vcor_app_sweep
    !> Added to the number of a signal, this is the exit code of a run that it has ended, as shells
    !> have it
    integer, parameter :: signal_base = 128
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
 
 contains
 
@@ -244,8 +249,8 @@ contains
             if (failures%inexact%count > 0) less = inexact(job, failures)
             call remark(about_numbers(job, less, validity))
          else if (.not. request%quiet) then
-            call write_stdout(sweep_report(job, identity%title, tables(1), failures, validity, &
-               files), error)
+            call write_stdout(report(job, identity%title, failures, files, &
+               tables(1), validity), error)
          end if
       end associate
    end subroutine finish_whole
@@ -263,7 +268,8 @@ contains
       path = job%path//trim(job%endings(3))
       call watch%file%close_as(path, error)
       if (.not. allocated(error) .and. .not. request%quiet) &
-         call write_stdout(shard_report(job, watch%identity%title, failures, path), error)
+         call write_stdout(report(job, watch%identity%title, failures, &
+            '  written '//path//nl), error)
    end subroutine finish_shard
 
    !> Points without a result make an error of the whole, after all others are done
@@ -279,5 +285,120 @@ contains
          //' without result, the first at ' &
          //job%coordinates(failures%reason(1)%first)//': '//failures%reason(1)%message)
    end subroutine end_of_sweep
+
+   !> What the screen shows of a sweep or a shard: what is swept, between what the outcomes lie,
+   !> what has none and why
+   function report(job, title, failures, files, summary, validity) result(text)
+      type(job_t), intent(in) :: job
+      character(len=*), intent(in) :: title
+      type(failures_t), intent(in) :: failures
+      !> Files written, one to a line
+      character(len=*), intent(in) :: files
+      !> Outcomes of a whole sweep
+      type(table_t), intent(in), optional :: summary
+      !> What is said of their validity, one to a line
+      character(len=*), intent(in), optional :: validity
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: method
+      integer :: i
+      logical :: history
+
+      text = heading(job%case%source, title)
+      do i = 1, size(job%sweep%grid%axes)
+         associate (axis => job%sweep%grid%axes(i), n => size(job%sweep%grid%axes(i)%values))
+            text = text//trim(padded('  '//axis%name, 50)//significant(axis%values(1))//' ..' &
+               //significant(axis%values(n))//' '//padded(axis%unit, 8)//' '//integer_text(n) &
+               //merge(' value ', ' values', n == 1))//nl
+         end associate
+      end do
+      text = text//nl//'  '//integer_text(job%part%count())
+      if (job%part%parts > 1) text = text//' of '//integer_text(job%part%points)
+      ! with auto each point has its own
+      call job%case%get('solver', 'method', method)
+      if (method /= 'auto' .or. job%method /= 'ive') method = job%method
+      text = text//' impacts'//shard_text(job%part)//', '//method//nl
+      if (present(summary)) text = text//nl//ranges(summary)
+      if (failures%count > 0) text = text//nl//reasons(job, failures)
+      if (present(validity)) then
+         if (len(validity) > 0) text = text//nl//validity
+      end if
+      if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
+      call job%case%get('output', 'history', history)
+      if (history .and. any(job%writes) .and. job%part%parts == 1) text = text//nl &
+         //'  note: time histories are written of single impacts only'//nl
+      if (len(files) > 0) text = text//nl//files
+      text = text//nl
+   end function report
+
+   !> Smallest and largest outcomes
+   function ranges(summary) result(text)
+      type(table_t), intent(in) :: summary
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: line
+      real(wp) :: least, most
+      type(quantity_t), allocatable :: columns(:)
+      logical :: any_there
+      integer :: i, k
+
+      allocate (columns, source=quantities())
+      text = padded('', 58)//'        smallest         largest'//nl
+      do i = 1, size(shown)
+         associate (quantity => columns(quantity_place(shown(i))), &
+                    column => summary%columns(place_in_table(summary, trim(shown(i))) &
+                    - size(summary%dimensions)))
+            any_there = .false.
+            do k = 1, column%length
+               if (ieee_is_nan(column%reals(k))) cycle
+               if (.not. any_there) then
+                  least = column%reals(k)
+                  most = least
+               end if
+               any_there = .true.
+               least = min(least, column%reals(k))
+               most = max(most, column%reals(k))
+            end do
+            if (.not. any_there) cycle
+            line = padded('  '//trim(quantity%meaning), 50)//padded(quantity%symbol, 8) &
+               //significant(least)//significant(most)
+            if (quantity%unit /= '1') line = line//' '//trim(quantity%unit)
+            text = text//line//nl
+         end associate
+      end do
+   end function ranges
+
+   !> What has no result, and why
+   function reasons(job, failures) result(text)
+      type(job_t), intent(in) :: job
+      type(failures_t), intent(in) :: failures
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = '  '//integer_text(failures%count)//' of '//integer_text(job%part%count()) &
+         //' points'//shard_text(job%part)//' without result:'//nl
+      do i = 1, failures%reasons
+         associate (reason => failures%reason(i))
+            text = text//'  '//right(integer_text(reason%count), 8)//'  '//reason%message//nl &
+               //'            first at point '//integer_text(reason%first)//': ' &
+               //job%coordinates(reason%first)//nl
+         end associate
+      end do
+   end function reasons
+
+   !> How many points are less accurate than asked for
+   function inexact(job, failures) result(text)
+      type(job_t), intent(in) :: job
+      !> What there is to say of the points
+      type(failures_t), intent(in) :: failures
+      !> One line
+      character(len=:), allocatable :: text
+
+      text = integer_text(failures%inexact%count)//' of '//integer_text(job%part%count()) &
+         //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
+         //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
+         //job%coordinates(failures%inexact%first)
+   end function inexact
 
 end module vcor_app_sweep

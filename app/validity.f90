@@ -3,7 +3,7 @@
 module vcor_app_validity
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : share_text => percent, significant
+   use vcor_app_screen, only : percent, significant
    use vcor_case_grid, only : grid_t
    use vcor_case_plausibility, only : note_length, slips_of
    use vcor_case_unread, only : why_unread
@@ -294,14 +294,5 @@ contains
 
       text = trim(adjustl(significant(value, 3)))
    end function brief
-
-   !> A share in percent, with two digits
-   function percent(share) result(text)
-      real(wp), intent(in) :: share
-      character(len=:), allocatable :: text
-
-      text = brief(100.0_wp*share)//' %'
-      if (share < 1.0_wp) text = share_text(share)
-   end function percent
 
 end module vcor_app_validity
