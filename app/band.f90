@@ -1,9 +1,10 @@
 !> Warnings of impacts that lean on a material beyond the data that it was fitted to
 module vcor_app_band
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : percent, short, significant
-   use vcor_case_case, only : case_t
+   use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_error, only : error_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
@@ -11,7 +12,7 @@ module vcor_app_band
    use vcor_case_reliance, only : find_reliance, reliance_t
    use vcor_sweep_quantity, only : quantity_place
    use vcor_sweep_summary, only : summary_t
-   use vcor_text, only : printable
+   use vcor_text, only : printable, real_text
    implicit none
    private
 
@@ -34,8 +35,50 @@ contains
       call job%case%get('plate', 'material', name)
       plate = job%case%find_material(name)
       call warn_of_band(job, summary, sphere)
-      if (plate /= sphere) call warn_of_band(job, summary, plate)
+      call warn_of_temperatures(job, sphere)
+      if (plate == sphere) return
+      call warn_of_band(job, summary, plate)
+      call warn_of_temperatures(job, plate)
    end subroutine warn_of_bands
+
+   !> Warn of temperatures beyond the data behind the shift of a material
+   subroutine warn_of_temperatures(job, item)
+      type(job_t), intent(in) :: job
+      integer, intent(in) :: item
+
+      character(len=*), parameter :: keys(2) = [character(len=22) :: 'valid_temperature_from', &
+         'valid_temperature_to']
+      type(address_t) :: address
+      character(len=:), allocatable :: name, lead, band
+      real(wp), allocatable :: temperatures(:)
+      real(wp) :: given, ends(2)
+      integer :: i, outside
+
+      address = job%case%address('impact', 'temperature')
+      given = job%case%number(address)
+      allocate (temperatures(count([.not. ieee_is_nan(given)])))
+      temperatures = given
+      do i = 1, size(job%sweep%grid%axes)
+         if (job%sweep%grid%axes(i)%address == address) &
+            temperatures = job%sweep%grid%axes(i)%values
+      end do
+      band = ''
+      ends = [-huge(given), huge(given)]
+      do i = 1, size(keys)
+         if (.not. job%case%given('material', trim(keys(i)), item)) cycle
+         call job%case%get('material', trim(keys(i)), ends(i), item)
+         if (band /= '') band = band//', '
+         band = band//trim(keys(i))//' '//real_text(ends(i))//' K'
+      end do
+      outside = count(temperatures < ends(1) .or. temperatures > ends(2))
+      if (outside == 0) return
+      call job%case%get('material', 'name', name, item)
+      lead = 'the temperature, '//real_text(temperatures(1))//' K, lies'
+      if (size(temperatures) > 1) lead = integer_text(outside)//' of ' &
+         //integer_text(size(temperatures))//' temperatures lie'
+      write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': '//lead &
+         //" outside of the data behind the shift of '"//printable(name)//"' ("//band//')'
+   end subroutine warn_of_temperatures
 
    !> Warn of one material
    subroutine warn_of_band(job, summary, item)

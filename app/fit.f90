@@ -305,6 +305,8 @@ contains
             taken = same_file(name, sampled%window%case%source)
             do i = 1, sampled%window%case%count('material')
                if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i))
+               if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i, &
+                  'shift_file'))
             end do
          end if
          if (taken) call raise(error, error_input, printable(source)//': the material would ' &

@@ -8,7 +8,7 @@ module vcor_app_job
    use vcor_case_unread, only : refuse_unread
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_io_case_reader, only : override, read_case
+   use vcor_io_case_reader, only : complete, override, read_case
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_drawing, only : split_path
    use vcor_io_path, only : directory_exists, join_path, same_file
@@ -110,10 +110,11 @@ contains
 
       integer :: i, j
 
-      allocate (jobs(size(request%files)))
+      call read_cases(request, jobs, error)
+      if (allocated(error)) return
       do i = 1, size(jobs)
-         call read_job(request, request%files(i)%text, jobs(i), error)
-         if (.not. allocated(error)) call name_files(request, jobs(i), error)
+         call prepare_job(request, jobs(i), error)
+         if (.not. allocated(error)) call name_files(request, jobs(i), size(jobs) == 1, error)
          do j = 1, i
             if (.not. allocated(error)) call refuse_clash(jobs(i), jobs(j), i == j, error)
          end do
@@ -121,18 +122,50 @@ contains
       end do
    end subroutine prepare
 
-   !> Read, override, validate and build one case
-   subroutine read_job(request, filename, job, error)
+   !> Read the files of a request: the cases, each completed by the files of materials behind it
+   subroutine read_cases(request, jobs, error)
       type(request_t), intent(in) :: request
-      character(len=*), intent(in) :: filename
-      !> The case, the names of its files left out
+      !> The cases, as they were read
+      type(job_t), allocatable, intent(out) :: jobs(:)
+      type(error_t), allocatable, intent(out) :: error
+
+      type(case_t) :: cases(size(request%files))
+      logical :: completes(size(request%files))
+      integer :: i, j
+
+      do i = 1, size(cases)
+         call read_case(cases(i), request%files(i)%text, error)
+         if (allocated(error)) return
+         completes(i) = cases(i)%is_materials()
+      end do
+      if (size(cases) > 1 .and. completes(1)) then
+         call raise(error, error_usage, request%files(1)%text//': a file with nothing but ' &
+            //'&material groups completes the cases before it, expected a case first')
+         return
+      end if
+      completes(1) = .false.
+      allocate (jobs(count(.not. completes)))
+      do i = 1, size(cases)
+         if (completes(i)) then
+            do j = 1, count(.not. completes(:i))
+               call complete(jobs(j)%case, cases(i))
+            end do
+         else
+            jobs(count(.not. completes(:i)))%case = cases(i)
+         end if
+      end do
+   end subroutine read_cases
+
+   !> Override, validate and build one case
+   subroutine prepare_job(request, job, error)
+      type(request_t), intent(in) :: request
+      !> The case as it was read; the names of its files are left out
       type(job_t), intent(inout) :: job
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: method, scheme
       integer :: i
 
-      call read_case(job%case, filename, error)
       do i = 1, size(request%settings)
          if (.not. allocated(error)) call override(job%case, &
             request%settings(i)%text, error, option='--set')
@@ -154,13 +187,15 @@ contains
       call job%case%get('solver', 'method', method)
       call job%case%get('solver', 'scheme', scheme)
       job%method = method_for(method, scheme)
-   end subroutine read_job
+   end subroutine prepare_job
 
    !> Find out which files a case writes, and where
-   subroutine name_files(request, job, error)
+   subroutine name_files(request, job, is_alone, error)
       type(request_t), intent(in) :: request
       !> A case that was read
       type(job_t), intent(inout) :: job
+      !> Whether it is the only one
+      logical, intent(in) :: is_alone
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: directory, stem
@@ -192,7 +227,7 @@ contains
       job%part = new_part(job%sweep%grid%count(), 1, 1)
       call take_shard(request, job, error)
       if (allocated(error)) return
-      if (size(request%files) == 1) call take_file_name(request, job)
+      if (is_alone) call take_file_name(request, job)
       if (request%shards > 0) job%path = job%path//'_shard_'//integer_text(request%shard) &
          //'_of_'//integer_text(request%shards)
       if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
@@ -352,13 +387,22 @@ contains
                writer%case%source//': its results would replace the case file ' &
                //reader%case%source//': give it another output.stem')
             do k = 1, reader%case%count('material')
-               if (same_file(writer%file(i), data_file(reader%case, k))) &
-                  call raise(error, error_input, writer%case%source//': its results would ' &
-                  //'replace the data file '//data_file(reader%case, k) &
-                  //': give it another output.stem')
+               call keep(writer, reader%case%source_of(k))
+               call keep(writer, data_file(reader%case, k))
+               call keep(writer, data_file(reader%case, k, 'shift_file'))
             end do
          end do
       end subroutine keep_inputs
+
+      !> File i that is written may not be one of data
+      subroutine keep(writer, path)
+         type(job_t), intent(in) :: writer
+         character(len=*), intent(in) :: path
+
+         if (allocated(error)) return
+         if (same_file(writer%file(i), path)) call raise(error, error_input, writer%case%source &
+            //': its results would replace the data file '//path//': give it another output.stem')
+      end subroutine keep
    end subroutine refuse_clash
 
 end module vcor_app_job

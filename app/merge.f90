@@ -209,7 +209,7 @@ contains
       character(len=:), allocatable :: files, validity
       integer :: i
 
-      call name_files(request, job, error)
+      call name_files(request, job, size(request%files) == 1, error)
       if (allocated(error)) return
       do i = 1, size(request%files)
          if (.not. same_file(request%files(i)%text, job%file(3))) cycle

@@ -14,7 +14,7 @@ module vcor_app_validity
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : quantity_place, quantity_value
    use vcor_sweep_summary, only : summary_t
-   use vcor_text, only : integer_text
+   use vcor_text, only : integer_text, printable, real_text
    use vcor_verify_comparison, only : differ, model_t, solve_model
    implicit none
    private
@@ -27,16 +27,31 @@ module vcor_app_validity
 
 contains
 
-   !> Warn on stderr of numbers that are not plausible
+   !> Warn on stderr of numbers that are not plausible, and note which materials are at their
+   !> reference temperature because no other is given
    subroutine warn_of_slips(job)
       type(job_t), intent(in) :: job
 
       character(len=note_length), allocatable :: notes(:)
+      character(len=:), allocatable :: name
+      real(wp) :: temperature
       integer :: i
 
       call slips_of(job%case, job%sweep%grid, notes)
       do i = 1, size(notes)
          write (error_unit, '(a)') 'vcor: warning: '//trim(notes(i))
+      end do
+      if (job%case%given('impact', 'temperature')) return
+      do i = 1, size(job%sweep%grid%axes)
+         if (job%sweep%grid%axes(i)%name == 'impact.temperature') return
+      end do
+      do i = 1, job%case%count('material')
+         if (.not. job%case%given('material', 'shift', i)) cycle
+         call job%case%get('material', 'name', name, i)
+         call job%case%get('material', 'reference_temperature', temperature, i)
+         write (error_unit, '(a)') 'vcor: note: '//job%case%location('material', 'shift', i) &
+            //": '"//printable(name)//"' is at its reference temperature, " &
+            //real_text(temperature)//' K: there is no impact.temperature'
       end do
    end subroutine warn_of_slips
 

@@ -1,10 +1,10 @@
-!> Constants of mathematics, and the standard gravity
+!> Constants of mathematics and physics
 module vcor_constants
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: pi, sqrt_pi, standard_gravity
+   public :: pi, sqrt_pi, standard_gravity, gas_constant
 
    !> Ratio of a circle's circumference to its diameter
    real(wp), parameter :: pi = 3.1415926535897932384626433832795_wp
@@ -12,5 +12,7 @@ module vcor_constants
    real(wp), parameter :: sqrt_pi = 1.7724538509055160272981674833411_wp
    !> Standard acceleration of gravity [m/s2], exact by definition (CGPM 1901)
    real(wp), parameter :: standard_gravity = 9.80665_wp
+   !> Molar gas constant [J/(mol K)], exact by definition (SI 2019)
+   real(wp), parameter :: gas_constant = 8.31446261815324_wp
 
 end module vcor_constants

@@ -10,6 +10,7 @@ module vcor_material
    use vcor_material_power_law, only : new_power_law, power_law_parameters, power_law_t
    use vcor_material_prony, only : elastic_parameters, new_elastic, new_prony, new_rigid, new_sls, &
       prony_parameters, prony_t, rigid_parameters, sls_parameters
+   use vcor_material_shifted, only : new_shifted, shift_parameters, shift_t, shifted_t
    use vcor_material_table, only : new_tabulated, table_parameters, tabulated_t
    use vcor_material_type, only : material_t
    use vcor_words, only : join_words
@@ -17,13 +18,16 @@ module vcor_material
    private
 
    public :: material_t, material_data_t, new_material, set_constants_of
-   public :: models, identifiable_models, model_parameter_t, model_parameters, parameters_of
+   public :: models, identifiable_models, relaxing_models, model_parameter_t, model_parameters
+   public :: parameters_of
 
    !> Names of the models, separated by blanks
    character(len=*), parameter :: models = &
       'rigid elastic sls prony power_law cerf mittag_leffler table'
    !> Those that can be fitted to data
    character(len=*), parameter :: identifiable_models = 'prony sls power_law cerf mittag_leffler'
+   !> Those whose times a temperature can shift
+   character(len=*), parameter :: relaxing_models = identifiable_models//' table'
 
    !> A parameter and its model
    type :: model_parameter_t
@@ -47,7 +51,7 @@ module vcor_material
       (model_parameter_t('rigid', rigid_parameters(i)), i=1, size(rigid_parameters))]
 
    !> Most values of a description: more than there are names
-   integer, parameter :: most_values = size(model_parameters) + 1
+   integer, parameter :: most_values = size(model_parameters) + size(shift_parameters) + 1
 
    !> A value, or a list of them
    type :: value_t
@@ -65,6 +69,12 @@ module vcor_material
       character(len=:), allocatable :: name
       !> One of `models`
       character(len=:), allocatable :: model
+      !> Whether the moduli are shear moduli G, of which E = 2 (1 + nu) G is made
+      logical :: is_shear = .false.
+      !> What a temperature does to it; the constants of its law are values
+      type(shift_t) :: shift
+      !> Temperature [K]; 0: the reference temperature
+      real(wp) :: temperature = 0.0_wp
       !> The first name that no model has a parameter of; not allocated if there is none
       character(len=:), allocatable, private :: unknown
       !> Number of values
@@ -120,7 +130,8 @@ contains
 
       place = self%place_of(name)
       if (place > 0) return
-      if (name == density%name .or. any(model_parameters%parameter%name == name)) then
+      if (name == density%name .or. any(model_parameters%parameter%name == name) &
+          .or. any(shift_parameters%name == name)) then
          self%n = self%n + 1
          place = self%n
          self%value(place)%name = name
@@ -193,8 +204,15 @@ contains
       class(material_data_t), intent(in) :: other
       logical :: is_same
 
-      is_same = self%model == other%model .and. has_all_of(self, other) &
-         .and. has_all_of(other, self)
+      is_same = self%model == other%model .and. (self%is_shear .eqv. other%is_shear) &
+         .and. self%shift%law == other%shift%law &
+         .and. (self%shift%vertical .eqv. other%shift%vertical) &
+         .and. has_all_of(self, other) .and. has_all_of(other, self)
+      if (is_same .and. allocated(self%shift%temperatures)) is_same = &
+         size(self%shift%temperatures) == size(other%shift%temperatures)
+      if (is_same .and. allocated(self%shift%temperatures)) is_same = .not. &
+         (any(abs(self%shift%temperatures - other%shift%temperatures) > 0.0_wp) &
+         .or. any(abs(self%shift%logarithms - other%shift%logarithms) > 0.0_wp))
    end function deforms_as
 
    !> Whether a description has all values of another but its density
@@ -217,28 +235,66 @@ contains
       end do
    end function has_all_of
 
-   !> Give a material the density and Poisson's ratio of a description, as far as it has them
+   !> Give a material the density and Poisson's ratio of a description, as far as it has them, and
+   !> its temperature
    pure subroutine set_constants_of(material, data, error)
       class(material_t), intent(inout) :: material
       type(material_data_t), intent(in) :: data
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      real(wp) :: a, b
+      integer :: i
+
       if (data%place_of('density') > 0) &
          call material%set_constants(error, density=data%number('density'))
       if (allocated(error)) return
       if (data%place_of('poisson_ratio') > 0) &
          call material%set_constants(error, poisson_ratio=data%number('poisson_ratio'))
+      if (allocated(error)) return
+      select type (material)
+      type is (shifted_t)
+         call data%shift%find_factors(data%temperature, &
+            [(data%number(shift_parameters(i)%name), i=1, size(shift_parameters))], a, b, error)
+         if (.not. allocated(error)) call material%take_factors(a, b)
+      end select
    end subroutine set_constants_of
 
+   !> A description with tensile moduli in place of shear moduli
+   pure function tensile(data)
+      !> Of shear moduli
+      type(material_data_t), intent(in) :: data
+      type(material_data_t) :: tensile
+
+      character(len=*), parameter :: pascal = 'Pa'
+      type(parameter_t) :: parameter
+      real(wp) :: factor
+      integer :: i
+
+      tensile = data
+      tensile%is_shear = .false.
+      factor = 2.0_wp*(1.0_wp + data%number('poisson_ratio'))
+      do i = 1, data%n
+         associate (value => tensile%value(i))
+            if (all(model_parameters%parameter%name /= value%name)) cycle
+            parameter = model_parameters(findloc(model_parameters%parameter%name == value%name, &
+               .true., dim=1))%parameter
+            ! Pa, and Pa times a power of time
+            if (parameter%unit(:len(pascal)) /= pascal) cycle
+            value%number = factor*value%number
+            if (allocated(value%list)) value%list(:) = factor*value%list
+         end associate
+      end do
+   end function tensile
+
    !> Build a material
-   subroutine new_material(material, data, error)
+   recursive subroutine new_material(material, data, error)
       !> The material; not allocated on failure
       class(material_t), allocatable, intent(out) :: material
-      !> Its description
       type(material_data_t), intent(in) :: data
       type(error_t), allocatable, intent(out) :: error
 
+      type(shifted_t) :: shifted
       type(prony_t) :: prony
       type(power_law_t) :: power_law
       type(cerf_t) :: cerf
@@ -247,6 +303,10 @@ contains
       real(wp), allocatable :: rates(:)
       real(wp) :: exponent, time
 
+      if (data%is_shear) then
+         call new_material(material, tensile(data), error)
+         return
+      end if
       if (allocated(data%unknown)) then
          call raise(error, error_input, "a material has no parameter '"//data%unknown//"'")
          return
@@ -306,6 +366,11 @@ contains
          if (allocated(error)) return
          allocate (material, source=built)
          material%name = data%name
+         if (data%shift%law /= '') then
+            call new_shifted(shifted, material)
+            deallocate (material)
+            allocate (material, source=shifted)
+         end if
          call set_constants_of(material, data, error)
          if (allocated(error)) deallocate (material)
       end subroutine accept

@@ -88,7 +88,7 @@ def test_unknown_topic(vcor, topic, nearest):
         ("beta", ["material"], ["beta", "beta"]),
         ("material", None, None),
         ("plate.material", ["plate"], ["material"]),
-        ("power_law", ["material"], ["model", "poisson_ratio", "equilibrium_modulus", "coefficient", "exponent", "valid_from", "valid_to"]),
+        ("power_law", ["material"], ["model", "poisson_ratio", "equilibrium_modulus", "coefficient", "exponent", "modulus_kind", "valid_from", "valid_to", "shift", "reference_temperature", "wlf_c1", "wlf_c2", "activation_energy", "shift_file", "vertical_shift", "valid_temperature_from", "valid_temperature_to"]),
         ("direct", ["solver"], ["method"]),
         ("sweep", ["sweep"], ["parameter", "values", "start", "stop", "count", "spacing"]),
     ],

@@ -54,6 +54,8 @@ module vcor_case_case
       logical :: present = .false.
       !> Line of the case file it begins in, 0 where there is none
       integer :: line = 0
+      !> File that it comes from when that is not the case file
+      character(len=:), allocatable :: source
       !> Number of its changes
       integer :: revision = 0
       !> Entries, from the first row of the group to its last
@@ -79,6 +81,12 @@ module vcor_case_case
       procedure :: start
       !> Add a group
       procedure :: add
+      !> Add a material of another case
+      procedure :: adopt
+      !> Whether there is nothing but materials
+      procedure :: is_materials
+      !> File that a material comes from
+      procedure :: source_of
       !> Number of times a group is in the case
       procedure :: count => count_items
       !> Line of the case file a group begins in
@@ -232,6 +240,45 @@ contains
          items%item(item)%line = line
       end associate
    end subroutine add
+
+   !> Add a material of another case, which keeps its file and its lines
+   pure subroutine adopt(self, other, item)
+      class(case_t), intent(inout) :: self
+      class(case_t), intent(in) :: other
+      !> Number of the material there
+      integer, intent(in) :: item
+
+      integer :: group, own
+
+      group = find_group('material')
+      call self%add(group, 0, own)
+      self%group(group)%item(own) = other%group(group)%item(item)
+      self%group(group)%item(own)%source = other%source
+   end subroutine adopt
+
+   !> Whether there is nothing but materials
+   pure function is_materials(self) result(yes)
+      class(case_t), intent(in) :: self
+      logical :: yes
+
+      integer :: i
+
+      yes = self%count('material') > 0 .and. all([(self%count(groups(i)%name) == 0 &
+         .or. groups(i)%name == 'material', i=1, size(groups))])
+   end function is_materials
+
+   !> File that a material comes from
+   pure function source_of(self, item) result(source)
+      class(case_t), intent(in) :: self
+      !> Number of the material
+      integer, intent(in) :: item
+      character(len=:), allocatable :: source
+
+      source = self%source
+      associate (material => self%group(find_group('material'))%item(item))
+         if (allocated(material%source)) source = material%source
+      end associate
+   end function source_of
 
    !> Number of times a group is in the case
    pure function count_items(self, group) result(n)
@@ -644,6 +691,7 @@ contains
       text = printable(self%source)
       if (address%group == 0) return
       associate (item => self%group(address%group)%item(address%item))
+         if (allocated(item%source)) text = printable(item%source)
          if (allocated(item%entry(address%row)%origin)) then
             text = item%entry(address%row)%origin
             return

@@ -8,8 +8,9 @@
 module vcor_case_catalogue
    use vcor_kinds, only : wp
    use vcor_interval, only : interval_t, interval_text
-   use vcor_material, only : identifiable_models, model_parameters, models
+   use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
    use vcor_material_parameter, only : density, positive
+   use vcor_material_shifted, only : shift_laws, shift_parameters
    use vcor_text, only : lower
    use vcor_words, only : contains_word, join_words
    implicit none
@@ -101,6 +102,8 @@ module vcor_case_catalogue
       key_t("impact", "drop_height", real_key, &
          "Height the sphere falls from, in place of velocity = sqrt(2 g drop_height)", "m", &
          positive), &
+      key_t("impact", "temperature", real_key, "Temperature of both bodies; default: that at " &
+         //"which their constants hold", "K", positive), &
       !
       key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
@@ -144,12 +147,31 @@ module vcor_case_catalogue
          choices="ns us ms s min h", models="table", default="s"), &
       key_t("material", "modulus_unit", text_key, "Unit of the moduli in the file", &
          choices="Pa kPa MPa GPa", models="table", default="Pa"), &
+      key_t("material", "modulus_kind", text_key, &
+         "Whether the moduli are E, or G = E/(2 (1 + nu))", &
+         choices="tensile shear", models="elastic "//relaxing_models, default="tensile"), &
       key_t("material", "valid_from", real_key, &
          "First time of the data to which the model was fitted", "s", positive, &
          models=identifiable_models), &
       key_t("material", "valid_to", real_key, &
          "Last time of the data to which the model was fitted", "s", positive, &
          models=identifiable_models), &
+      key_t("material", "shift", text_key, "Law by which the temperature shifts all times", &
+         choices=shift_laws, models=relaxing_models), &
+      (key_t("material", shift_parameters(i)%name, real_key, shift_parameters(i)%meaning, &
+         shift_parameters(i)%unit, shift_parameters(i)%range, models=relaxing_models), &
+         i=1, size(shift_parameters)), &
+      key_t("material", "shift_file", text_key, &
+         "File of temperatures [K or C] and log10 of the shift factor", models=relaxing_models), &
+      key_t("material", "vertical_shift", logical_key, &
+         "Whether moduli are proportional to the temperature, too; default: .false.", &
+         models=relaxing_models), &
+      key_t("material", "valid_temperature_from", real_key, &
+         "Lowest temperature of the data behind the shift", "K", positive, &
+         models=relaxing_models), &
+      key_t("material", "valid_temperature_to", real_key, &
+         "Highest temperature of the data behind the shift", "K", positive, &
+         models=relaxing_models), &
       !
       key_t("solver", "method", text_key, &
          "auto: ive, but direct for scheme adams_bashforth or if ive fails", &

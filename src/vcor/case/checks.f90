@@ -8,9 +8,11 @@ module vcor_case_checks
       last_row, wanted
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : material_of_case
+   use vcor_case_unread, only : why_no_shift, why_unread
    use vcor_case_values, only : range_message
    use vcor_kinds, only : wp
    use vcor_material, only : material_t
+   use vcor_material_shifted, only : keys_needed, shift_keys
    use vcor_text, only : canonical_name, printable, quoted, real_text, shortened
    use vcor_words, only : join_words, suggestion
    implicit none
@@ -52,11 +54,12 @@ contains
       end do
       call check_body(self, 'sphere', error)
       if (.not. allocated(error)) call check_body(self, 'plate', error)
+      if (.not. allocated(error)) call check_temperature(self, error)
       if (.not. allocated(error)) call check_stem(self, error)
       if (.not. allocated(error)) call new_grid(self, grid, error)
    end subroutine validate
 
-   !> Check a material: its name, the band of its data, and that it can be built
+   !> Check a material: its name, the bands of its data, its shift, and that it can be built
    subroutine check_material(self, swept, item, error)
       type(case_t), intent(in) :: self
       !> Addresses of what a sweep varies
@@ -66,8 +69,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       class(material_t), allocatable :: material
-      character(len=:), allocatable :: name
-      real(wp) :: first, last
+      type(case_t) :: case
+      character(len=:), allocatable :: name, shift
       integer :: group
 
       call self%get('material', 'name', name, item)
@@ -78,20 +81,85 @@ contains
             //'; expected different names', error)
          return
       end if
-      call self%get('material', 'valid_from', first, item)
-      call self%get('material', 'valid_to', last, item)
-      if (self%given('material', 'valid_from', item) &
-          .and. self%given('material', 'valid_to', item)) then
-         if (.not. first < last) call fail(self, 'material', 'valid_to', item, &
-            'found valid_from = '//real_text(first)//' and valid_to = '//real_text(last) &
-            //', expected valid_from < valid_to', error)
-      end if
+      call check_band(self, 'valid_from', 'valid_to', item, error)
+      if (.not. allocated(error)) call check_band(self, 'valid_temperature_from', &
+         'valid_temperature_to', item, error)
+      if (.not. allocated(error)) call check_shift(self, swept, item, error)
+      call self%get('material', 'shift', shift, item)
       group = find_group('material')
       ! the points of a table are not there yet, and a sweep gives numbers of its own
-      if (allocated(error) .or. self%model(group, item) == 'table' &
+      if (allocated(error) .or. self%model(group, item) == 'table' .or. shift == 'table' &
           .or. any(swept%group == group .and. swept%item == item)) return
-      call material_of_case(self, item, material, error)
+      case = self
+      ! who is in no body need not bear the temperature, nor does one that is swept count
+      if (all(item /= [self%material_of('sphere'), self%material_of('plate')]) &
+          .or. any(swept == self%address('impact', 'temperature'))) &
+         call case%unset(case%address('impact', 'temperature'))
+      call material_of_case(case, item, material, error)
    end subroutine check_material
+
+   !> Check that a band does not end before it begins
+   subroutine check_band(self, from, to, item, error)
+      type(case_t), intent(in) :: self
+      !> Keys of both ends
+      character(len=*), intent(in) :: from, to
+      !> Number of the material
+      integer, intent(in) :: item
+      type(error_t), allocatable, intent(inout) :: error
+
+      real(wp) :: first, last
+
+      if (.not. (self%given('material', from, item) .and. self%given('material', to, item))) return
+      call self%get('material', from, first, item)
+      call self%get('material', to, last, item)
+      if (.not. first < last) call fail(self, 'material', to, item, 'found '//from//' = ' &
+         //real_text(first)//' and '//to//' = '//real_text(last)//', expected '//from//' < '//to, &
+         error)
+   end subroutine check_band
+
+   !> Check that a shift has what its law needs, and nothing else
+   subroutine check_shift(self, swept, item, error)
+      type(case_t), intent(in) :: self
+      !> Addresses of what a sweep varies
+      type(address_t), intent(in) :: swept(:)
+      !> Number of the material
+      integer, intent(in) :: item
+      type(error_t), allocatable, intent(inout) :: error
+
+      character(len=:), allocatable :: shift, name, reason
+      type(address_t) :: address
+      integer :: i
+
+      call self%get('material', 'shift', shift, item)
+      call self%get('material', 'name', name, item)
+      do i = 1, size(shift_keys)
+         address = self%address('material', trim(shift_keys(i)), item)
+         reason = why_no_shift(self, address)
+         if (self%given('material', trim(shift_keys(i)), item)) then
+            if (reason /= '') call fail(self, 'material', trim(shift_keys(i)), item, &
+               'the impact does not read it: '//reason, error)
+         else if (i <= keys_needed .and. reason == '' .and. all(.not. swept == address)) then
+            call fail(self, 'material', 'shift', item, "key '"//trim(shift_keys(i)) &
+               //"' is missing in &material "//quoted(shortened(name))//" with shift = '"//shift &
+               //"', expected "//wanted(catalogue(address%row)), error)
+         end if
+         if (allocated(error)) return
+      end do
+   end subroutine check_shift
+
+   !> Check that there is a material that the temperature shifts
+   subroutine check_temperature(self, error)
+      !> A case whose bodies have materials
+      type(case_t), intent(in) :: self
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: reason
+
+      if (.not. self%given('impact', 'temperature')) return
+      reason = why_unread(self, self%address('impact', 'temperature'))
+      if (reason /= '') call fail(self, 'impact', 'temperature', 1, 'the impact does not read ' &
+         //'it: '//reason, error)
+   end subroutine check_temperature
 
    !> Check that there is the material of a body
    subroutine check_body(self, body, error)

@@ -9,7 +9,7 @@ module vcor_case_identified
    implicit none
    private
 
-   public :: put_material, material_text
+   public :: put_material, take_as_is, material_text
 
 contains
 
@@ -26,6 +26,7 @@ contains
       integer :: i
 
       call case%set(case%address('material', 'model', item), data%model, given=.true.)
+      call take_as_is(case, item)
       allocate (parameters, source=parameters_of(data%model))
       do i = 1, size(parameters)
          if (.not. parameters(i)%fitted .or. parameters(i)%is_list) cycle
@@ -38,6 +39,16 @@ contains
       call case%set(case%address('material', 'times', item), 1.0_wp/data%list('rates'), &
          given=.true.)
    end subroutine put_material
+
+   !> Let the moduli of a material be those of the impact: tensile, at its temperature
+   pure subroutine take_as_is(case, item)
+      type(case_t), intent(inout) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+
+      call case%unset(case%address('material', 'modulus_kind', item))
+      call case%unset(case%address('material', 'shift', item))
+   end subroutine take_as_is
 
    !> A material as a &material group
    function material_text(data, density, poisson_ratio, valid_from, valid_to) result(text)

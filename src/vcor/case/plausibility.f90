@@ -19,7 +19,7 @@ module vcor_case_plausibility
       !> Group
       character(len=8) :: group
       !> Key, blank: all of the unit
-      character(len=13) :: key
+      character(len=22) :: key
       !> Unit in the catalogue
       character(len=6) :: unit
       !> Least plausible value, in this unit
@@ -34,10 +34,15 @@ module vcor_case_plausibility
 
    !> No limit
    real(wp), parameter :: endless = huge(1.0_wp)
+   !> What a temperature may be in
+   character(len=*), parameter :: celsius = 'is it in degrees Celsius?'
    !> Moduli from those of gels to that of diamond; densities from those of foams to that of osmium;
    !> times from that of an atom's vibration on
    type(limits_t), parameter :: limits(*) = [ &
+      limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
+      limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &
+      limits_t('material', 'valid_temperature_from', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', '', 'Pa', 1.0e3_wp, 2.0e12_wp, 'is it in kPa, MPa or GPa?', &
       'has it a power of ten too many?'), &
       limits_t('material', '', 'kg/m3', 10.0_wp, 3.0e4_wp, 'is it in g/cm3?', 'is it in g/m3?'), &

@@ -25,6 +25,7 @@ module vcor_case_problem
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of, &
       set_constants_of
    use vcor_material_parameter, only : density, parameter_t
+   use vcor_material_shifted, only : shift_parameters
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_text, only : integer_text, quoted, shortened
    implicit none
@@ -36,6 +37,8 @@ module vcor_case_problem
    type :: body_t
       !> Group and item in the case
       type(address_t) :: address
+      !> Where its temperature stands, nowhere for a material that has no shift
+      type(address_t) :: temperature
       !> Number of changes of the item when it was read last, -1: never
       integer :: revision = -1
       !> Rows of its numbers and lists in the catalogue, shape (n)
@@ -257,7 +260,7 @@ contains
    pure function address_of(case, name, item) result(address)
       type(case_t), intent(in) :: case
       character(len=*), intent(in) :: name
-      !> Number of the material it belongs to, 0: it belongs to another group
+      !> Number of the material it belongs to, if it does not to another group; 0: none
       integer, intent(in) :: item
       !> The address, nowhere if there is no such key
       type(address_t) :: address
@@ -266,7 +269,7 @@ contains
 
       if (item > 0) then
          address = case%address('material', name, item)
-         return
+         if (address%group > 0) return
       end if
       ! from the last: the material of two bodies is that of the plate
       do group = size(groups), 1, -1
@@ -285,13 +288,26 @@ contains
 
       type(parameter_t), allocatable :: parameters(:)
       type(entry_t) :: entry
+      real(wp), allocatable :: table(:)
+      character(len=:), allocatable :: word
       integer :: row
       logical :: counts
 
       body%address = case%address('material', 'name', item)
       call case%get('material', 'name', body%data%name, item)
       call case%get('material', 'model', body%data%model, item)
-      allocate (parameters, source=[density, parameters_of(body%data%model)])
+      call case%get('material', 'modulus_kind', word, item)
+      body%data%is_shear = word == 'shear'
+      call case%get('material', 'shift', word, item)
+      body%data%shift%law = word
+      call case%get('material', 'vertical_shift', body%data%shift%vertical, item)
+      if (word /= '') body%temperature = case%address('impact', 'temperature')
+      if (word == 'table') then
+         call case%get('material', 'shift_file', table, item)
+         body%data%shift%temperatures = table(1::2)
+         body%data%shift%logarithms = table(2::2)
+      end if
+      allocate (parameters, source=[density, shift_parameters, parameters_of(body%data%model)])
       allocate (body%rows(0))
       do row = first_row(body%address%group), last_row(body%address%group)
          if (find_key('material', catalogue(row)%name) /= row) cycle
@@ -471,8 +487,11 @@ contains
 
       address = body%address
       revision = case%revision(address%group, address%item)
-      has_changed = body%revision /= revision .or. .not. body%is_current
+      number = number_or_zero(case, body%temperature)
+      has_changed = body%revision /= revision .or. .not. body%is_current &
+         .or. abs(number - body%data%temperature) > 0.0_wp
       if (.not. has_changed) return
+      body%data%temperature = number
       do i = 1, size(body%rows)
          associate (key => catalogue(body%rows(i)))
             if (key%value_kind == list_key) then
@@ -486,8 +505,9 @@ contains
                if (body%revision >= 0 &
                    .and. .not. abs(number - body%data%number(key%name)) > 0.0_wp) cycle
                call body%data%set(key%name, number)
-               ! points of data need not be fitted anew for another density
-               if (key%name == 'density' .or. key%name == 'poisson_ratio') cycle
+               ! points of data need not be fitted anew for another density or shift
+               if (key%name == 'density' .or. any(shift_parameters%name == key%name)) cycle
+               if (key%name == 'poisson_ratio' .and. .not. body%data%is_shear) cycle
             end if
             body%is_current = .false.
          end associate

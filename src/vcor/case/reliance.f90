@@ -12,8 +12,10 @@ module vcor_case_reliance
    use vcor_impact_trajectory, only : contact_separated
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : sampled_times, time_range_t
+   use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
    use vcor_case_case, only : case_t
+   use vcor_case_identified, only : take_as_is
    use vcor_case_problem, only : material_of_case, solve_case
    implicit none
    private
@@ -31,7 +33,7 @@ module vcor_case_reliance
       logical :: leans = .false.
       !> Number of the material
       integer :: item = 0
-      !> Band of its data [s]
+      !> Band of its data at the temperature of the impact [s]
       real(wp) :: band(2) = 0.0_wp
       !> Whether there is an end to the band, before and after
       logical :: ends(2) = .false.
@@ -63,15 +65,17 @@ contains
       real(wp), allocatable :: times(:), moduli(:)
       real(wp) :: first, last
 
+      reliance%item = item
+      call material_of_case(case, item, material, error)
+      if (allocated(error)) return
       call case%get('material', 'valid_from', first, item)
       call case%get('material', 'valid_to', last, item)
-      reliance%item = item
+      first = first*time_factor_of(material)
+      last = last*time_factor_of(material)
       reliance%band = [first, last]
       reliance%ends = .not. ieee_is_nan(reliance%band)
       if (.not. any(reliance%ends)) return
 
-      call material_of_case(case, item, material, error)
-      if (allocated(error)) return
       if (.not. reliance%ends(2)) last = ample*contact_time
       if (.not. reliance%ends(1)) first = min(1.0e-9_wp*contact_time, 0.1_wp*last)
       ! the contact does not see what comes after it
@@ -89,6 +93,7 @@ contains
       if (allocated(error) .or. free%status /= contact_separated) return
       reliance%cor = free%cor
       call other%set(other%address('material', 'model', item), 'table', given=.true.)
+      call take_as_is(other, item)
       call other%set(other%address('material', 'times', item), times, given=.true.)
       call other%set(other%address('material', 'moduli', item), moduli, given=.true.)
       call solve_case(other, held, error)

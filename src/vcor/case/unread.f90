@@ -9,10 +9,12 @@ module vcor_case_unread
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
+   use vcor_material_shifted, only : key_laws, shift_keys
+   use vcor_words, only : contains_word, join_words
    implicit none
    private
 
-   public :: why_unread, refuse_unread
+   public :: why_unread, why_no_shift, refuse_unread
 
 contains
 
@@ -81,7 +83,8 @@ contains
       character(len=:), allocatable :: reason
 
       select case (group_and_key(address))
-      case ('material.valid_from', 'material.valid_to')
+      case ('material.valid_from', 'material.valid_to', 'material.valid_temperature_from', &
+         'material.valid_temperature_to')
          ! the band of the data has no part in the numbers, but brings a warning
          reason = why_material_is_unread(case, address%item)
       case default
@@ -133,7 +136,19 @@ contains
          case ('solver.volterra_coefficient')
             call case%get('solver', 'volterra_order', order)
             if (order /= 2) reason = 'it is for solver.volterra_order = 2'
-         case ('material.valid_from', 'material.valid_to')
+         case ('impact.temperature')
+            if (.not. (shifts('sphere') .or. shifts('plate'))) reason = 'with impact.temperature ' &
+               //'the material of the sphere or that of the plate needs a shift, neither has one'
+         case ('material.shift', 'material.shift_file', 'material.vertical_shift', &
+            'material.reference_temperature', 'material.wlf_c1', 'material.wlf_c2', &
+            'material.activation_energy')
+            reason = why_material_is_unread(case, item)
+            if (reason == '') reason = why_no_shift(case, address)
+            if (reason == '' .and. .not. case%given('impact', 'temperature') .and. .not. &
+                any(swept_addresses(case) == case%address('impact', 'temperature'))) reason = &
+               'without impact.temperature the material is at its reference temperature'
+         case ('material.valid_from', 'material.valid_to', 'material.valid_temperature_from', &
+            'material.valid_temperature_to')
             reason = 'it is for the warning about the band of the data, no number depends on it'
          case ('material.density')
             reason = why_material_is_unread(case, item)
@@ -150,7 +165,42 @@ contains
             if (groups(group)%name == 'material') reason = why_material_is_unread(case, item)
          end select
       end associate
+
+   contains
+
+      !> Whether the temperature has a say in the material of a body
+      pure function shifts(body)
+         !> sphere or plate
+         character(len=*), intent(in) :: body
+         logical :: shifts
+
+         character(len=:), allocatable :: law
+
+         law = ''
+         if (case%material_of(body) > 0) &
+            call case%get('material', 'shift', law, case%material_of(body))
+         shifts = law /= ''
+      end function shifts
    end function why_unread
+
+   !> Why the temperature does not shift by a key
+   pure function why_no_shift(case, address) result(reason)
+      type(case_t), intent(in) :: case
+      !> Address in a material
+      type(address_t), intent(in) :: address
+      !> The reason, empty where it does, or for another key
+      character(len=:), allocatable :: reason
+
+      character(len=:), allocatable :: shift
+      integer :: i
+
+      reason = ''
+      i = findloc(shift_keys == catalogue(address%row)%name, .true., dim=1)
+      if (i == 0) return
+      call case%get('material', 'shift', shift, address%item)
+      if (.not. contains_word(key_laws(i), shift)) reason = "'"//trim(shift_keys(i)) &
+         //"' is for a material of shift "//join_words(trim(key_laws(i)))
+   end function why_no_shift
 
    !> Group and key in one word
    pure function group_and_key(address) result(word)

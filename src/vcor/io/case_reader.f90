@@ -5,6 +5,7 @@
 module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
+   use vcor_io_path, only : folder_of, path_from
    use vcor_io_text_file, only : read_text_file
    use vcor_case_values, only : convert, convert_text, range_message
    use vcor_case_address, only : resolve, unknown_group, unknown_key
@@ -14,7 +15,7 @@ module vcor_io_case_reader
    implicit none
    private
 
-   public :: read_case, read_case_text, override
+   public :: read_case, read_case_text, complete, override
 
    !> Most items of a repeated group
    integer, parameter :: most_items = 1000
@@ -65,6 +66,28 @@ contains
       if (empty) call raise(error, error_input, printable(source) &
          & //": the file is empty, expected groups such as &impact velocity = 5.0 /")
    end subroutine read_case_text
+
+   !> Complete a case by the materials of another file; their data files are in its folder
+   subroutine complete(case, materials)
+      type(case_t), intent(inout) :: case
+      !> A case of nothing but materials
+      type(case_t), intent(in) :: materials
+
+      character(len=*), parameter :: keys(2) = [character(len=10) :: 'file', 'shift_file']
+      type(address_t) :: address
+      character(len=:), allocatable :: file
+      integer :: i, item
+
+      do item = 1, materials%count('material')
+         call case%adopt(materials, item)
+         do i = 1, size(keys)
+            address = case%address('material', trim(keys(i)), case%count('material'))
+            call case%get('material', trim(keys(i)), file, address%item)
+            if (file /= '') call case%set(address, path_from(folder_of(case%source), &
+               folder_of(materials%source), file), given=.true.)
+         end do
+      end do
+   end subroutine complete
 
    !> Read one group
    subroutine read_group(case, namelist, name, line, error)

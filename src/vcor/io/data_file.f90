@@ -8,9 +8,10 @@ module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
       & split, start_of, take_decimals, take_line
-   use vcor_io_header, only : check_unit, header_t, longest_word, name_of, note_comment, &
-      & read_names, role_none, role_of, role_relaxation, role_time, unit_size
-   use vcor_io_path, only : join_path
+   use vcor_io_header, only : check_unit, header_t, longest_word, name_of, names_tensile, &
+      & note_comment, read_names, role_none, role_of, role_relaxation, role_time, unit_size
+   use vcor_io_path, only : folder_of, join_path
+   use vcor_io_shift_file, only : read_shift_table
    use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
@@ -30,7 +31,7 @@ module vcor_io_data_file
 contains
 
    !> Read the data files of a validated case: the points become `times` and `moduli` of their
-   !> material, which no user can give to it
+   !> material, which no user can give to it, those of a shift the list of `shift_file`
    subroutine read_data(case, error)
       type(case_t), intent(inout) :: case
       !> Error of code `error_file` when a file cannot be read, `error_input` when its contents are
@@ -42,41 +43,66 @@ contains
       integer :: item
 
       do item = 1, case%count("material")
+         path = data_file(case, item, "shift_file")
+         if (path /= "") then
+            call read_file("shift_file", "a file of temperatures and shift factors")
+            if (.not. allocated(error)) &
+               call read_shift_table(text, printable(path), times, error)
+            if (allocated(error)) return
+            call case%set(case%address("material", "shift_file", item), times, given=.true.)
+         end if
          path = data_file(case, item)
          if (path == "") cycle
-         call read_text_file(path, text, error, kind="a file of times and moduli")
-         if (allocated(error)) then
-            error%message = case%location("material", "file", item)//": "//error%message
-            return
-         end if
+         call read_file("file", "a file of times and moduli")
+         if (allocated(error)) return
          call case%get("material", "time_unit", unit, item)
          scale(1) = unit_size(unit)
          call case%get("material", "modulus_unit", unit, item)
          scale(2) = unit_size(unit)
-         call read_points(text, printable(path), scale, times, moduli, error)
+         call case%get("material", "modulus_kind", unit, item)
+         call read_points(text, printable(path), scale, unit == "shear", times, moduli, error)
          if (allocated(error)) return
          call case%set(case%address("material", "times", item), times, given=.false.)
          call case%set(case%address("material", "moduli", item), moduli, given=.false.)
       end do
+
+   contains
+
+      !> Read a file that a key names
+      subroutine read_file(key, kind)
+         character(len=*), intent(in) :: key, kind
+
+         call read_text_file(path, text, error, kind=kind)
+         if (allocated(error)) error%message = case%location("material", key, item)//": " &
+            //error%message
+      end subroutine read_file
    end subroutine read_data
 
-   !> Path of the data file of a material, from the folder of the case file
-   pure function data_file(case, item) result(path)
+   !> Path of a data file of a material, from the folder of the case file
+   pure function data_file(case, item, key) result(path)
       type(case_t), intent(in) :: case
       integer, intent(in) :: item
+      !> Key that names it; absent: file
+      character(len=*), intent(in), optional :: key
       !> The path; empty when there is no such file
       character(len=:), allocatable :: path
 
-      call case%get("material", "file", path, item)
-      if (path /= "") path = join_path(case%source(:index(case%source, "/", back=.true.)), path)
+      if (present(key)) then
+         call case%get("material", key, path, item)
+      else
+         call case%get("material", "file", path, item)
+      end if
+      if (path /= "") path = join_path(folder_of(case%source), path)
    end function data_file
 
    !> Read the points
-   subroutine read_points(text, name, scale, times, moduli, error)
+   subroutine read_points(text, name, scale, is_shear, times, moduli, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: name
       !> Units of times and moduli [s], [Pa]
       real(wp), intent(in) :: scale(2)
+      !> Whether the case says that they are shear moduli
+      logical, intent(in) :: is_shear
       !> Times [s], shape (n), n >= 2
       real(wp), allocatable, intent(out) :: times(:)
       !> Moduli [Pa], shape (n)
@@ -107,7 +133,7 @@ contains
             if (.not. any([looks_numeric(content(from(1):to(1))), &
                & looks_numeric(content(from(2):to(2)))])) then
                call read_names(header, content, line)
-               call check_header(header, name, scale, error)
+               call check_header(header, name, scale, is_shear, error)
                if (allocated(error)) return
                cycle
             end if
@@ -148,11 +174,13 @@ contains
 
    !> Refuse a header that names something else than a time and a relaxation modulus, or other units
    !> than those of the case. A line of other than two names is a title
-   subroutine check_header(header, name, scale, error)
+   subroutine check_header(header, name, scale, is_shear, error)
       type(header_t), intent(in) :: header
       character(len=*), intent(in) :: name
       !> Units of times and moduli by the case [s], [Pa]
       real(wp), intent(in) :: scale(2)
+      !> Whether moduli are shear moduli by the case
+      logical, intent(in) :: is_shear
       !> Error of code `error_input`, unallocated where nothing is against them
       type(error_t), allocatable, intent(out) :: error
       character(len=longest_word) :: unit, key
@@ -165,9 +193,15 @@ contains
          call role_of(header%columns(i), role, shear, unit)
          found = place//": found '"//shortened(trim(header%columns(i)%name))//"'"
          if (header%count /= 2) found = found//" in a title"
-         if (shear .or. index(header%columns(i)%name, "shear") > 0) then
+         shear = shear .or. index(header%columns(i)%name, "shear") > 0
+         if (shear .and. .not. is_shear) then
             call raise(error, error_input, found//", a shear modulus, expected a relaxation " &
-               & //"modulus E: write E = 2 (1 + nu) G, or identify a material by vcor fit")
+               & //"modulus E: give modulus_kind = 'shear' in its &material group, which makes " &
+               & //"E = 2 (1 + nu) G of it, or identify a material by vcor fit")
+         else if (is_shear .and. role == role_relaxation &
+            & .and. names_tensile(header%columns(i)%name)) then
+            call raise(error, error_input, found//", a tensile modulus, but the case has " &
+               & //"modulus_kind = 'shear'")
          else if (all(role /= [role_none, role_time, role_relaxation])) then
             call raise(error, error_input, found//" ("//name_of(role, unit)//"), expected a " &
                & //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &

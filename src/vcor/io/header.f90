@@ -14,7 +14,7 @@ module vcor_io_header
    implicit none
    private
 
-   public :: header_t, column_name_t, roles, name_of, role_of, names_columns
+   public :: header_t, column_name_t, roles, name_of, role_of, names_columns, names_tensile
    public :: read_names, read_units, note_comment
    public :: check_unit, unit_size, time_units, frequency_units, angular_units, modulus_units
    public :: most_columns, longest_word
@@ -358,16 +358,35 @@ contains
       character(len=*), intent(in) :: name
       logical :: yes
 
+      yes = index(name, "shear") > 0 .or. index(name, "schub") > 0 .or. has_symbol(name, "g")
+   end function names_shear
+
+   !> Whether a name speaks of tension: E, Et, E0, E', |E*|, or a word of Young's modulus
+   pure function names_tensile(name) result(yes)
+      !> The name, lower case, `_` for blanks
+      character(len=*), intent(in) :: name
+      logical :: yes
+
+      yes = index(name, "young") > 0 .or. index(name, "tensile") > 0 .or. has_symbol(name, "e")
+   end function names_tensile
+
+   !> Whether a name has a symbol in it: a letter by itself or with an index, of which t is one, not
+   !> the beginning of a word
+   pure function has_symbol(name, letter) result(yes)
+      !> The name, lower case, `_` for blanks
+      character(len=*), intent(in) :: name
+      character, intent(in) :: letter
+      logical :: yes
+
       character(len=*), parameter :: letters = "abcdefghijklmnopqrsuvwxyz"
       integer :: i, first
 
-      yes = index(name, "shear") > 0 .or. index(name, "schub") > 0
+      yes = .false.
       first = 1
       do i = 1, len_trim(name)
          if (scan(name(i:i), "_|(") > 0) then
             first = i + 1
-         else if (i == first .and. name(i:i) == "g") then
-            ! a G by itself or with an index, of which t is one, not the beginning of a word
+         else if (i == first .and. name(i:i) == letter) then
             if (i == len_trim(name)) then
                yes = .true.
             else
@@ -375,7 +394,7 @@ contains
             end if
          end if
       end do
-   end function names_shear
+   end function has_symbol
 
    !> A unit in that of the SI: s, rad/s or Pa
    pure function unit_size(unit) result(scale)

@@ -53,7 +53,7 @@ contains
       !> The sum; empty where there are no data files
       character(len=:), allocatable :: text
 
-      real(wp), allocatable :: times(:), moduli(:)
+      real(wp), allocatable :: numbers(:), times(:), moduli(:)
       character(len=16) :: digits
       integer(int64) :: sum
       integer :: item, i
@@ -61,12 +61,15 @@ contains
       sum = 0_int64
       text = ''
       do item = 1, case%count('material')
-         if (data_file(case, item) == '') cycle
-         call case%get('material', 'times', times, item)
-         call case%get('material', 'moduli', moduli, item)
-         do i = 1, size(times)
-            sum = ieor(ishftc(sum, 7), transfer(times(i), sum))
-            sum = ieor(ishftc(sum, 7), transfer(moduli(i), sum))
+         call case%get('material', 'shift_file', numbers, item)
+         if (data_file(case, item) /= '') then
+            call case%get('material', 'times', times, item)
+            call case%get('material', 'moduli', moduli, item)
+            numbers = [numbers, ([times(i), moduli(i)], i=1, size(times))]
+         end if
+         if (size(numbers) == 0) cycle
+         do i = 1, size(numbers)
+            sum = ieor(ishftc(sum, 7), transfer(numbers(i), sum))
          end do
          write (digits, '(z16.16)') sum
          text = digits

@@ -3,16 +3,16 @@
 !> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
 !> with the path and the system's reason.
 module vcor_io_path
-   use, intrinsic :: iso_c_binding, only : c_int
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_posix, only : all_permissions, c_mkdir, c_text, file_at, file_id_t, folder, &
-      last_errno, nothing_there, plain_file, same_file_id, system_reason
+   use vcor_io_posix, only : all_permissions, c_mkdir, c_realpath, c_text, file_at, file_id_t, &
+      folder, last_errno, longest_path, nothing_there, plain_file, same_file_id, system_reason
    use vcor_text, only : is_control, name_flaw, printable
    implicit none
    private
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
-   public :: join_path, same_file, quoted_path, for_shell
+   public :: folder_of, join_path, path_from, same_file, quoted_path, for_shell
    public :: anything_at, check_name, check_plain, raise_system
 
 contains
@@ -112,6 +112,15 @@ contains
       end do
    end subroutine make_directory
 
+   !> Folder of a file, with the slash at its end
+   pure function folder_of(path) result(directory)
+      character(len=*), intent(in) :: path
+      !> Empty for the current folder
+      character(len=:), allocatable :: directory
+
+      directory = path(:index(path, '/', back=.true.))
+   end function folder_of
+
    !> Path of a member of a directory
    pure function join_path(directory, name) result(path)
       !> Directory, with or without a slash at the end; empty is the current directory
@@ -127,6 +136,31 @@ contains
       if (path(len(path):) /= '/') path = path//'/'
       path = path//trim(name)
    end function join_path
+
+   !> Path of a member of a folder as another folder sees it
+   function path_from(viewer, directory, name) result(path)
+      !> The other folder, empty for the current one
+      character(len=*), intent(in) :: viewer
+      !> Folder of the member, empty for the current one
+      character(len=*), intent(in) :: directory
+      !> Path from there; one that begins with a slash stands for itself
+      character(len=*), intent(in) :: name
+      character(len=:), allocatable :: path
+
+      character(kind=c_char) :: root(longest_path)
+      integer :: i
+
+      path = name
+      if (viewer == directory) return
+      path = join_path(directory, name)
+      if (viewer == '' .or. index(path, '/') == 1) return
+      if (.not. c_associated(c_realpath(c_text(directory//'.'), root))) return
+      path = ''
+      do i = 1, findloc(root, c_null_char, dim=1) - 1
+         path = path//root(i)
+      end do
+      path = join_path(path, name)
+   end function path_from
 
    !> Whether two paths lead to one file, which need not be there: by its name and its folder
    function same_file(one, other) result(same)

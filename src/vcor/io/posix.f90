@@ -12,7 +12,7 @@ module vcor_io_posix
    private
 
    public :: c_fopen, c_fwrite, c_fflush, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, &
-      c_rmdir, c_mkdir
+      c_rmdir, c_mkdir, c_realpath, longest_path
    public :: c_write, c_isatty, c_fallocate, c_pwrite, c_fsync, c_lockf, c_link
    public :: standard_output, standard_error, all_permissions, lock_alone
    public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
@@ -29,6 +29,9 @@ module vcor_io_posix
    integer(c_int), parameter :: all_permissions = int(o'777', c_int)
    !> Operation of `c_lockf`: for this process alone, without waiting (F_TLOCK)
    integer(c_int), parameter :: lock_alone = 2
+
+   !> Bytes of the longest path, with its NUL (PATH_MAX)
+   integer, parameter :: longest_path = 4096
 
    !> What there is at a path; something else is a link that is not followed, a pipe or a device
    integer, parameter :: nothing_there = 0, plain_file = 1, folder = 2, something_else = 3
@@ -110,6 +113,15 @@ module vcor_io_posix
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_rmdir
+
+      !> Path from the root, without links and points; null if there is nothing
+      function c_realpath(path, resolved) result(place) bind(c, name='realpath')
+         import :: c_char, c_ptr
+         character(kind=c_char), intent(in) :: path(*)
+         !> Room for `longest_path` bytes
+         character(kind=c_char), intent(inout) :: resolved(*)
+         type(c_ptr) :: place
+      end function c_realpath
 
       !> Make a folder for results, with the permissions that the umask leaves
       function c_mkdir(path, mode) result(status) bind(c, name='mkdir')
