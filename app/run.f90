@@ -11,7 +11,8 @@ module vcor_app_run
    use vcor_case_problem, only : material_of_case
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
+      trajectory_t
    use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_stdout
    use vcor_io_identity, only : identity_of, identity_t
@@ -237,7 +238,7 @@ contains
       character(len=:), allocatable :: time, too_light, reason
       real(wp) :: lambda
 
-      if (outcome%status == contact_separated) return
+      if (any(outcome%status == [contact_separated, contact_resting])) return
       associate (last => trajectory%state(1, trajectory%last))
          time = short(last)
          lambda = job%impact%lasting_inelasticity(last)

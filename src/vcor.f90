@@ -14,8 +14,8 @@ module vcor
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
       waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
-   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
-      trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
+      contact_sticking, trajectory_t
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_csv, only : write_csv
    use vcor_io_data_file, only : read_data
@@ -53,7 +53,7 @@ module vcor
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution
    public :: solve_impact, outcome_t, solver_settings_t, trajectory_t
-   public :: contact_separated, contact_lasting, contact_sticking
+   public :: contact_separated, contact_lasting, contact_sticking, contact_resting
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data
    public :: validate, case_text, problem_t, problem_of_case, material_of_case

@@ -75,6 +75,9 @@ contains
       else if (impact%law%receding .and. settings%ghost) then
          call refuse('nothing is left of a receding contact at separation: going on has no ' &
             //'meaning', 'law continue_after_separation')
+      else if (impact%gravity > 0.0_wp .and. .not. is_product) then
+         call refuse("adams_bashforth marches the paper's wave equation, which has no weight; use " &
+            //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
       else if (impact%plate%hereditary() .and. .not. is_product) then
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
             //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &

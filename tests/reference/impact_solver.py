@@ -1,11 +1,16 @@
 """Impacts of a viscoelastic sphere on a plate by spectral collocation: the solver of the references.
 
-A sphere of mass m strikes a plate at v0.  With s the indentation, u = s sqrt(|s|) and U the
-displacement of the plate, the twice integrated equation of motion and its derivative are
+A body of mass m strikes a plate at v0, g is gravity.  With s the indentation, u = s |s|^(n-1) and U
+the displacement of the plate, the twice integrated equation of motion and its derivative are
 
-    s(t) = v0 t - J(t)/m - U(t),    v(t) = s'(t) = v0 - I(t)/m - U'(t),    J' = I,  I' = F.
+    s(t) = v0 t + g t^2/2 - J(t)/m - U(t),    v(t) = s'(t) = v0 + g t - I(t)/m - U'(t),
+    J' = I,  I' = F.
 
-Contact (`law`), k = (4/3) sqrt(R) E'(t) the firmness (N/m^1.5), eta that of a dashpot:
+Shape: n = 3/2 and K = (4/3) sqrt(R) of a sphere, 2 and (2/pi) tan(half angle) of a cone, 1 and 2a
+of a punch; a profile z = C r^p has n = 1 + 1/p and K = 2p/(p+1) (C kappa)^(-1/p) with
+kappa = sqrt(pi) Gamma(p/2 + 1)/Gamma((p+1)/2) (Sneddon 1965).
+
+Contact (`law`), k = K E'(t) the firmness (N/m^n), eta that of a dashpot:
 
     boltzmann   F = int_0^t k(t-x) u'(x) dx + eta u',   so   I = int_0^t k(t-x) u(x) dx + eta u
     receding    the same until s is largest; afterwards, with t1(t) the time at which the contact
@@ -272,11 +277,10 @@ class Impact:
         self.law, self.pair = contact.get("law", "boltzmann"), contact.get("pair", "eq1")
         self.a, self.b = made[sphere["material"]], made[plate["material"]]
         self.v0 = case["velocity"]
-        r = sphere["radius"]
-        self.m = sphere.get("mass") or 4 / 3 * math.pi * r ** 3 * self.a.density
-        rs = plate.get("surface_radius", 0.0)
-        self.radius = 1 / (1 / r + (1 / rs if rs else 0.0))
-        self.c = 4 / 3 * math.sqrt(self.radius)
+        self.gravity = case.get("gravity", 0.0)
+        self.m = (sphere.get("mass")
+                  or 4 / 3 * math.pi * sphere["radius"] ** 3 * self.a.density)
+        self.n, self.c = self.shape(sphere, plate.get("surface_radius", 0.0))
         self.waves = plate.get("waves", "relaxing")
         a, b = self.a, self.b
         # which pairs have a contact modulus that is again one material's E(t), times a factor
@@ -311,6 +315,34 @@ class Impact:
         self.g, self.psi, self.psi_singular = 0.0, None, 0.0
         if self.waves == "hereditary" and self.plate_factor:
             self.memory()
+
+    @staticmethod
+    def shape(sphere, surface_radius):
+        """Exponent n and factor K of F = K E' s^n."""
+        shape = sphere.get("shape", "sphere")
+        if shape == "cone":
+            return 2.0, 2 / math.pi * math.tan(math.radians(sphere["half_angle"]))
+        if shape == "punch":
+            return 1.0, 2 * sphere["punch_radius"]
+        if shape == "power":
+            p = sphere["profile_power"]
+            kappa = math.sqrt(math.pi) * math.gamma(p / 2 + 1) / math.gamma((p + 1) / 2)
+            return 1 + 1 / p, 2 * p / (p + 1) * (sphere["profile_coefficient"] * kappa) ** (-1 / p)
+        r = sphere["radius"]
+        return 1.5, 4 / 3 * math.sqrt(
+            1 / (1 / r + (1 / surface_radius if surface_radius else 0.0)))
+
+    def u(self, s):
+        """s |s|^(n-1)."""
+        return s * self.secant(s)
+
+    def secant(self, s):
+        """u/s = |s|^(n-1)."""
+        return np.sqrt(np.abs(s)) if self.n == 1.5 else np.abs(s) ** (self.n - 1)
+
+    def free(self, t):
+        """Way and velocity without a force."""
+        return self.v0 * t + self.gravity * t * t / 2, self.v0 + self.gravity * t
 
     def pair_exponent(self):
         """Exponent of the singularity of E' at t = 0 of two different bodies."""
@@ -387,7 +419,7 @@ class Impact:
             return 0.0
         k0 = self.c / ((0 if self.a.model == "rigid" else 1 / self.a.glassy_plane) + 1 / glassy)
         alpha = self.plate_factor / math.sqrt(glassy)
-        return alpha * self.m / (self.m / (k0 * math.sqrt(self.v0))) ** 0.4
+        return alpha * self.m / (self.m / (k0 * self.v0 ** (self.n - 1))) ** (1 / (self.n + 1))
 
     def loss_tangent(self, omega):
         """Loss over storage of the contact modulus at omega; nan where it is not known here."""
@@ -422,11 +454,12 @@ class Impact:
         return value.imag / value.real
 
     def time_scale(self):
-        """Duration of contact, roughly: the Hertz formula with k at about that time [s]."""
+        """Duration of contact, roughly: the elastic one with k at about that time [s]."""
         t = 1e-3
         for _ in range(100):
             k = float(self.k(np.array([t]))[0]) + self.eta / t
-            t = 0.5 * (t + 3.2 * (self.m / (k * math.sqrt(self.v0))) ** 0.4)
+            speed = self.v0 + self.gravity * t / 3.2
+            t = 0.5 * (t + 3.2 * (self.m / (k * speed ** (self.n - 1))) ** (1 / (self.n + 1)))
         return t
 
 
@@ -491,7 +524,7 @@ class Contact:
         self.y = 0.0
         self.at = dict(s=0.0, u=0.0, impulse=0.0, j=0.0, force=0.0, v=impact.v0, plate=0.0,
                        frozen=0.0)
-        self.w_h = self.w_wave = self.smax = self.fmax = 0.0
+        self.w_h = self.w_wave = self.smax = self.fmax = self.z = 0.0
         self.step_max = self.y_scale / mesh.elements
 
     # -- history ---------------------------------------------------------------------------
@@ -578,13 +611,14 @@ class Contact:
         v = clenshaw(self.coef["v"][where].T[:, :, None], z)
         s = clenshaw(self.coef["s"][where].T[:, :, None], z)
         kv = kk * v
-        root = np.sqrt(np.maximum(s, 0.0))
+        p = self.p
+        root = p.secant(np.maximum(s, 0.0))
         i = min(int(np.searchsorted(left[:self.approach], y1, side="right")) - 1,
                 self.approach - 1)
         z1 = 2 * (y1 - left[i]) / sizes[i] - 1
         s1, v1 = (float(clenshaw(self.coef[f][i], z1)) for f in ("s", "v"))
         k1 = float(self.p.k(np.array([gap * (2 * y - gap)]))[0])
-        return (1.5 * np.sum(kv * root), np.sum(kv), 1.5 * math.sqrt(max(s1, 0.0)),
+        return (p.n * np.sum(kv * root), np.sum(kv), p.n * float(p.secant(max(s1, 0.0))),
                 k1 * v1 * 2 * y1)
 
     # -- elements --------------------------------------------------------------------------
@@ -631,7 +665,7 @@ class Contact:
             a_full[0] = d_full[0] = 0.0
         of_force, known_rate, alpha, rate, memory = self.plate_rows(y0, h, y, integral)
         weight = integral @ a_full / p.m
-        known = p.v0 * t - at["j"] / p.m - integral @ past["u"] / p.m
+        known = p.free(t)[0] - at["j"] / p.m - integral @ past["u"] / p.m
         if p.plate_factor == 0.0:
             pass
         elif p.waves == "frozen":
@@ -645,10 +679,10 @@ class Contact:
             known = known - of_impulse @ past["u"] - memory[1]
         s = at["s"] + at["v"] * since
         for it in range(60):
-            u = s * np.sqrt(np.abs(s))
+            u = p.u(s)
             u[0] = at["u"]
             residual = s + weight @ u - known
-            jacobian = np.eye(n + 1) + weight * (1.5 * np.sqrt(np.abs(s)))[None, :]
+            jacobian = np.eye(n + 1) + weight * (p.n * p.secant(s))[None, :]
             ds = np.zeros(n + 1)
             ds[1:] = np.linalg.solve(jacobian[1:, 1:], residual[1:])
             s = s - ds
@@ -657,18 +691,20 @@ class Contact:
                 break
         else:
             raise RuntimeError("Newton iteration does not converge")
-        u = s * np.sqrt(np.abs(s))
+        u = p.u(s)
         u[0] = at["u"]
         impulse = a_full @ u + past["u"]
         force = d_full @ u + past["du"]
         if y0 == 0.0:
-            force[0] = impulse[0] = 0.0
+            # a dashpot presses at once under a punch
+            force[0] = p.eta * p.v0 / (1 + p.eta * of_force[0, 0]) if p.n == 1.0 else 0.0
+            impulse[0] = 0.0
         wave = of_force @ force + known_rate
         if p.waves in ("relaxing", "constant"):
             wave = alpha * force + rate * impulse
-        wave[t == 0] = 0.0
+        wave[t == 0] = of_force[0, 0] * force[0]
         return dict(y0=y0, h=h, s=s, u=u, impulse=impulse, force=force, wave=wave,
-                    v=p.v0 - impulse / p.m - wave, integral=integral, rate=rate,
+                    v=p.free(t)[1] - impulse / p.m - wave, integral=integral, rate=rate,
                     du=rate_of @ u * (2 / h))
 
     def receding(self, y0, h):
@@ -682,7 +718,7 @@ class Contact:
         of_force, known_rate, _, rate, _ = self.plate_rows(y0, h, y, integral)
         # v = free - brake F; condition: own v + past + eta v = int_0^t1 k v
         brake = integral / p.m + of_force
-        free = p.v0 - at["impulse"] / p.m - known_rate
+        free = p.free(y * y)[1] - at["impulse"] / p.m - known_rate
         own = own + p.eta * np.eye(n + 1)
         of = -own @ brake
         back = np.empty(n + 1)                        # y_max - y1
@@ -719,7 +755,7 @@ class Contact:
         impulse = at["impulse"] + integral @ force
         v = free - brake @ force
         s = at["s"] + integral @ v
-        return dict(y0=y0, h=h, s=s, u=s * np.sqrt(np.abs(s)), impulse=impulse, force=force,
+        return dict(y0=y0, h=h, s=s, u=p.u(s), impulse=impulse, force=force,
                     wave=of_force @ force + known_rate, v=v, integral=integral, rate=rate,
                     du=0.0 * s, back=back, condition=own @ v + past["v"])
 
@@ -732,6 +768,7 @@ class Contact:
         force, v, wave = (cheb.chebval(pz, c[f]) for f in ("force", "v", "wave"))
         self.w_h += np.sum(pw * force * v)
         self.w_wave += np.sum(pw * force * wave)
+        self.z += np.sum(pw * (v + wave))
         self.smax = max(self.smax, peak(c["s"], upto))
         self.fmax = max(self.fmax, peak(c["force"], upto))
         self.y = e["y0"] + e["h"] * (1 + upto) / 2
@@ -852,7 +889,9 @@ class Contact:
     def outcome(self, t_end):
         p, at = self.p, self.at
         energy = 0.5 * p.m * p.v0 ** 2
-        cor_sphere = at["impulse"] / (p.m * p.v0) - 1
+        fall = p.gravity * t_end
+        cor_sphere = at["impulse"] / (p.m * p.v0) - 1 - fall / p.v0
+        weight_work = p.m * p.gravity * (self.z + (at["v"] + at["wave"]) * (t_end - self.y ** 2))
         omega = 2 * math.pi / t_end
         w_h = 0.0 if p.is_elastic else self.w_h
         return dict(
@@ -860,7 +899,8 @@ class Contact:
             max_indentation=self.smax, max_force=self.fmax, residual_indentation=at["s"],
             residual_ratio=at["s"] / self.smax, hysteresis_energy=w_h, wave_energy=self.w_wave,
             initial_energy=energy,
-            energy_imbalance=(energy * (1 - cor_sphere ** 2) - w_h - self.w_wave) / energy,
+            energy_imbalance=(energy * (1 - cor_sphere ** 2) + weight_work - w_h - self.w_wave)
+            / energy,
             min_frequency=omega, inelasticity=p.inelasticity(),
             loss_tangent=p.loss_tangent(omega))
 

@@ -1,5 +1,5 @@
 """Reference impacts of every plate, contact law, pair and material: practical.txt, random.txt,
-designed.txt and found.txt, which tests/unit/test_impacts.f90 reads.
+designed.txt, shapes.txt and found.txt, which tests/unit/test_impacts.f90 reads.
 
 A set is a text file of impacts, each with two remarks and the case as vcor reads it:
 
@@ -12,12 +12,14 @@ practical.txt   230 random practical impacts, made by a solver that shares nothi
                 with the one here; --check solves them again
 random.txt      random practical impacts, made here: --random COUNT
 designed.txt    every plate with every law and pair, every model, tables: --designed
+shapes.txt      cones, punches and profiles, and impacts with gravity: --shapes
 found.txt       impacts of other random sets (--random COUNT --seed SEED) that a version of vcor
                 missed, or whose error it stated too small
 
 The solver is impact_solver.py.
 
-Usage:  make_impacts.py [--check SET.txt] [--random COUNT [--seed SEED]] [--designed] [--output DIR]
+Usage:  make_impacts.py [--check SET.txt] [--random COUNT [--seed SEED]] [--designed] [--shapes]
+                        [--output DIR]
 """
 
 import argparse
@@ -46,7 +48,7 @@ def text_of(case):
             return f"'{x}'"
         return ", ".join(repr(float(y)) for y in (x if isinstance(x, list) else [x]))
 
-    groups = [("impact", dict(velocity=case["velocity"]))]
+    groups = [("impact", {k: case[k] for k in ("velocity", "gravity") if k in case})]
     groups += [(g, case[g]) for g in ("sphere", "plate", "contact")]
     groups += [("material", {k: v for k, v in m.items() if k != "points"})
                for m in case["materials"]]
@@ -68,7 +70,7 @@ def case_of(text):
                 numbers = [float(x) for x in value.split(",")]
                 keys[key] = numbers if key in ("moduli", "times", "rates") else numbers[0]
         if name == "impact":
-            case["velocity"] = keys["velocity"]
+            case.update(keys)
         elif name == "material":
             if "file" in keys:
                 keys["points"] = read_points(HERE / keys["file"])
@@ -328,12 +330,29 @@ def write_table(path):
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def designed_set(path, only=""):
-    """Solve the designed impacts and write them."""
-    write_table(path.parent / "table.csv")
-    out = head("Designed impacts, made by make_impacts.py --designed.",
-               "Expected: " + ", ".join(EXPECT))
-    for number, (note, case) in enumerate(designed(), 1):
+def weighed():
+    """Remark and case of each impact with gravity."""
+    gel = dict(SLS, glassy_modulus=1e5, alpha=20.0, beta=60.0)
+    creeping = dict(POWER, equilibrium_modulus=2e4, coefficient=2e4, exponent=0.35)
+    dashpot = dict(VOIGT, equilibrium_modulus=1e5, viscosity=100.0)
+    number = 0
+    for plate in (gel, creeping, dashpot, dict(CERF, equilibrium_modulus=1e4,
+                                               relaxing_modulus=2e5, beta=3.0)):
+        for law in LAWS:
+            for waves in ("none", PLATES[1 + number % 4]):
+                if plate is dashpot and waves == "frozen":
+                    waves = "constant"
+                case = impact((RIGID, plate), waves, law, velocity=0.4, half_thickness=0.03)
+                yield f"gravity, {plate['model']}, {waves}, {law}", dict(case, gravity=9.81)
+            number += 1
+    yield "gravity, elastic spheres of ice in series", dict(
+        impact((SOFT, LEFFLER), "none", "receding", "series", velocity=0.02), gravity=1.62)
+
+
+def designed_set(path, title, cases, only=""):
+    """Solve designed impacts and write them."""
+    out = head(title, "Expected: " + ", ".join(EXPECT))
+    for number, (note, case) in enumerate(cases, 1):
         if only not in note:
             continue
         text = text_of(case)
@@ -366,6 +385,7 @@ def main():
     parser.add_argument("--random", type=int, default=0, help="number of random impacts to make")
     parser.add_argument("--seed", type=int, default=7, help="another seed, another set")
     parser.add_argument("--designed", action="store_true", help="make the designed set")
+    parser.add_argument("--shapes", action="store_true", help="make the set of shapes and gravity")
     parser.add_argument("--output", default=HERE, type=pathlib.Path)
     options = parser.parse_args()
     if options.check:
@@ -373,7 +393,13 @@ def main():
     if options.random:
         random_set(options.random, options.seed, options.output / "random.txt")
     if options.designed:
-        designed_set(options.output / "designed.txt")
+        write_table(options.output / "table.csv")
+        designed_set(options.output / "designed.txt",
+                     "Designed impacts, made by make_impacts.py --designed.", designed())
+    if options.shapes:
+        designed_set(options.output / "shapes.txt",
+                     "Other shapes than spheres, and gravity: made by make_impacts.py --shapes.",
+                     weighed())
 
 
 if __name__ == "__main__":

@@ -76,6 +76,7 @@ module vcor_case_catalogue
    end type group_t
 
    type(interval_t), parameter :: accuracy_range = interval_t(lower=1.0e-11_wp, upper=0.1_wp)
+   type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
@@ -104,6 +105,9 @@ module vcor_case_catalogue
          positive), &
       key_t("impact", "temperature", real_key, "Temperature of both bodies; default: that at " &
          //"which their constants hold", "K", positive), &
+      key_t("impact", "gravity", real_key, &
+         "Gravity g that acts during the contact; drop_height has 9.80665 without it", "m/s2", &
+         not_negative, default="0.0"), &
       !
       key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &

@@ -53,7 +53,7 @@ module vcor_case_problem
 
    !> Addresses of the numbers that an impact is made from
    type :: numbers_t
-      type(address_t) :: velocity, drop_height, radius, mass, surface_radius, half_thickness
+      type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius, half_thickness
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
    end type numbers_t
@@ -111,6 +111,7 @@ contains
 
       self%at%velocity = case%address('impact', 'velocity')
       self%at%drop_height = case%address('impact', 'drop_height')
+      self%at%gravity = case%address('impact', 'gravity')
       self%at%radius = case%address('sphere', 'radius')
       self%at%mass = case%address('sphere', 'mass')
       self%at%surface_radius = case%address('plate', 'surface_radius')
@@ -383,6 +384,8 @@ contains
       self%around%thickness = 2.0_wp*case%number(self%at%half_thickness)
       self%around%extent = case%number(self%at%extent)
       self%around%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
+      self%around%is_weighed = self%impact%gravity > 0.0_wp
+      self%around%gravity = merge(self%impact%gravity, standard_gravity, self%around%is_weighed)
       yield_strength = [case%number(self%at%yield_strength(1)), &
          case%number(self%at%yield_strength(2))]
       if (ieee_is_nan(yield_strength(1))) yield_strength(1) = yield_strength(2)
@@ -415,11 +418,12 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: velocity, mass, radius
+      real(wp) :: velocity, gravity, mass, radius
 
+      gravity = case%number(self%at%gravity)
       velocity = case%number(self%at%velocity)
-      if (ieee_is_nan(velocity)) &
-         velocity = sqrt(2.0_wp*standard_gravity*case%number(self%at%drop_height))
+      if (ieee_is_nan(velocity)) velocity = sqrt(2.0_wp*case%number(self%at%drop_height) &
+         *merge(gravity, standard_gravity, gravity > 0.0_wp))
       radius = case%number(self%at%radius)
       mass = case%number(self%at%mass)
       if (ieee_is_nan(mass)) then
@@ -431,7 +435,8 @@ contains
             return
          end if
       end if
-      call self%impact%launch(velocity, mass, radius, case%number(self%at%surface_radius), error)
+      call self%impact%launch(velocity, mass, radius, case%number(self%at%surface_radius), error, &
+         gravity)
    end subroutine launch
 
    !> Follow the numbers of the solver

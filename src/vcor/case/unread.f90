@@ -107,7 +107,7 @@ contains
       associate (group => address%group, item => address%item)
          reason = ''
          select case (group_and_key(address))
-         case ('case.title', 'impact.velocity', 'impact.drop_height', &
+         case ('case.title', 'impact.velocity', 'impact.drop_height', 'impact.gravity', &
             'sphere.radius', 'sphere.material', 'sphere.mass', &
             'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
             'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &

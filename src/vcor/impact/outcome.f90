@@ -5,7 +5,8 @@ module vcor_impact_outcome
    use vcor_constants, only : pi
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
-      col_plate_velocity, col_time, col_velocity, contact_separated, trajectory_t
+      col_plate_velocity, col_sphere, col_time, col_velocity, contact_resting, contact_separated, &
+      trajectory_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -16,7 +17,8 @@ module vcor_impact_outcome
    real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
 
    !> Outcome; of an impact that did not end in separation only `status`, `steps` and
-   !> `initial_energy` are numbers, all else is NaN. The measures of validity from `resilience` on
+   !> `initial_energy` are numbers, and of one that rests the maxima and the indentation that is
+   !> left; all else is NaN. The measures of validity from `resilience` on
    !> are set by `assess` of `vcor_impact_validity`; NaN where there is no such thing
    type :: outcome_t
       !> One of the `contact_*` constants of the trajectory
@@ -49,7 +51,8 @@ module vcor_impact_outcome
       real(wp) :: initial_energy = none
       !> Kinetic energy of the sphere after the impact m z'(t0)^2/2 [J]
       real(wp) :: final_energy = none
-      !> What the budget misses: initial - final - hysteresis - wave energy [J]
+      !> What the budget misses: initial - final energy + work of the weight m g z(t0) - hysteresis
+      !> - wave energy [J]
       real(wp) :: energy_imbalance = none
       !> Lowest frequency that matters, 2 pi/t0 [rad/s]
       real(wp) :: min_frequency = none
@@ -117,26 +120,31 @@ contains
       outcome%status = trajectory%status
       outcome%steps = trajectory%steps
       outcome%initial_energy = impact%initial_energy()
-      if (outcome%status /= contact_separated) return
+      if (all(outcome%status /= [contact_separated, contact_resting])) return
 
-      impulse = trajectory%state(col_impulse, n)
-      outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
-      outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
-      outcome%contact_time = trajectory%state(col_time, n)
       outcome%max_indentation = trajectory%max_indentation
       outcome%time_of_max_indentation = trajectory%time_of_max_indentation
       outcome%max_force = trajectory%max_force
       outcome%time_of_max_force = trajectory%time_of_max_force
       outcome%residual_indentation = trajectory%state(col_indentation, n)
       outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
+      if (outcome%status == contact_resting) return
 
+      ! what the weight leaves of the force's impulse
+      outcome%contact_time = trajectory%state(col_time, n)
+      impulse = trajectory%state(col_impulse, n) &
+         - impact%mass*impact%gravity*outcome%contact_time
+      outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
+      outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
       outcome%hysteresis_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
          *trajectory%state(col_velocity, 0:n))
       outcome%wave_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
       outcome%final_energy = outcome%initial_energy*outcome%cor_sphere**2
-      ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse
+      ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse, and that of
+      ! its weight
       outcome%energy_imbalance = impulse*(impact%velocity - 0.5_wp*impulse/impact%mass) &
+         + impact%mass*impact%gravity*trajectory%state(col_sphere, n) &
          - outcome%hysteresis_energy - outcome%wave_energy
 
       outcome%min_frequency = 2.0_wp*pi/outcome%contact_time

@@ -1,9 +1,9 @@
 !> The impact of a sphere on a plate: what a solver solves
 !>
-!> With z the sphere's displacement, U the plate's and s = z - U the indentation, Eq. (2) of Green's
-!> paper integrated twice from s(0) = 0, s'(0) = v0 is
+!> With z the sphere's displacement, U the plate's, s = z - U the indentation and g gravity, Eq. (2)
+!> of Green's paper integrated twice from s(0) = 0, s'(0) = v0 is
 !>
-!>     s(t) = v0 t - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
+!>     s(t) = v0 t + g t^2/2 - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^(3/2),    k(t) = (4/3) sqrt(R) E'(t)
 !>
 !> and with the receding law, once the contact shrinks, the integral ends at t1(t), when it was as
@@ -28,6 +28,8 @@ module vcor_impact_problem
       real(wp) :: velocity = 0.0_wp
       !> Mass of the sphere m [kg], > 0
       real(wp) :: mass = 0.0_wp
+      !> Gravity g, which presses the sphere on the plate [m/s2], >= 0
+      real(wp) :: gravity = 0.0_wp
       !> Firmness of a contact of unit modulus, (4/3) sqrt(R), R the Hertz radius [m^0.5]
       real(wp) :: hertz_factor = 0.0_wp
       !> Contact modulus E'(t)
@@ -39,6 +41,11 @@ module vcor_impact_problem
    contains
       !> Give the sphere another motion or size
       procedure :: launch
+      !> Way and velocity of the sphere without a contact force
+      procedure :: free_path
+      procedure :: free_velocity
+      !> Velocity that the motion is measured by
+      procedure :: speed_scale
       !> Kernel k(t)
       procedure :: kernel
       !> Integral of the kernel
@@ -73,7 +80,7 @@ contains
 
    !> Build an impact
    pure subroutine new_impact(self, velocity, mass, radius, surface_radius, modulus, plate, &
-                              error, law)
+                              error, law, gravity)
       type(impact_t), intent(out) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -88,8 +95,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Contact law; absent: Hertz's over all the past
       type(contact_law_t), intent(in), optional :: law
+      !> Gravity [m/s2], >= 0; absent: none
+      real(wp), intent(in), optional :: gravity
 
-      call self%launch(velocity, mass, radius, surface_radius, error)
+      call self%launch(velocity, mass, radius, surface_radius, error, gravity)
       if (allocated(error)) return
       self%modulus = modulus
       self%plate = plate
@@ -97,7 +106,7 @@ contains
    end subroutine new_impact
 
    !> Give the sphere another motion or size; modulus, plate and law stay
-   pure subroutine launch(self, velocity, mass, radius, surface_radius, error)
+   pure subroutine launch(self, velocity, mass, radius, surface_radius, error, gravity)
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -108,6 +117,8 @@ contains
       !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
       type(error_t), allocatable, intent(out) :: error
+      !> Gravity [m/s2], >= 0; absent: none
+      real(wp), intent(in), optional :: gravity
 
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
@@ -134,8 +145,44 @@ contains
       if (abs(surface_radius) > 0.0_wp) hertz_radius = radius/(1.0_wp + radius/surface_radius)
       self%velocity = velocity
       self%mass = mass
+      self%gravity = 0.0_wp
+      if (present(gravity)) self%gravity = gravity
       self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
    end subroutine launch
+
+   !> Way of the sphere without a contact force, v0 t + g t^2/2
+   elemental function free_path(self, t) result(path)
+      class(impact_t), intent(in) :: self
+      !> Time since first contact [s]
+      real(wp), intent(in) :: t
+      !> Way [m]
+      real(wp) :: path
+
+      path = self%velocity*t + 0.5_wp*self%gravity*t**2
+   end function free_path
+
+   !> Velocity of the sphere without a contact force, v0 + g t
+   elemental function free_velocity(self, t) result(velocity)
+      class(impact_t), intent(in) :: self
+      !> Time since first contact [s]
+      real(wp), intent(in) :: t
+      !> Velocity [m/s]
+      real(wp) :: velocity
+
+      velocity = self%velocity + self%gravity*t
+   end function free_velocity
+
+   !> Velocity that the motion is measured by: v0 and what gravity adds in the time scale T. A sphere
+   !> that is merely put down has one, too
+   pure function speed_scale(self, time_scale) result(speed)
+      class(impact_t), intent(in) :: self
+      !> Time scale of the contact [s]
+      real(wp), intent(in) :: time_scale
+      !> Velocity [m/s]
+      real(wp) :: speed
+
+      speed = self%velocity + self%gravity*time_scale
+   end function speed_scale
 
    !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)
@@ -230,7 +277,8 @@ contains
       scale = guess
    end function time_scale
 
-   !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz's
+   !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz's, v0 + g T in place of
+   !> v0 under gravity
    pure function elastic_time(self, firmness) result(time)
       class(impact_t), intent(in) :: self
       !> Firmness k of the contact [N/m^1.5], > 0
@@ -238,7 +286,18 @@ contains
       !> Time scale [s]
       real(wp) :: time
 
+      real(wp) :: guess
+      integer :: iteration
+
       time = self%law%time_scale(self%mass, firmness, self%velocity)
+      if (.not. self%gravity > 0.0_wp) return
+      ! the map contracts by (n - 1)/(n + 1)
+      do iteration = 1, 60
+         guess = self%law%time_scale(self%mass, firmness, self%speed_scale(time))
+         if (abs(guess - time) <= 1.0e-3_wp*guess) exit
+         time = guess
+      end do
+      time = guess
    end function elastic_time
 
    !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
@@ -300,7 +359,8 @@ contains
       lambda = 0.0_wp
       firmness = self%hertz_factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
-         lambda = self%plate%alpha(0.0_wp)*self%mass/self%elastic_time(firmness)
+         lambda = self%plate%alpha(0.0_wp)*self%mass &
+         /self%law%time_scale(self%mass, firmness, self%velocity)
    end function inelasticity
 
    !> Zener's parameter with alpha after a time and the mean of the kernel up to there: how light

@@ -9,7 +9,7 @@ module vcor_impact_trajectory
    public :: trajectory_t
    public :: columns, col_time, col_indentation, col_velocity, col_force, col_impulse
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
-   public :: contact_separated, contact_lasting, contact_sticking, history_steps
+   public :: contact_separated, contact_lasting, contact_sticking, contact_resting, history_steps
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -38,6 +38,8 @@ module vcor_impact_trajectory
    integer, parameter :: contact_lasting = 1
    !> All motion died out in contact
    integer, parameter :: contact_sticking = 2
+   !> Its weight keeps the sphere in contact for good
+   integer, parameter :: contact_resting = 3
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500
@@ -91,7 +93,9 @@ module vcor_impact_trajectory
       !> Note the map of a panel
       procedure :: add_map
       !> Whether all motion has died out
+      procedure :: has_died_out
       procedure :: is_stuck
+      procedure :: rests
       !> Whether the error is far above the accuracy that was asked for
       procedure :: misses_by_far
       !> State at equal steps of time
@@ -141,6 +145,23 @@ contains
       self%map(:, self%steps + 1) = map
    end subroutine add_map
 
+   !> Whether all motion has died out in contact at the last node, for good; the status is set then
+   function has_died_out(self, impact, is_last) result(has)
+      class(trajectory_t), intent(inout) :: self
+      type(impact_t), intent(in) :: impact
+      !> Whether the computation ends there in any case
+      logical, intent(in) :: is_last
+      logical :: has
+
+      if (impact%gravity > 0.0_wp) then
+         has = self%rests(impact, is_last)
+         if (has) self%status = contact_resting
+      else
+         has = self%is_stuck(impact)
+         if (has) self%status = contact_sticking
+      end if
+   end function has_died_out
+
    !> Whether all motion has died out in contact at the last node, for good: what energy is left
    !> cannot make a rebound that deserves the name. A contact with an equilibrium modulus is at rest
    !> for a moment at its largest indentation, however soft it is; it sticks only where a plate has
@@ -164,6 +185,57 @@ contains
             is_stuck = .not. impact%springs_back()
       end associate
    end function is_stuck
+
+   !> Whether the weight W = m g keeps the sphere in contact for good at the last node: it has come
+   !> to where a spring holds its weight, or, where the computation ends, what energy is left cannot
+   !> make the force zero any more.
+   !>
+   !> Next to rest the contact is linear in u and the energy of what it is off by,
+   !> V = m v^2/2 + (F - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of
+   !> the sphere, in a fluid as far as it is not one between rest and steady sinking. A force of zero tau after a state of that energy needs
+   !>
+   !>     W <= sqrt(2 V u') (sqrt(k(2 tau)) + K(tau) sqrt(u'/m)),   K = int_0 k
+   !>
+   !> for every tau: what modes have not relaxed by then, and what the motion since then adds. The
+   !> square of the least bracket is the stiffness that counts, k(0) of a glassy contact at most
+   pure function rests(self, impact, is_last)
+      class(trajectory_t), intent(in) :: self
+      type(impact_t), intent(in) :: impact
+      !> Whether the computation ends there in any case
+      logical, intent(in) :: is_last
+      logical :: rests
+
+      ! square of what the forces may be off by, over the weight
+      real(wp), parameter :: negligible = 1.0e-14_wp
+      integer, parameter :: halvings = 50
+      real(wp) :: weight, slope, viscosity, root, excess, spring, stiffness, velocity, tau
+      integer :: i
+
+      rests = .false.
+      associate (now => self%state(:, self%last))
+         weight = impact%mass*impact%gravity
+         spring = impact%hertz_factor*impact%modulus%rubbery()
+         excess = ((now(col_force) - weight)/weight)**2
+         if (.not. (is_last .or. excess <= negligible .and. &
+             (spring*impact%law%u(now(col_indentation))/weight - 1.0_wp)**2 <= negligible)) return
+         if (.not. (now(col_force) > 0.0_wp .and. now(col_indentation) > 0.0_wp)) return
+         slope = impact%law%slope(now(col_indentation))
+         viscosity = impact%kernel_viscosity()
+         velocity = now(col_velocity) &
+            + impact%plate%alpha(now(col_time))*(now(col_force) - weight)
+         if (velocity > 0.0_wp .and. .not. impact%springs_back()) velocity = max(0.0_wp, velocity &
+            - weight/((impact%kernel_integral(now(col_time)) + viscosity)*slope))
+         root = huge(1.0_wp)
+         tau = now(col_time)
+         do i = 1, halvings
+            tau = 0.5_wp*tau
+            stiffness = (impact%kernel_integral(tau) + viscosity)*sqrt(slope/impact%mass)
+            root = min(root, stiffness + sqrt(impact%kernel(2.0_wp*tau)))
+         end do
+         excess = excess + slope*impact%mass*(root*velocity/weight)**2
+         rests = excess < merge(1.0_wp, negligible, is_last)
+      end associate
+   end function rests
 
    !> Whether the estimated error is so far above the accuracy that was asked for that the result is
    !> none

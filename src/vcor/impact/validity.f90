@@ -83,8 +83,11 @@ module vcor_impact_validity
       real(wp) :: extent = none
       !> Yield strength, the smaller one of the two bodies [Pa]
       real(wp) :: yield_strength = none
-      !> Whether the sphere falls from a height that is given
+      !> Whether the sphere falls from a height that is given, and with what gravity [m/s2]
       logical :: drops = .false.
+      real(wp) :: gravity = standard_gravity
+      !> Whether the impact is solved with that gravity
+      logical :: is_weighed = .false.
       !> Poisson's ratio of the plate [-]
       real(wp), private :: poisson_ratio = none
       !> `half_space_resistance` of it [-]
@@ -133,10 +136,10 @@ contains
       hertz_radius = (0.75_wp*impact%hertz_factor)**2
       outcome%resilience = outcome%cor_sphere**2
       if (around%drops) outcome%rebound_height = &
-         outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*standard_gravity)))
+         outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
       outcome%contact_radius = sqrt(hertz_radius*outcome%max_indentation)
       outcome%contact_ratio = outcome%contact_radius/min(hertz_radius, around%radius)
-      outcome%weight_ratio = impact%mass*standard_gravity/outcome%max_force
+      outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force
       outcome%mean_pressure = outcome%max_force/(pi*hertz_radius &
          *trajectory%indentation_at(outcome%time_of_max_force))
       modulus = impact%modulus%dynamic_modulus(frequency)
@@ -219,6 +222,7 @@ contains
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
          outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy]
+      if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       ! NaN is not to be compared
       if (.not. ieee_is_nan(values(1)*outcome%sphere_ratio)) &
          values(1) = max(values(1), sphere_weight*outcome%sphere_ratio)

@@ -115,14 +115,14 @@ contains
       end if
    end subroutine solve_impact
 
-   !> Refuse a receding contact in which t1 grows. On a plate at rest s' only falls, and t1' has the
+   !> Refuse a receding contact in which t1 grows. On a plate at rest, without weight, s' only falls, and t1' has the
    !> sign of s': there it is what rounding leaves of a sphere that has come to rest
    subroutine refuse_growth(impact, error)
       type(impact_t), intent(in) :: impact
       !> Error of code `error_numerical`
       type(error_t), allocatable, intent(out) :: error
 
-      if (impact%plate%moves()) then
+      if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
          call raise(error, error_numerical, "the contact grows again before it has ended, which " &
             //"law = 'receding' does not cover: use law = 'boltzmann'")
       else

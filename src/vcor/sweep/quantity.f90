@@ -3,8 +3,8 @@
 module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : columns, contact_lasting, contact_separated, &
-      contact_sticking
+   use vcor_impact_trajectory, only : columns, contact_lasting, contact_resting, &
+      contact_separated, contact_sticking
    use vcor_impact_validity, only : level_none, levels, thresholds
    use vcor_kinds, only : wp
    implicit none
@@ -17,9 +17,9 @@ module vcor_sweep_quantity
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
    integer, parameter :: point_pending = -1
    !> Its parameters describe no impact
-   integer, parameter :: point_invalid = 3
+   integer, parameter :: point_invalid = 4
    !> The numerical solution failed
-   integer, parameter :: point_failed = 4
+   integer, parameter :: point_failed = 5
 
    !> One status
    type :: status_t
@@ -42,6 +42,8 @@ module vcor_sweep_quantity
       //'plate where the inelasticity is above 20'), &
       status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
+      status_t(contact_resting, 'rests', 'its weight keeps the sphere in contact for good', &
+      'nothing: residual_indentation is that at the end of the computation'), &
       status_t(point_invalid, 'invalid', &
       'in a sweep: the values of the point make no impact', &
       'the message says which one is out of range, or contradicts others'), &
@@ -274,8 +276,7 @@ contains
       type(outcome_t), intent(in) :: outcome
       !> Name of the quantity
       character(len=*), intent(in) :: name
-      !> Value, in its unit; NaN where the impact did not end in separation, or there is no quantity
-      !> of this name
+      !> Value, in its unit; NaN where the impact has none, or there is no quantity of this name
       real(wp) :: value
 
       type(list_t) :: list
@@ -283,7 +284,7 @@ contains
 
       value = ieee_value(value, ieee_quiet_nan)
       place = quantity_place(name)
-      if (place == 0 .or. outcome%status /= contact_separated) return
+      if (place == 0 .or. all(outcome%status /= [contact_separated, contact_resting])) return
       call list_columns(list, outcome)
       value = list%values(place)
    end function quantity_value
@@ -320,7 +321,7 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, invalid, failed or pending
+      !> separated, no_separation, sticks, rests, invalid, failed or pending
       character(len=:), allocatable :: name
 
       integer :: i

@@ -12,8 +12,8 @@
 module vcor_sweep_sweep
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking, &
-      trajectory_t
+   use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
+      contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
    use vcor_case_grid, only : axis_t, grid_t, new_grid
@@ -177,7 +177,7 @@ contains
       character(len=:), allocatable :: reason
 
       select case (status)
-      case (contact_separated)
+      case (contact_separated, contact_resting)
          reason = ''
       case (contact_lasting)
          reason = 'the bodies do not separate within solver.end_time'

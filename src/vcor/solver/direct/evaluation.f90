@@ -102,7 +102,7 @@ contains
       node(col_time) = a(col_time) + tau
       node(col_impulse) = a(col_impulse) + once*tau*a(col_force)
       node(col_sphere) = a(col_sphere) + tau*(a(col_sphere_velocity) &
-         - twice*tau*a(col_force)/impact%mass)
+         + tau*(0.5_wp*impact%gravity - twice*a(col_force)/impact%mass))
       call complete(impact, trajectory, n, theta, node)
    end function end_of_receding_contact
 
@@ -121,7 +121,8 @@ contains
       integer :: j
 
       node(col_force) = 0.0_wp
-      node(col_sphere_velocity) = impact%velocity - node(col_impulse)/impact%mass
+      node(col_sphere_velocity) = impact%free_velocity(node(col_time)) &
+         - node(col_impulse)/impact%mass
       if (impact%plate%drifts()) then
          do j = -1, 1
             associate (near => trajectory%state(:, max(n - 1 + j, 0)))

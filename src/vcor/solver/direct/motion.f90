@@ -1,6 +1,6 @@
 !> Equation of motion in product integration: how the motion at a node follows from the force there
 !>
-!> Eq. (2) integrated twice, s = v0 t - J/m - U with I' = F and J' = I, is linear in the force F at
+!> Eq. (2) integrated twice, s = v0 t + g t^2/2 - J/m - U with I' = F and J' = I, is linear in the force F at
 !> the newest node, whatever the plate. Its deflection and velocity are
 !>
 !>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
@@ -149,9 +149,9 @@ contains
          per_force = self%alpha
          rate = self%alpha_rate
       end if
-      self%indentation(1) = impact%velocity*self%t - j/impact%mass - plate
+      self%indentation(1) = impact%free_path(self%t) - j/impact%mass - plate
       self%indentation(2) = weight*(weight/impact%mass + per_force)
-      self%velocity(1) = impact%velocity - i/impact%mass - plate_velocity
+      self%velocity(1) = impact%free_velocity(self%t) - i/impact%mass - plate_velocity
       self%velocity(2) = weight/impact%mass + per_force + weight*rate
       if (self%memory%room == 0) return
       associate (newest => self%memory%newest)

@@ -21,7 +21,7 @@ module vcor_solver_direct_product
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
       col_plate_velocity, col_sphere, col_sphere_velocity, col_time, col_velocity, columns, &
-      contact_separated, contact_sticking, trajectory_t
+      contact_resting, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_richardson, only : richardson, richardson_t
    use vcor_solver_convolution, only : lengthen, second_term_t
@@ -121,8 +121,9 @@ contains
             call march(self%settings, impact, dt, trajectory, error)
             if (allocated(error)) return
             ! coarse steps can miss the end, so only the given step decides that there is none
-            if (trajectory%status /= contact_separated .and. &
-                (.not. time_step > 0.0_wp .or. level == 3)) return
+            if (trajectory%status /= contact_separated .and. (level == 3 .or. &
+                .not. (time_step > 0.0_wp .or. trajectory%status == contact_resting &
+                .and. 2*trajectory%steps <= most_steps))) return
             associate (final => trajectory%state(:, trajectory%last))
                cor = [cor(2:3), -final(col_velocity)/impact%velocity]
                cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
@@ -180,7 +181,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      ! rate of the indentation over the velocity of impact
+      ! rate of the indentation over the velocity of a free fall
       real(wp), parameter :: beyond_all_motion = 1.0e10_wp
       type(run_t) :: run
       real(wp) :: end_time, node(columns)
@@ -208,10 +209,12 @@ contains
          end if
          call take_step(run, impact, n)
          if (run%receding%regrows) then
+            ! what its weight pushes back does not come off any more
+            if (trajectory%has_died_out(impact, .true.)) exit
             call refuse_growth(impact, error)
             return
          end if
-         if (.not. abs(run%speed) < beyond_all_motion*impact%velocity) then
+         if (.not. abs(run%speed) < beyond_all_motion*impact%free_velocity(run%motion%t)) then
             call raise(error, error_numerical, 'fixed steps do not follow this plate: its motion ' &
                //'grows beyond all bounds')
             return
@@ -235,8 +238,8 @@ contains
          else if (ends) then
             trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, trajectory, n)
          end if
-         if (trajectory%is_stuck(impact)) then
-            trajectory%status = contact_sticking
+         if (trajectory%has_died_out(impact, n == most_steps &
+             .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp))) then
             exit
          else if (ends) then
             trajectory%status = contact_separated
@@ -377,8 +380,9 @@ contains
       if (.not. run%receding%shrinks) &
          node(col_force) = run%force + run%viscosity*run%slope*run%speed
       node(col_impulse) = run%motion%impulse
-      node(col_sphere) = impact%velocity*run%motion%t - run%motion%second_impulse/impact%mass
-      node(col_sphere_velocity) = impact%velocity - run%motion%impulse/impact%mass
+      node(col_sphere) = impact%free_path(run%motion%t) - run%motion%second_impulse/impact%mass
+      node(col_sphere_velocity) = impact%free_velocity(run%motion%t) &
+         - run%motion%impulse/impact%mass
       node(col_plate) = node(col_sphere) - run%s
       node(col_plate_velocity) = node(col_sphere_velocity) - run%speed
    end function state_of

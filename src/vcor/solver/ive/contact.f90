@@ -12,8 +12,7 @@
 module vcor_solver_ive_contact
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, contact_sticking, &
-      trajectory_t
+   use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
@@ -29,7 +28,7 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_ive_tuning, only : cut_at_end, early_yield, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
-      first_receding_growth, first_short, first_slow, first_three, force_share, frozen_first, &
+      first_receding_growth, first_short, finest_accuracy, first_slow, first_three, force_share, frozen_first, &
       grown_alpha, harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, &
       most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
@@ -94,8 +93,11 @@ contains
       integer :: trial
 
       contact%problem = new_panel_problem(collocator, impact, modes)
-      contact%accuracy = accuracy
       contact%time_scale = time_scale
+      contact%speed = impact%speed_scale(time_scale)
+      ! of a sphere that is put down rather than thrown, v0 is no measure
+      contact%accuracy = max(accuracy*(impact%velocity/contact%speed), &
+         min(accuracy, finest_accuracy))
       contact%end_time = end_time
       call start(contact)
       call begin(collocator%rule, impact, trajectory)
@@ -169,7 +171,7 @@ contains
 
    !> Whether a plate whose alpha grows may take up the motion within the first step: the contact
    !> may end in it, between its stages. A plate at rest would have given way by the share
-   !> alpha K u/s of s = v0 t, K the integral of the kernel, a share that only grows with time
+   !> alpha K u/s of s = v0 t + g t^2/2, K the integral of the kernel, a share that only grows with time
    function yields_early(self) result(yields)
       !> The contact, its first step chosen
       type(contact_t), intent(in) :: self
@@ -180,14 +182,14 @@ contains
 
       associate (impact => self%problem%impact)
          time = self%step%duration()
-         way = impact%velocity*time
+         way = impact%free_path(time)
          yields = .false.
          if (impact%plate%hereditary()) return
          alpha = impact%plate%alpha(time)
          if (.not. alpha > grown_alpha*self%start%alpha) return
-         ! that of the whole time scale T is more, and known: K = m v0 T/u(v0 T)
-         largest = impact%mass*impact%velocity*self%time_scale &
-            /impact%law%u(impact%velocity*self%time_scale)
+         ! that of the whole time scale T is more, and known: K = m v T/u(v T)
+         largest = impact%mass*self%speed*self%time_scale &
+            /impact%law%u(self%speed*self%time_scale)
          yields = alpha*largest*impact%law%u(way) > early_yield*way
          if (yields) yields = alpha*self%problem%modes%contact%integral(time) &
             *impact%law%u(way) > early_yield*way
@@ -284,7 +286,7 @@ contains
          if (self%recedes) then
             ! the rebound feels the solution between the ends of the panels, too
             self%inner = inner_felt*maxval(abs(collocator%coarsened(panel%indentation) &
-               - coarse%indentation(1:)))/(impact%velocity*self%time_scale)
+               - coarse%indentation(1:)))/(self%speed*self%time_scale)
             self%excess = max(self%excess, self%inner/(inner_allowed*self%accuracy))
          end if
       end associate
@@ -370,8 +372,7 @@ contains
       is_over = self%last
       if (trajectory%status == contact_separated) then
          is_over = self%panel%time(self%panel%stages) >= self%end_time
-      else if (trajectory%is_stuck(self%problem%impact)) then
-         trajectory%status = contact_sticking
+      else if (trajectory%has_died_out(self%problem%impact, self%last)) then
          is_over = .true.
       else if (self%ends) then
          trajectory%status = contact_separated
@@ -447,7 +448,7 @@ contains
          ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
          ! of the velocity of the plate
          moved = panel%force(n)/fall
-         plate = impact%velocity*panel%time(n) - panel%second_impulse(n)/impact%mass &
+         plate = impact%free_path(panel%time(n)) - panel%second_impulse(n)/impact%mass &
             - panel%indentation(n)
          least = rounding_per_panel*real(panels, wp) &
             + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
@@ -473,9 +474,9 @@ contains
       associate (n => self%panel%stages, impact => self%problem%impact)
          error = max(part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)), &
             min(solution_share*self%largest_growth, harmless*self%accuracy) &
-            *impact%mass*impact%velocity)
+            *impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
-         if (self%branches) error = max(error, self%growth*impact%mass*impact%velocity)
+         if (self%branches) error = max(error, self%growth*impact%mass*self%speed)
       end associate
    end function impulse_error
 

@@ -28,10 +28,10 @@ module vcor_solver_ive_course
       real(wp) :: inverse(width, width) = 0.0_wp
       !> The panel solved last, accepted or not
       type(panel_t) :: previous
-      !> Accuracy of the coefficient of restitution that is worked to [-]
+      !> Accuracy of the motion that is worked to, over `speed` [-]
       real(wp) :: accuracy = 0.0_wp
-      !> Time scale of the contact [s]
-      real(wp) :: time_scale = 0.0_wp
+      !> Time scale of the contact [s], and the velocity that goes with it [m/s]
+      real(wp) :: time_scale = 0.0_wp, speed = 0.0_wp
       !> End of the computation if the contact lasts [s]
       real(wp) :: end_time = 0.0_wp
       !> Error of the panel over what it may be, and that of the one refused before
@@ -66,19 +66,19 @@ contains
       end associate
    end function growth_of
 
-   !> What a panel adds to the error of the coefficient of restitution, by its companion: through
-   !> the impulse, the indentation and the velocity of a plate that drifts
+   !> What a panel adds to the error of the motion, by its companion: through the impulse, the
+   !> indentation and the velocity of a plate that drifts
    pure function motion_error(self) result(error)
       class(course_t), intent(in) :: self
-      !> Error [-]
+      !> Error over `speed`: without gravity that of the coefficient of restitution [-]
       real(wp) :: error
 
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
-         error = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*impact%velocity) &
+         error = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*self%speed) &
             + self%growth_of(panel%indentation, coarse%indentation) &
-            /(impact%velocity*self%time_scale)
+            /(self%speed*self%time_scale)
          if (impact%plate%drifts()) &
-            error = error + self%growth_of(panel%drift, coarse%drift)/impact%velocity
+            error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
       end associate
    end function motion_error
 

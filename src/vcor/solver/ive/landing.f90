@@ -248,7 +248,7 @@ contains
          ! in theta; the time of the nodes grows by this share
          shift = growth*theta*(map(1) + map(2)*theta) &
             /max(map(1) + 2.0_wp*map(2)*theta, tiny(1.0_wp))
-         plate = impact%velocity*panel%time - panel%second_impulse/impact%mass - panel%indentation
+         plate = impact%free_path(panel%time) - panel%second_impulse/impact%mass - panel%indentation
          map = (1.0_wp + growth)*map
          panel%time = panel%time(0) + (1.0_wp + growth)*(panel%time - panel%time(0))
          call move(panel%force)
@@ -262,7 +262,7 @@ contains
          else
             plate(1:n) = panel%alpha(1:n)*panel%impulse(1:n)
          end if
-         panel%indentation(1:n) = impact%velocity*panel%time(1:n) &
+         panel%indentation(1:n) = impact%free_path(panel%time(1:n)) &
             - panel%second_impulse(1:n)/impact%mass - plate(1:n)
          panel%force(n) = 0.0_wp
       end associate

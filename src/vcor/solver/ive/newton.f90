@@ -46,7 +46,7 @@ contains
       associate (rule => problem%collocator%rule)
          time = start%time + rule%times(step%index, step%map_scale())
          if (previous%stages == 0) then
-            panel%indentation(1:) = problem%impact%velocity*time
+            panel%indentation(1:) = problem%impact%free_path(time)
          else
             panel%indentation(1:) = &
                rule%extend(previous%indentation, previous%theta(time))
@@ -193,7 +193,7 @@ contains
          call problem%settle(rule, equations, start, panel)
       else if (.not. equations%rebounds) then
          ! what is left of the error goes to the force, so that the motion is that of the impulse
-         panel%indentation(1:) = problem%impact%velocity*panel%time(1:) &
+         panel%indentation(1:) = problem%impact%free_path(panel%time(1:)) &
             - panel%second_impulse(1:)*equations%inverse_mass
          if (.not. equations%frozen) &
             panel%indentation(1:) = panel%indentation(1:) - panel%alpha(1:)*panel%impulse(1:)

@@ -166,7 +166,7 @@ contains
       end if
    end function plate_velocity
 
-   !> Rate of the indentation at a stage of a panel: s' = v0 - I/m - U'
+   !> Rate of the indentation at a stage of a panel: s' = v0 + g t - I/m - U'
    pure function relative_velocity(impact, panel, j) result(velocity)
       type(impact_t), intent(in) :: impact
       type(panel_t), intent(in) :: panel
@@ -175,7 +175,8 @@ contains
       !> Velocity [m/s]
       real(wp) :: velocity
 
-      velocity = impact%velocity - panel%impulse(j)/impact%mass - plate_velocity(impact, panel, j)
+      velocity = impact%free_velocity(panel%time(j)) - panel%impulse(j)/impact%mass &
+         - plate_velocity(impact, panel, j)
    end function relative_velocity
 
 end module vcor_solver_ive_panel

@@ -195,9 +195,9 @@ contains
             e%alpha_rate(:n) = plate%alpha_rate(panel%time(1:n), e%alpha(:n))
 
          ! the motion without a force
-         velocity = self%impact%velocity - start%impulse*e%inverse_mass
+         velocity = self%impact%free_velocity(start%time) - start%impulse*e%inverse_mass
          if (e%frozen) velocity = velocity + start%drift
-         e%gain = velocity*e%elapsed
+         e%gain = velocity*e%elapsed + 0.5_wp*self%impact%gravity*e%elapsed**2
          if (e%remembers) then
             call resolve(self%modes%plate, start%p, map, e%lambda, e%plate, e%past)
             e%gain = e%gain - apply_product(map%right, map%square, e%lambda, e%past)
@@ -222,14 +222,14 @@ contains
             e%right = contact%equilibrium*start%indentation + apply(map%right, &
                times(map%square, e%stiffness, apply(map%left, e%gain)) + e%memory)
             if (e%viscosity > 0.0_wp) then
-               e%right = e%right + e%viscosity*velocity
+               e%right = e%right + e%viscosity*(velocity + self%impact%gravity*e%elapsed)
                if (e%remembers) e%right = e%right - e%viscosity*apply(map%right, e%past)
                if (.not. e%frozen) e%right = e%right - e%viscosity*e%alpha_rate*start%impulse
             end if
             ! no force acts at the end of the contact, and it would not count
             if (e%closes) e%right(n) = 0.0_wp
          else
-            e%gain = e%gain + (self%impact%velocity*start%time &
+            e%gain = e%gain + (self%impact%free_path(start%time) &
                - start%second_impulse*e%inverse_mass - start%deflection)
             if (.not. e%frozen) e%gain = e%gain - e%alpha*start%impulse
             e%right = e%gain - lost_indentation(e, e%memory)
@@ -471,7 +471,7 @@ contains
             + rule%settling%total(contact%moduli, contact%rates, e%scale, start%lag, &
             panel%indentation(:n))
          if (e%viscosity > 0.0_wp) then
-            velocity = impact%velocity - panel%impulse(n)*e%inverse_mass
+            velocity = impact%free_velocity(panel%time(n)) - panel%impulse(n)*e%inverse_mass
             if (impact%plate%drifts()) then
                velocity = velocity + panel%drift(n)
             else

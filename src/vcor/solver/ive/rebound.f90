@@ -7,7 +7,7 @@
 !> the square root of the time since the largest indentation.
 module vcor_solver_ive_rebound
    use vcor_error, only : error_numerical, error_t, raise
-   use vcor_impact_trajectory, only : contact_separated, contact_sticking, trajectory_t
+   use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : closing, linear
@@ -87,7 +87,9 @@ contains
             if (is_crude(rebound)) cycle
             ! it may be the error of the kernel that makes it grow
             if (rebound%problem%modes%contact%error > unreliable_kernel) exit
-            call refuse_growth(rebound%problem%impact, error)
+            ! what its weight pushes back does not come off any more
+            if (.not. trajectory%has_died_out(rebound%problem%impact, .true.)) &
+               call refuse_growth(rebound%problem%impact, error)
             return
          end if
          call accept(rebound, trajectory)
@@ -353,8 +355,7 @@ contains
       logical :: is_over
 
       is_over = self%last
-      if (trajectory%is_stuck(self%problem%impact)) then
-         trajectory%status = contact_sticking
+      if (trajectory%has_died_out(self%problem%impact, self%last)) then
          is_over = .true.
       else if (self%ends) then
          trajectory%status = contact_separated

@@ -72,9 +72,10 @@ contains
             state(col_indentation) = panel%indentation(j)
             state(col_force) = panel%force(j)
             state(col_impulse) = panel%impulse(j)
-            state(col_sphere) = impact%velocity*panel%time(j) &
+            state(col_sphere) = impact%free_path(panel%time(j)) &
                - panel%second_impulse(j)/impact%mass
-            state(col_sphere_velocity) = impact%velocity - panel%impulse(j)/impact%mass
+            state(col_sphere_velocity) = impact%free_velocity(panel%time(j)) &
+               - panel%impulse(j)/impact%mass
             state(col_plate) = state(col_sphere) - panel%indentation(j)
             state(col_plate_velocity) = plate_velocity(impact, panel, j)
             state(col_velocity) = state(col_sphere_velocity) - state(col_plate_velocity)

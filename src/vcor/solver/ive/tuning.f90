@@ -18,6 +18,8 @@ module vcor_solver_ive_tuning
    !> Loosest accuracy that is worked to: less would save next to nothing, and one cannot tell
    !> panels that are crude from those that are wrong
    real(wp), parameter :: loosest_accuracy = 1.0e-6_wp ! tested
+   !> Finest accuracy, over the velocity that gravity gives, where v0 is next to nothing beside it
+   real(wp), parameter :: finest_accuracy = 1.0e-11_wp ! guard
 
    ! Sums of exponentials
 
