@@ -42,7 +42,8 @@ enum {
    VCOR_NO_SEPARATION = 1,  /* end_time came first */
    VCOR_STICKS = 2,         /* all motion died out in contact */
    VCOR_INVALID = 3,        /* the values of the point make no impact */
-   VCOR_FAILED = 4          /* the numerical solution failed */
+   VCOR_FAILED = 4,         /* the numerical solution failed */
+   VCOR_RESTS = 5           /* its weight keeps the sphere in contact for good */
 };
 
 /* Tables that vcor_column describes */

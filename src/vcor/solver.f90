@@ -76,7 +76,7 @@ contains
          call refuse('nothing is left of a receding contact at separation: going on has no ' &
             //'meaning', 'law continue_after_separation')
       else if (impact%gravity > 0.0_wp .and. .not. is_product) then
-         call refuse("adams_bashforth marches the paper's wave equation, which has no weight; use " &
+         call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
             //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
       else if (impact%plate%hereditary() .and. .not. is_product) then
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &

@@ -1,5 +1,6 @@
 !> Impacts of every plate, contact law, pair and material against references: tests/reference/
-!> practical.txt, random.txt, designed.txt and found.txt, by both methods, at several accuracies
+!> practical.txt, random.txt, designed.txt, shapes.txt and found.txt, by both methods, at several
+!> accuracies
 program test_impacts
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -73,6 +74,7 @@ program test_impacts
    call test_set("practical.txt", 230, 1.0e-11_wp)
    call test_set("random.txt", 70, 1.0e-12_wp)
    call test_set("designed.txt", 73, 3.0e-12_wp)
+   call test_set("shapes.txt", 17, 1.0e-12_wp)
    call test_set("found.txt", 2, 1.0e-12_wp)
    call finish()
 

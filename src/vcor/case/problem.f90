@@ -53,7 +53,8 @@ module vcor_case_problem
 
    !> Addresses of the numbers that an impact is made from
    type :: numbers_t
-      type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius, half_thickness
+      type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
+      type(address_t) :: half_thickness
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
    end type numbers_t

@@ -172,8 +172,8 @@ contains
       velocity = self%velocity + self%gravity*t
    end function free_velocity
 
-   !> Velocity that the motion is measured by: v0 and what gravity adds in the time scale T. A sphere
-   !> that is merely put down has one, too
+   !> Velocity that the motion is measured by: v0 and what gravity adds in the time scale T. A
+   !> sphere that is merely put down has one, too
    pure function speed_scale(self, time_scale) result(speed)
       class(impact_t), intent(in) :: self
       !> Time scale of the contact [s]

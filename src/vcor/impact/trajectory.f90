@@ -39,7 +39,7 @@ module vcor_impact_trajectory
    !> All motion died out in contact
    integer, parameter :: contact_sticking = 2
    !> Its weight keeps the sphere in contact for good
-   integer, parameter :: contact_resting = 3
+   integer, parameter :: contact_resting = 5
 
    !> Steps of a history where the solver does not work in equal steps
    integer, parameter :: history_steps = 500
@@ -192,7 +192,8 @@ contains
    !>
    !> Next to rest the contact is linear in u and the energy of what it is off by,
    !> V = m v^2/2 + (F - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of
-   !> the sphere, in a fluid as far as it is not one between rest and steady sinking. A force of zero tau after a state of that energy needs
+   !> the sphere, in a fluid as far as it is not one between rest and steady sinking. A force of
+   !> zero a time tau after a state of that energy needs
    !>
    !>     W <= sqrt(2 V u') (sqrt(k(2 tau)) + K(tau) sqrt(u'/m)),   K = int_0 k
    !>

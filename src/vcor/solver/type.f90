@@ -115,8 +115,9 @@ contains
       end if
    end subroutine solve_impact
 
-   !> Refuse a receding contact in which t1 grows. On a plate at rest, without weight, s' only falls, and t1' has the
-   !> sign of s': there it is what rounding leaves of a sphere that has come to rest
+   !> Refuse a receding contact in which t1 grows. On a plate at rest, without weight, s' only
+   !> falls, and t1' has the sign of s': there it is what rounding leaves of a sphere that has come
+   !> to rest
    subroutine refuse_growth(impact, error)
       type(impact_t), intent(in) :: impact
       !> Error of code `error_numerical`

@@ -17,9 +17,9 @@ module vcor_sweep_quantity
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
    integer, parameter :: point_pending = -1
    !> Its parameters describe no impact
-   integer, parameter :: point_invalid = 4
+   integer, parameter :: point_invalid = 3
    !> The numerical solution failed
-   integer, parameter :: point_failed = 5
+   integer, parameter :: point_failed = 4
 
    !> One status
    type :: status_t
@@ -42,13 +42,13 @@ module vcor_sweep_quantity
       //'plate where the inelasticity is above 20'), &
       status_t(contact_sticking, 'sticks', 'all motion died out in contact', 'nothing: the plate ' &
       //'is too light for it (inelasticity above about 5), or the material flows'), &
-      status_t(contact_resting, 'rests', 'its weight keeps the sphere in contact for good', &
-      'nothing: residual_indentation is that at the end of the computation'), &
       status_t(point_invalid, 'invalid', &
       'in a sweep: the values of the point make no impact', &
       'the message says which one is out of range, or contradicts others'), &
       status_t(point_failed, 'failed', 'in a sweep: the numerical solution failed', &
       'the message says why; the other method, by solver.method, may succeed'), &
+      status_t(contact_resting, 'rests', 'its weight keeps the sphere in contact for good', &
+      'nothing: residual_indentation is that at the end of the computation'), &
       status_t(point_pending, 'pending', 'in a sweep: the point is not solved yet', &
       'the same command with --resume')]
 
@@ -321,7 +321,7 @@ contains
    pure function status_name(status) result(name)
       !> One of the `contact_*` and `point_*` constants
       integer, intent(in) :: status
-      !> separated, no_separation, sticks, rests, invalid, failed or pending
+      !> separated, no_separation, sticks, invalid, failed, rests or pending
       character(len=:), allocatable :: name
 
       integer :: i

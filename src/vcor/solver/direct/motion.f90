@@ -1,7 +1,7 @@
 !> Equation of motion in product integration: how the motion at a node follows from the force there
 !>
-!> Eq. (2) integrated twice, s = v0 t + g t^2/2 - J/m - U with I' = F and J' = I, is linear in the force F at
-!> the newest node, whatever the plate. Its deflection and velocity are
+!> Eq. (2) integrated twice, s = v0 t + g t^2/2 - J/m - U with I' = F and J' = I, is linear in the
+!> force F at the newest node, whatever the plate. Its deflection and velocity are
 !>
 !>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
 !>     hereditary           U = alpha I + sum_j W_{n-j} dJ_j,   U' = alpha F + sum_j W_{n-j} dI_j

@@ -28,7 +28,8 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_ive_tuning, only : cut_at_end, early_yield, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
-      first_receding_growth, first_short, finest_accuracy, first_slow, first_three, force_share, frozen_first, &
+      first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
+      force_share, frozen_first, &
       grown_alpha, harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, &
       most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
@@ -171,7 +172,8 @@ contains
 
    !> Whether a plate whose alpha grows may take up the motion within the first step: the contact
    !> may end in it, between its stages. A plate at rest would have given way by the share
-   !> alpha K u/s of s = v0 t + g t^2/2, K the integral of the kernel, a share that only grows with time
+   !> alpha K u/s of s = v0 t + g t^2/2, K the integral of the kernel, a share that only grows with
+   !> time
    function yields_early(self) result(yields)
       !> The contact, its first step chosen
       type(contact_t), intent(in) :: self
@@ -424,8 +426,8 @@ contains
    end subroutine turn_round
 
    !> Errors of the coefficients of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I and
-   !> z' = v0 - I/m. The companion reaches F = 0 a little earlier or later, which only alpha' and
-   !> the drift feel
+   !> z' = v0 - I/m. The companion reaches F = 0 a little earlier or later, which only gravity,
+   !> alpha' and the drift feel
    pure subroutine estimate_errors(self, panels, cor_error, cor_sphere_error)
       !> The contact, at its end
       type(contact_t), intent(in) :: self
@@ -452,7 +454,7 @@ contains
             - panel%indentation(n)
          least = rounding_per_panel*real(panels, wp) &
             + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
-         cor_sphere_error = least + impulse/(impact%mass*impact%velocity)
+         cor_sphere_error = least + (impulse/impact%mass + impact%gravity*time)/impact%velocity
          cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
             *(moved/panel%time(n))**2 + (impulse*alpha_rate &
             + time*(alpha_rate*panel%impulse(n)/panel%time(n) &

@@ -242,9 +242,10 @@ contains
             + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          time_error = 0.0_wp
          if (self%ends) then
-            ! the companion ends a little earlier or later, which changes the velocity of the plate
+            ! the companion ends a little earlier or later: weight and plate change the velocities
             time_error = abs(panel%condition(n) - coarse%condition(n - 1))/self%start%condition &
                *self%taken
+            self%error = self%error + time_error*impact%gravity/impact%velocity
             self%error(1) = self%error(1) + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity

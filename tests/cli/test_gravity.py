@@ -1,0 +1,165 @@
+"""Impacts with the weight of the sphere: rest, drop heights, and what does not go with it."""
+
+import math
+
+import pytest
+from program import INPUT
+
+CASE = """&impact velocity = 0.4, gravity = 9.81 /
+&sphere radius = 0.02, material = 'ball' /
+&plate material = 'gel', waves = 'none' /
+&material name = 'ball', model = 'rigid', density = 7800 /
+&material name = 'gel', model = 'sls', poisson_ratio = 0.5, glassy_modulus = 1e5, alpha = 50.0, beta = 100.0 /
+&output csv = .false., hdf5 = .false. /
+"""
+METHODS = ("ive", "direct")
+MASS = 4 / 3 * math.pi * 0.02**3 * 7800
+
+
+def settled(modulus, weight=MASS * 9.81):
+    """Indentation at which a spring of the plane-strain modulus E/(1 - 1/4) holds the sphere."""
+    return (weight * 0.75 / modulus / (4 / 3 * math.sqrt(0.02))) ** (2 / 3)
+
+
+def run(vcor, names, *words):
+    """Numbers and status of a case."""
+    done = vcor("run", "case.nml", "--print", names + ",status", *words)
+    assert done.code == 0, done.err
+    *values, status = done.out.split()
+    return [float(value) for value in values], status
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("velocity", [0.05, 1e-6])
+def test_rests(vcor, method, velocity):
+    """A sphere that is put down comes to where the relaxed spring holds its weight."""
+    vcor.write(CASE)
+    values, status = run(
+        vcor,
+        "residual_indentation,cor,contact_time",
+        "--set",
+        f"solver.method={method}",
+        "--set",
+        f"impact.velocity={velocity}",
+    )
+    assert status == "rests"
+    assert values[0] == pytest.approx(settled(0.5e5), rel=1e-6)
+    assert math.isnan(values[1]) and math.isnan(values[2])
+
+
+@pytest.mark.parametrize("law", ["boltzmann", "receding"])
+@pytest.mark.parametrize("waves", ["none", "relaxing", "hereditary"])
+def test_separates_or_rests(vcor, law, waves):
+    """From the fastest to the slowest: there is one velocity below which a sphere rests."""
+    vcor.write(
+        CASE.replace("waves = 'none'", f"waves = '{waves}', half_thickness = 0.1")
+    )
+    vcor.write(
+        (vcor.folder / "case.nml")
+        .read_text()
+        .replace("'sls',", "'sls', density = 1000,")
+    )
+    found = [
+        run(
+            vcor, "cor", "--set", f"contact.law={law}", "--set", f"impact.velocity={v}"
+        )[1]
+        for v in (2.0, 0.6, 0.05, 0.01, 1e-4)
+    ]
+    assert found == sorted(found, reverse=True)
+    assert {found[0], found[-1]} == {"separated", "rests"}
+
+
+def test_end_time(vcor):
+    """At the end of the computation it rests or it does not, as its energy says."""
+    vcor.write(CASE.replace("velocity = 0.4", "velocity = 1e-3"))
+    assert run(vcor, "cor", "--set", "solver.end_time=0.3")[1] == "rests"
+    done = vcor(
+        "run", "case.nml", "--print", "status", "--set", "solver.end_time=0.001"
+    )
+    assert (done.code, done.out) == (5, "no_separation\n")
+
+
+def test_elastic_contact_lets_go(vcor):
+    """Without losses a sphere comes off, however slow."""
+    vcor.write(
+        CASE.replace(
+            "'sls', poisson_ratio = 0.5, glassy_modulus = 1e5, alpha = 50.0, beta = 100.0",
+            "'elastic', poisson_ratio = 0.5, modulus = 1e5",
+        )
+    )
+    for velocity in (1.0, 1e-2):
+        values, status = run(
+            vcor, "cor,cor_sphere", "--set", f"impact.velocity={velocity}"
+        )
+        assert status == "separated"
+        assert values == pytest.approx([1.0, 1.0], abs=5e-8)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_energies(vcor, method):
+    """The balance of energies has the work of the weight in it."""
+    vcor.write(CASE)
+    names = "energy_imbalance,initial_energy,cor_sphere,hysteresis_energy,residual_indentation"
+    values, status = run(vcor, names, "--set", f"solver.method={method}")
+    imbalance, energy, cor, lost, left = values
+    assert status == "separated"
+    assert abs(imbalance) < 1e-6 * energy
+    assert energy * (1 - cor**2) + MASS * 9.81 * left == pytest.approx(lost, rel=2e-6)
+
+
+def test_drop_height(vcor):
+    """A drop has the gravity that is given, else the standard one, and does not switch it on."""
+    vcor.write(CASE.replace("velocity = 0.4, gravity = 9.81", "drop_height = 0.05"))
+    standard = run(vcor, "initial_energy,cor")[0]
+    moon = run(vcor, "initial_energy,cor", "--set", "impact.gravity=1.62")[0]
+    assert standard[0] == pytest.approx(MASS * 9.80665 * 0.05)
+    assert moon[0] == pytest.approx(MASS * 1.62 * 0.05)
+    vcor.write(
+        CASE.replace(
+            "velocity = 0.4, gravity = 9.81",
+            f"velocity = {math.sqrt(2 * 9.80665 * 0.05)!r}",
+        )
+    )
+    assert run(vcor, "initial_energy,cor")[0] == pytest.approx(standard)
+
+
+def test_weight_is_not_judged(vcor):
+    """weight_ratio is a column, but no objection where the impact is solved with its weight."""
+    vcor.write(CASE)
+    with_weight = vcor("run", "case.nml", "--print", "weight_ratio")
+    without = vcor(
+        "run", "case.nml", "--print", "weight_ratio", "--set", "impact.gravity=0"
+    )
+    assert float(with_weight.out) > 0.01
+    assert "weight_ratio" not in with_weight.err
+    assert "weight_ratio" in without.err
+
+
+def test_refused(vcor):
+    """Gravity pulls down, and the paper's scheme has none."""
+    vcor.write(CASE)
+    vcor.refuses(
+        "run",
+        "case.nml",
+        "--set",
+        "impact.gravity=-9.81",
+        code=INPUT,
+        says=["gravity", ">= 0"],
+    )
+    words = ["--set", "solver.method=direct", "--set", "solver.scheme=adams_bashforth"]
+    vcor.refuses("run", "case.nml", *words, code=INPUT, says=["gravity", "product"])
+    vcor.write(CASE.replace(", gravity = 9.81", ""))
+    words += ["--set", "impact.gravity=9.81"]
+    vcor.refuses("run", "case.nml", *words, code=INPUT, says=["gravity", "does not read", "weight"])
+
+
+def test_sweep(vcor):
+    """A resting sphere is a point with a result."""
+    vcor.write(CASE + "&sweep parameter = 'impact.velocity', values = 0.01, 0.5 /\n")
+    done = vcor("run", "case.nml", "--print", "status,cor")
+    assert done.code == 0
+    assert [line.split()[-2] for line in done.out.splitlines()] == [
+        "rests",
+        "separated",
+    ]
+    assert "no result" not in done.err
