@@ -5,15 +5,16 @@
 !> and a byte-order mark is passed over. Numbers may have decimal commas where something else stands
 !> between the columns. A line `sep=;` counts as blank.
 module vcor_io_columns
-   use vcor_case_real, only : read_real
+   use vcor_case_real, only : looks_numeric, read_real
    use vcor_kinds, only : wp
    use vcor_material_table, only : largest_value, smallest_value
-   use vcor_text, only : lower, real_text
+   use vcor_text, only : has_control, lower, real_text
    implicit none
    private
 
    public :: lines_in, take_line, split, start_of, blanks, decimals_t, take_decimals
    public :: mixed_decimals, not_a_text, read_value
+   public :: row_t, most_columns
 
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
@@ -35,7 +36,86 @@ module vcor_io_columns
       logical :: points = .false.
    end type decimals_t
 
+   !> Most columns of a file
+   integer, parameter :: most_columns = 64
+
+   !> A text line by line
+   type :: row_t
+      !> Number of the line, 0 before the first one is taken
+      integer :: line = 0
+      !> False behind the last line, whose number is kept
+      logical :: is_there = .true.
+      !> The line without its end and without what follows a #, its decimal commas made points
+      character(len=:), allocatable :: content
+      !> What follows the #
+      character(len=:), allocatable :: comment
+      !> Number of its columns, 0 in a blank line
+      integer :: columns = 0
+      !> How the numbers of this line and of all lines that `check` has seen are written
+      type(decimals_t) :: here, so_far
+      !> Where the next line begins, and where the columns of this one do and end
+      integer, private :: next = 0, from(most_columns) = 1, to(most_columns) = 0
+   contains
+      !> Take the next line
+      procedure :: take => take_row
+      !> What is wrong with a line of numbers, whatever they say
+      procedure :: check => check_row
+      !> One of its columns
+      procedure :: cell
+      !> Whether a column looks like a number
+      procedure :: is_numeric
+   end type row_t
+
 contains
+
+   !> Take the next line of a text
+   pure subroutine take_row(self, text)
+      class(row_t), intent(inout) :: self
+      character(len=*), intent(in) :: text
+
+      if (self%line == 0) self%next = start_of(text)
+      self%is_there = self%next <= len(text)
+      if (.not. self%is_there) return
+      call take_line(text, self%next, self%content, self%comment)
+      self%line = self%line + 1
+      call take_decimals(self%content, self%here)
+      call split(self%content, self%columns, self%from, self%to)
+   end subroutine take_row
+
+   !> Check a line of numbers
+   pure subroutine check_row(self, message)
+      class(row_t), intent(inout) :: self
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+
+      self%so_far%commas = self%so_far%commas .or. self%here%commas
+      self%so_far%points = self%so_far%points .or. self%here%points
+      if (has_control(self%content)) then
+         message = not_a_text
+      else if (self%so_far%commas .and. self%so_far%points) then
+         message = mixed_decimals
+      end if
+   end subroutine check_row
+
+   !> A column
+   pure function cell(self, i)
+      class(row_t), intent(in) :: self
+      !> Its number, at most `columns` and `most_columns`
+      integer, intent(in) :: i
+      character(len=:), allocatable :: cell
+
+      cell = self%content(self%from(i):self%to(i))
+   end function cell
+
+   !> Whether a column looks like a number
+   elemental function is_numeric(self, i)
+      class(row_t), intent(in) :: self
+      !> Its number
+      integer, intent(in) :: i
+      logical :: is_numeric
+
+      is_numeric = looks_numeric(self%content(self%from(i):self%to(i)))
+   end function is_numeric
 
    !> Where the first line of a text begins
    pure function start_of(text) result(start)

@@ -7,7 +7,7 @@ module vcor_io_header
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_io_columns, only : split
+   use vcor_io_columns, only : most_columns, split
    use vcor_words, only : nearest_name
    use vcor_text, only : lower, shortened
    use vcor_words, only : contains_word, join_words
@@ -17,7 +17,7 @@ module vcor_io_header
    public :: header_t, column_name_t, roles, name_of, role_of, names_columns, names_tensile
    public :: read_names, read_units, note_comment
    public :: check_unit, unit_size, time_units, frequency_units, angular_units, modulus_units
-   public :: most_columns, longest_word
+   public :: longest_word
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
       role_tangent, role_complex
 
@@ -27,8 +27,6 @@ module vcor_io_header
    !> Units of frequency, angular or not
    character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
    character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
-   !> Most columns of a file
-   integer, parameter :: most_columns = 64
    !> Letters of the longest name or unit
    integer, parameter :: longest_word = 40
    !> Unit of a pure number

@@ -8,13 +8,12 @@
 !> tensile moduli in SI units, in rising order.
 module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
-      split, start_of, take_decimals, take_line
+   use vcor_io_columns, only : decimals_t, lines_in, most_columns, not_a_text, read_value, &
+      row_t
    use vcor_io_header, only : angular_units, check_unit, header_t, known_roles => roles, &
-      longest_word, most_columns, name_of, names_columns, note_comment, read_names, read_units, &
+      longest_word, name_of, names_columns, note_comment, read_names, read_units, &
       role_complex, role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, &
       role_tangent, role_time, time_units, unit_size
-   use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
@@ -143,63 +142,52 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(header_t) :: header
-      type(decimals_t) :: decimals, before
-      character(len=:), allocatable :: content, comment, message
-      integer :: start, line, columns, from(most_columns), to(most_columns), i, names_line
-      logical :: numeric, falls
+      type(row_t) :: row
+      character(len=:), allocatable :: message
+      integer :: i, names_line
+      logical :: falls
 
       allocate (points(3, lines_in(text)))
       names_line = line_of_names(text)
       falls = .false.
-      start = start_of(text)
-      line = 0
       lines = 0
       n = 0
-      do while (start <= len(text))
-         call take_line(text, start, content, comment)
-         line = line + 1
-         if (n == 0 .and. header%lines == 0) call note_comment(header, comment)
-         if (has_control(content)) then
-            call raise(error, error_input, name//":"//integer_text(line)//": "//not_a_text)
+      do
+         call row%take(text)
+         if (.not. row%is_there) exit
+         if (n == 0 .and. header%lines == 0) call note_comment(header, row%comment)
+         if (has_control(row%content)) then
+            call raise(error, error_input, name//":"//integer_text(row%line)//": "//not_a_text)
             return
          end if
-         if (line <= names_line) then
-            if (line == names_line) call read_names(header, names_in(content, comment), line)
-            cycle
-         end if
-         call take_decimals(content, decimals)
-         call split(content, columns, from, to)
-         if (columns == 0) cycle
-         if (n == 0 .and. header%lines < 2) then
-            numeric = columns > most_columns
-            do i = 1, min(columns, most_columns)
-               numeric = numeric .or. looks_numeric(content(from(i):to(i)))
-            end do
-            if (.not. numeric) then
+         if (row%line == names_line) &
+            call read_names(header, names_in(row%content, row%comment), row%line)
+         if (row%line <= names_line .or. row%columns == 0) cycle
+         if (n == 0 .and. header%lines < 2 .and. row%columns <= most_columns) then
+            if (.not. any(row%is_numeric([(i, i=1, row%columns)]))) then
                if (header%lines == 0) then
-                  call read_names(header, content, line)
+                  call read_names(header, row%content, row%line)
                else
-                  call read_units(header, content, line)
+                  call read_units(header, row%content, row%line)
                end if
                cycle
             end if
          end if
-         if (n == 0) call make_plan(header, columns, reading, name, line, plan, error)
+         call row%check(message)
+         if (n == 0 .and. .not. allocated(message)) &
+            call make_plan(header, row%columns, reading, name, row%line, plan, error)
          if (allocated(error)) return
-         before%commas = before%commas .or. decimals%commas
-         before%points = before%points .or. decimals%points
-         if (before%commas .and. before%points) then
-            message = mixed_decimals
-         else if (columns /= plan%columns) then
-            message = "found "//columns_text(columns)//", expected " &
+         if (allocated(message)) then
+            continue
+         else if (row%columns /= plan%columns) then
+            message = "found "//columns_text(row%columns)//", expected " &
                //integer_text(plan%columns)//" as before"
          else
             points(:, n + 1) = 0.0_wp
             do i = 1, size(plan%places)
                if (allocated(message)) exit
-               call read_value(content(from(plan%places(i)):to(plan%places(i))), &
-                  name_of(plan%roles(i), plan%units(i)), unit_size(trim(plan%units(i))), &
-                  points(i, n + 1), message)
+               call read_value(row%cell(plan%places(i)), name_of(plan%roles(i), plan%units(i)), &
+                  unit_size(trim(plan%units(i))), points(i, n + 1), message)
             end do
             if (.not. allocated(message) .and. n > 0) then
                ! instruments sweep frequencies in either direction
@@ -213,19 +201,19 @@ contains
             end if
          end if
          if (allocated(message)) then
-            call raise(error, error_input, name//":"//integer_text(line)//": "//message)
+            call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
             return
          end if
          n = n + 1
-         if (n == 1) lines(1) = line
-         lines(2) = line
+         if (n == 1) lines(1) = row%line
+         lines(2) = row%line
       end do
-      plan%decimals = before
+      plan%decimals = row%so_far
       if (falls) points(:, :n) = points(:, n:1:-1)
       if (n >= 2) return
       message = "found no numbers"
       if (n == 1) message = "found one row of numbers"
-      call raise(error, error_input, name//":"//integer_text(max(1, line))//": "//message &
+      call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": "//message &
          //", expected two rows at least, of time and modulus or of frequency, storage and loss " &
          //"modulus")
    end subroutine read_points
@@ -236,21 +224,16 @@ contains
       !> Number of the line; 0 if there is none
       integer :: found
 
-      type(decimals_t) :: decimals
-      character(len=:), allocatable :: content, comment
-      integer :: start, line, columns, from(most_columns), to(most_columns), i
+      type(row_t) :: row
+      integer :: i
 
       found = 0
-      line = 0
-      start = start_of(text)
-      do while (start <= len(text))
-         call take_line(text, start, content, comment)
-         line = line + 1
-         if (names_columns(names_in(content, comment))) found = line
-         call take_decimals(content, decimals)
-         call split(content, columns, from, to)
-         if (columns < 2) cycle
-         if (all([(looks_numeric(content(from(i):to(i))), i=1, min(columns, most_columns))])) exit
+      do
+         call row%take(text)
+         if (.not. row%is_there) exit
+         if (names_columns(names_in(row%content, row%comment))) found = row%line
+         if (row%columns < 2) cycle
+         if (all(row%is_numeric([(i, i=1, min(row%columns, most_columns))]))) exit
       end do
    end function line_of_names
 
