@@ -43,11 +43,11 @@ def write_long_sweep(vcor, seconds):
 
 
 def begin(vcor, *words, folder="out", **options):
-    """Start a run."""
+    """Start a run: on one thread, so that it takes as long on any number of cores."""
     options.setdefault("stdout", subprocess.PIPE)
     options.setdefault("stderr", subprocess.PIPE)
     return subprocess.Popen(
-        [program(), "run", "case.nml", "--output", folder, *words],
+        [program(), "run", "case.nml", "--output", folder, "--threads", "1", *words],
         cwd=vcor.folder,
         encoding="utf-8",
         **options,

@@ -191,7 +191,7 @@ def test_other_files_too_large(vcor):
 
 
 def test_unfinished_file_too_large(vcor):
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 0.8)
     done = vcor(
         "run", "case.nml", "--output", "out", preexec_fn=limited(resource.RLIMIT_FSIZE, 100_000)
     )
@@ -204,7 +204,7 @@ def test_unfinished_file_too_large(vcor):
 
 def test_two_at_once(vcor):
     """Of two runs of one sweep one has it, and says the other; the results are whole."""
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 0.8)
     for more in ([], ["--resume"]):
         shutil.rmtree(vcor.folder / "out", ignore_errors=True)
         both = [begin(vcor, "--quiet", *more) for _ in range(2)]
@@ -221,7 +221,7 @@ def test_two_at_once(vcor):
 
 def test_begun_anew_in_use(vcor):
     """Unfinished points that one run is about to replace are not another's."""
-    write_long_sweep(vcor, 1.0)
+    write_long_sweep(vcor, 0.8)
     process = begin(vcor)
     wait_for(vcor.folder / "out" / PART, process)
     process.kill()

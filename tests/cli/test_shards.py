@@ -138,7 +138,7 @@ def test_every_bit_of_a_row(vcor):
 
 
 def test_unfinished_shard(vcor):
-    write_long_sweep(vcor, 2.0)
+    write_long_sweep(vcor, 1.4)
     folder = vcor.folder / "out"
     name = PART.replace("case", "case_shard_1_of_2")
     words = ["--shard", "1/2"]
