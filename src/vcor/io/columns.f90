@@ -12,9 +12,7 @@ module vcor_io_columns
    implicit none
    private
 
-   public :: lines_in, take_line, split, start_of, blanks, decimals_t, take_decimals
-   public :: mixed_decimals, not_a_text, read_value
-   public :: row_t, most_columns
+   public :: row_t, most_columns, decimals_t, lines_in, split, read_value, not_a_text
 
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)

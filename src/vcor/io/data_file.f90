@@ -6,18 +6,16 @@
 !> of other units, of shear moduli or of dynamic data is refused.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, read_value, &
-      & split, start_of, take_decimals, take_line
+   use vcor_io_columns, only : lines_in, read_value, row_t
    use vcor_io_header, only : check_unit, header_t, longest_word, name_of, names_tensile, &
       & note_comment, read_names, role_none, role_of, role_relaxation, role_time, unit_size
    use vcor_io_path, only : folder_of, join_path
    use vcor_io_shift_file, only : read_shift_table
-   use vcor_case_real, only : looks_numeric
    use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_material_table, only : modulus_rounding
    use vcor_case_case, only : case_t
-   use vcor_text, only : has_control, integer_text, printable, real_text, shortened
+   use vcor_text, only : integer_text, printable, real_text, shortened
    implicit none
    private
 
@@ -109,61 +107,52 @@ contains
       real(wp), allocatable, intent(out) :: moduli(:)
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      type(decimals_t) :: decimals, before
+      type(row_t) :: row
       type(header_t) :: header
-      character(len=:), allocatable :: content, comment, message
+      character(len=:), allocatable :: message
       real(wp), allocatable :: points(:, :)
-      integer :: start, line, n, last_line, columns, from(2), to(2)
+      integer :: n, last_line
       logical :: first
 
       allocate(points(2, lines_in(text)))
-      start = start_of(text)
-      line = 0
       n = 0
       first = .true.
-      do while (start <= len(text))
-         call take_line(text, start, content, comment)
-         line = line + 1
-         if (first) call note_comment(header, comment)
-         call take_decimals(content, decimals)
-         call split(content, columns, from, to)
-         if (columns == 0) cycle
+      do
+         call row%take(text)
+         if (.not. row%is_there) exit
+         if (first) call note_comment(header, row%comment)
+         if (row%columns == 0) cycle
          if (first) then
             first = .false.
-            if (.not. any([looks_numeric(content(from(1):to(1))), &
-               & looks_numeric(content(from(2):to(2)))])) then
-               call read_names(header, content, line)
+            if (.not. any(row%is_numeric([1, 2]))) then
+               call read_names(header, row%content, row%line)
                call check_header(header, name, scale, is_shear, error)
                if (allocated(error)) return
                cycle
             end if
          end if
-         before%commas = before%commas .or. decimals%commas
-         before%points = before%points .or. decimals%points
-         if (has_control(content)) then
-            message = not_a_text
-         else if (before%commas .and. before%points) then
-            message = mixed_decimals
-         else if (columns == 2) then
-            call read_value(content(from(1):to(1)), trim(names(1)), scale(1), points(1, n+1), &
-               & message)
-            if (.not. allocated(message)) call read_value(content(from(2):to(2)), &
-               & trim(names(2)), scale(2), points(2, n+1), message)
+         call row%check(message)
+         if (allocated(message)) then
+            continue
+         else if (row%columns == 2) then
+            call read_value(row%cell(1), trim(names(1)), scale(1), points(1, n+1), message)
+            if (.not. allocated(message)) &
+               & call read_value(row%cell(2), trim(names(2)), scale(2), points(2, n+1), message)
             if (.not. allocated(message) .and. n > 0) &
                & call compare(points(:, n), points(:, n+1), last_line, message)
          else
-            message = "found "//integer_text(columns)//" columns, expected 2, a time and a " &
+            message = "found "//integer_text(row%columns)//" columns, expected 2, a time and a " &
                & //"modulus, with a comma, a semicolon, a tab or blanks between them"
          end if
          if (allocated(message)) then
-            call raise(error, error_input, name//":"//integer_text(line)//": "//message)
+            call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
             return
          end if
          n = n + 1
-         last_line = line
+         last_line = row%line
       end do
       if (n < 2) then
-         call raise(error, error_input, name//":"//integer_text(max(1, line))//": found " &
+         call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": found " &
             & //integer_text(n)//" "//trim(merge("point ", "points", n == 1)) &
             & //", expected 2 at least, a time and a modulus to a line")
          return

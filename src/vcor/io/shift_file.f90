@@ -5,12 +5,11 @@
 !> line. Without it they are in K.
 module vcor_io_shift_file
    use vcor_error, only : error_input, error_t, raise
-   use vcor_io_columns, only : decimals_t, lines_in, mixed_decimals, not_a_text, split, start_of, &
-      take_decimals, take_line
+   use vcor_io_columns, only : lines_in, row_t
    use vcor_io_header, only : header_t, read_names, read_units
-   use vcor_case_real, only : looks_numeric, read_real
+   use vcor_case_real, only : read_real
    use vcor_kinds, only : wp
-   use vcor_text, only : has_control, integer_text, lower, real_text, shortened
+   use vcor_text, only : integer_text, lower, real_text, shortened
    use vcor_words, only : contains_word
    implicit none
    private
@@ -40,39 +39,32 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(decimals_t) :: decimals, before
+      type(row_t) :: row
       type(header_t) :: header
-      character(len=:), allocatable :: content, comment, message
+      character(len=:), allocatable :: message
       real(wp), allocatable :: points(:, :)
       real(wp) :: zero
-      integer :: columns, from(2), to(2), line, n, start
+      integer :: n
 
       allocate (points(2, lines_in(text)))
-      start = start_of(text)
-      line = 0
       n = 0
       zero = 0.0_wp
-      do while (start <= len(text))
-         call take_line(text, start, content, comment)
-         line = line + 1
-         if (n == 0 .and. .not. begins_with_number(content)) then
-            call take_head(header, content, comment, line, message)
-         else if (content /= '') then
-            call take_decimals(content, decimals)
-            before%commas = before%commas .or. decimals%commas
-            before%points = before%points .or. decimals%points
-            call split(content, columns, from, to)
-            if (has_control(content)) then
-               message = not_a_text
-            else if (before%commas .and. before%points) then
-               message = mixed_decimals
-            else if (columns /= 2) then
-               message = 'found '//integer_text(columns)//' columns'//example
+      do
+         call row%take(text)
+         if (.not. row%is_there) exit
+         if (n == 0 .and. .not. (row%columns > 0 .and. row%is_numeric(1))) then
+            call take_head(header, row%content, row%comment, row%line, message)
+         else if (row%columns > 0) then
+            call row%check(message)
+            if (allocated(message)) then
+               continue
+            else if (row%columns /= 2) then
+               message = 'found '//integer_text(row%columns)//' columns'//example
             else
                if (n == 0) call find_zero(header, zero, message)
-               if (.not. allocated(message)) call read_real(content(from(1):to(1)), &
-                  'a temperature', points(1, n + 1), message)
-               if (.not. allocated(message)) call read_real(content(from(2):to(2)), &
+               if (.not. allocated(message)) call read_real(row%cell(1), 'a temperature', &
+                  points(1, n + 1), message)
+               if (.not. allocated(message)) call read_real(row%cell(2), &
                   'log10 of a shift factor', points(2, n + 1), message)
                if (.not. allocated(message)) then
                   n = n + 1
@@ -82,7 +74,7 @@ contains
             end if
          end if
          if (allocated(message)) then
-            call raise(error, error_input, name//':'//integer_text(line)//': '//message)
+            call raise(error, error_input, name//':'//integer_text(row%line)//': '//message)
             return
          end if
       end do
@@ -94,18 +86,6 @@ contains
       if (points(1, 2) < points(1, 1)) points(:, :n) = points(:, n:1:-1)
       table = reshape(points(:, :n), [2*n])
    end subroutine read_shift_table
-
-   !> Whether the first column of a line is a number
-   pure function begins_with_number(content) result(yes)
-      character(len=*), intent(in) :: content
-      logical :: yes
-
-      integer :: columns, from(2), to(2)
-
-      call split(content, columns, from, to)
-      yes = columns > 0
-      if (yes) yes = looks_numeric(content(from(1):to(1)))
-   end function begins_with_number
 
    !> Take a line before the numbers: the names, the units, or a comment that says neither
    pure subroutine take_head(header, content, comment, line, message)
