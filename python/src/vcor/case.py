@@ -501,6 +501,9 @@ def _bar(total: int, progress: bool | None) -> Any:
         progress = sys.stderr.isatty() or hasattr(shell, "kernel")
     if not progress:
         return _NoBar()
-    from tqdm.auto import tqdm
+    with warnings.catch_warnings():
+        # a notebook without ipywidgets has the bar of a terminal
+        warnings.simplefilter("ignore")
+        from tqdm.auto import tqdm
 
     return tqdm(total=total, unit="impact", delay=_BAR_DELAY)
