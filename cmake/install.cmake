@@ -108,6 +108,28 @@ install(FILES completion/_vcor
 install(FILES completion/vcor.fish
   DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d" COMPONENT program)
 
+# The Python package where Debian's Python looks, for its package only: others install it with pip. Its
+# commands are those of python/pyproject.toml
+if(TARGET vcor_python)
+  set(python_folder lib/python3/dist-packages)
+  install(TARGETS vcor_python LIBRARY DESTINATION "${python_folder}/vcor/lib" COMPONENT python
+    EXCLUDE_FROM_ALL)
+  install(DIRECTORY python/src/vcor DESTINATION "${python_folder}" COMPONENT python EXCLUDE_FROM_ALL
+    PATTERN "__pycache__" EXCLUDE)
+  file(WRITE "${PROJECT_BINARY_DIR}/python/vcor-${PROJECT_VERSION}.dist-info/METADATA"
+    "Metadata-Version: 2.1\nName: vcor\nVersion: ${PROJECT_VERSION}\n")
+  install(DIRECTORY "${PROJECT_BINARY_DIR}/python/" DESTINATION "${python_folder}" COMPONENT python
+    EXCLUDE_FROM_ALL)
+  file(STRINGS python/pyproject.toml commands REGEX "^vcor-[a-z]+ = ")
+  foreach(line IN LISTS commands)
+    string(REGEX MATCH "^(vcor-[a-z]+) = \"([a-z._]+):([a-z_]+)\"$" line "${line}")
+    file(WRITE "${PROJECT_BINARY_DIR}/bin/${CMAKE_MATCH_1}"
+      "#!/usr/bin/python3\nfrom ${CMAKE_MATCH_2} import ${CMAKE_MATCH_3}\n${CMAKE_MATCH_3}()\n")
+    install(PROGRAMS "${PROJECT_BINARY_DIR}/bin/${CMAKE_MATCH_1}"
+      DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT python EXCLUDE_FROM_ALL)
+  endforeach()
+endif()
+
 # What users read
 install(FILES README.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program

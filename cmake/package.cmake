@@ -1,5 +1,5 @@
 # Packages, by `cpack` in the build folder: vcor with the program, libvcor-dev with what others build
-# with
+# with, python3-vcor with the Python package
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR "the vcor developers")
 # Debian wants an address; who publishes packages has one to set here
@@ -12,12 +12,15 @@ set(CPACK_STRIP_FILES TRUE)
 set(CPACK_PRE_BUILD_SCRIPTS "${PROJECT_SOURCE_DIR}/cmake/debian_layout.cmake")
 
 set(CPACK_COMPONENTS_ALL program development)
+if(TARGET vcor_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL TRUE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME vcor)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS TRUE)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, python3-vcor")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "vcor computes how a sphere rebounds from a plate, a half space or another
 sphere when at least one of the bodies is viscoelastic: coefficient of
@@ -31,4 +34,13 @@ string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "The library that the program vcor is made of: archive, module files, CMake
 package and pkg-config file, to be used from Fortran.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-vcor)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS TRUE)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3-numpy, python3-xarray, \
+python3-h5netcdf, python3-h5py | python3-h5py-serial, python3-tqdm, python3-matplotlib")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+"The Python package vcor: cases, sweeps, histories, moduli and fits as numpy and
+xarray objects, with the same numbers as those of the program, and the commands
+that it adds to the program, such as vcor plot.")
 include(CPack)

@@ -54,7 +54,13 @@ inside "cp /usr/share/doc/vcor/examples/paper/sls.nml .
    cmake -S consumer -B build >/dev/null
    cmake --build build >/dev/null && build/from_case && build/from_code"
 
+say "install python3-vcor"
+inside "$apt install ./python3-vcor_*.deb" >"$scratch/log" 2>&1 \
+   || { cat "$scratch/log"; fail "not installed"; }
+inside "python3 -c 'import vcor; print(vcor.read(\"sls.nml\").solve()[\"cor\"])'
+   vcor-plot sls_velocity.h5"
+
 say "remove"
-inside "apt-get -q -y -o Dpkg::Use-Pty=0 purge vcor libvcor-dev >/dev/null
+inside "apt-get -q -y -o Dpkg::Use-Pty=0 purge vcor libvcor-dev python3-vcor >/dev/null
    if [ -e /usr/bin/vcor ] || [ -e /usr/lib/libvcor.a ]; then exit 1; fi"
 say "done"

@@ -30,18 +30,29 @@ trap 'exit 130' INT TERM
 jobs=$(nproc 2>/dev/null || echo 2)
 venv=$PWD/build/venv
 
-# Environment of Python, made anew only when the list of packages has changed
+# make_venv FOLDER PYTHON ARGUMENT ...: environment of Python with what `pip install ARGUMENT ...` installs,
+# made anew only when Python or the list of packages has changed
 make_venv() {
-   if cmp -s tests/requirements.txt "$venv/requirements.txt" \
-      && "$venv/bin/python" -c '' 2>/dev/null; then
-      echo "$venv is up to date"
+   local folder=$1 python=$2 made_of
+   shift 2
+   made_of=$("$python" --version; cat tests/requirements.txt; echo "$@")
+   if [ "$made_of" = "$(cat "$folder/made_of" 2>/dev/null)" ] && "$folder/bin/python" -c '' 2>/dev/null; then
+      echo "$folder is up to date"
       return
    fi
-   python3 -m venv --clear "$venv"
-   "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input \
-      -r tests/requirements.txt
+   "$python" -m venv --clear "$folder"
+   "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-input "$@"
    # Last: an installation that was interrupted is done again
-   cp tests/requirements.txt "$venv/requirements.txt"
+   printf '%s' "$made_of" >"$folder/made_of"
+}
+
+# The newest Python of PATH or of pyenv
+newest_python() {
+   local python
+   for python in python3 $(compgen -c python3.) "${PYENV_ROOT:-$HOME/.pyenv}"/versions/*/bin/python3; do
+      "$python" -c 'import sys; print("%d.%03d" % sys.version_info[:2], sys.executable)' \
+         2>/dev/null || true
+   done | grep '^3\.' | sort | tail -n 1 | cut -d ' ' -f 2
 }
 
 # attribute NAME FILE: number in the first such attribute of an XML file
@@ -102,8 +113,11 @@ with_fpm() {
 begin "set-up"
 scripts/setup.sh --tests
 
-begin "Python environment"
-make_venv
+begin "Python environments"
+make_venv "$venv" python3 -r tests/requirements.txt
+# The package is tested with Debian's Python, with this one, and with the newest one that is here
+make_venv build/newest "$(newest_python)" -c tests/requirements.txt \
+   numpy xarray h5py h5netcdf tqdm matplotlib pytest
 
 with_cmake release
 with_cmake debug -DVCOR_BENCHMARKS=OFF

@@ -13,7 +13,9 @@ SCRIPTS = {
     f"{name}-{i}": script
     for name in PAGES
     for i, script in enumerate(
-        re.findall(r"^```python\n(.*?)^```$", (ROOT / "docs" / name).read_text("utf-8"), re.M | re.S)
+        re.findall(
+            r"^```python\n(.*?)^```$", (ROOT / "docs" / name).read_text("utf-8"), re.M | re.S
+        )
     )
 }
 # The script for a cluster, with fewer points

@@ -1,4 +1,4 @@
-"""The notebook examples/tutorial.ipynb: its cells run in their order and print what stands in it."""
+"""The notebook examples/tutorial.ipynb: its cells run and print what stands in it."""
 
 import contextlib
 import io

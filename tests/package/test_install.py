@@ -230,7 +230,7 @@ def field(package, name):
 
 
 def test_packages(packages):
-    assert set(packages) == {"vcor", "libvcor-dev"}
+    assert set(packages) == {"vcor", "libvcor-dev", "python3-vcor"}
     for name, package in packages.items():
         assert field(package, "Package") == name
         assert field(package, "Version") == version()
@@ -240,6 +240,10 @@ def test_packages(packages):
         assert library in needs
     # Debian has archives of HDF5, which the program is linked with
     assert "hdf5" not in needs
+    assert "python3-vcor" in field(packages["vcor"], "Recommends")
+    needs = field(packages["python3-vcor"], "Depends")
+    for library in ["python3-xarray", "python3-h5netcdf", "libgfortran5", "libminpack1", "liblapack3", "libgomp1"]:
+        assert library in needs
     needs = field(packages["libvcor-dev"], "Depends")
     for library in ["gfortran-", "libhdf5-dev", "liblapack-dev"]:
         assert library in needs
@@ -269,6 +273,11 @@ def test_package_runs(packages, tmp_path):
     case = tmp_path / "usr/share/doc/vcor/examples/paper/sls.nml"
     words = ["run", case, *FASTER, "--quiet"]
     assert abs(float(run(tmp_path / "usr/bin/vcor", *words, env={}, cwd=tmp_path)) - COR) <= 1e-8
+    env = {"PYTHONPATH": str(tmp_path / "usr/lib/python3/dist-packages")}
+    env["PYTHONDONTWRITEBYTECODE"] = "1"
+    run(tmp_path / "usr/bin/vcor", "run", case, "--quiet", env={}, cwd=tmp_path)
+    run(tmp_path / "usr/bin/vcor-plot", "sls.h5", "--output", "sls.pdf", env=env, cwd=tmp_path)
+    assert (tmp_path / "sls.pdf").read_bytes().startswith(b"%PDF")
     build = tmp_path / "build"
     run("cmake", "-S", CONSUMER, "-B", build, f"-DCMAKE_PREFIX_PATH={tmp_path / 'usr'}")
     run("cmake", "--build", build, "--target", "from_case")

@@ -10,6 +10,10 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+# Debian's Python with Debian's packages, the oldest ones that are supported; and the newest Python that
+# scripts/test.sh has found, which may be that of these tests
+PYTHONS = {"debian": Path("/usr/bin/python3"), "newest": ROOT / "build/newest/bin/python"}
+SUITES = ["test_case.py", "test_fit.py", "test_tutorial.py"]
 # What the package needs is taken from the environment of the tests
 SCRIPT = f"""
 import vcor
@@ -61,3 +65,15 @@ def test_the_wheel_in_an_empty_environment(wheel, tmp_path):
     assert f'version = "{version}"' in (ROOT / "fpm.toml").read_text()
     words = ["run", "examples/paper/sls.nml", "--set", "impact.velocity=2.5", "--print", "cor", "--quiet"]
     assert float(run(os.environ["VCOR"], *words, cwd=ROOT)) == float(cor)
+
+
+@pytest.mark.parametrize("name", PYTHONS)
+def test_the_wheel_with_another_python(wheel, tmp_path, name):
+    if not PYTHONS[name].exists():
+        pytest.skip(f"no {PYTHONS[name]}: scripts/test.sh makes it")
+    words = ["install", "--no-index", "--no-deps", "--target", tmp_path, wheel]
+    run(sys.executable, "-m", "pip", *words)
+    env = {**os.environ, "PYTHONPATH": str(tmp_path)}
+    suites = [ROOT / "python/tests" / suite for suite in SUITES]
+    words = ["-q", "-p", "no:cacheprovider", "--rootdir", ROOT / "python/tests", *suites]
+    assert " passed" in run(PYTHONS[name], "-m", "pytest", *words, env=env, cwd=tmp_path)
