@@ -29,7 +29,7 @@ module vcor_app_cli
       type(argument_t), allocatable :: files(:)
       !> Values of --set, shape (n)
       type(argument_t), allocatable :: settings(:)
-      !> Names of --print or --quantity, shape (n)
+      !> Names of --print, shape (n)
       type(argument_t), allocatable :: names(:)
       !> Value of --output; unallocated without it
       character(len=:), allocatable :: directory
@@ -40,14 +40,6 @@ module vcor_app_cli
       integer :: shard = 0, shards = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
-      !> Kind of figure of --kind; unallocated without it
-      character(len=:), allocatable :: kind
-      !> Format of figures of --format; unallocated without it
-      character(len=:), allocatable :: format
-      !> Texts of --legend, shape (n)
-      type(argument_t), allocatable :: legends(:)
-      !> Whether the script of a figure is left
-      logical :: script = .false.
       !> Nothing on the screen but numbers that were asked for
       logical :: quiet = .false.
       !> Whether help is wanted as JSON
@@ -125,11 +117,11 @@ contains
       integer :: i, mark
       logical :: plain, flag
 
-      allocate (request%files(0), request%settings(0), request%names(0), request%legends(0))
+      allocate (request%files(0), request%settings(0), request%names(0))
       allocate (request%own(0))
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
-            //'plot, verify, help (vcor help says more)')
+            //'verify, help (vcor help says more)')
          return
       end if
       request%command = words(1)%text
@@ -237,8 +229,6 @@ contains
          request%quiet = .true.
       case ('--resume')
          request%resume = .true.
-      case ('--script')
-         request%script = .true.
       case ('--json')
          request%json = .true.
       case ('--set')
@@ -247,12 +237,6 @@ contains
          request%directory = value
          if (name_flaw(value) /= '') call raise(error, error_usage, "--output: the name '" &
             //printable(value)//"' "//name_flaw(value)//', expected another name')
-      case ('--kind')
-         request%kind = value
-      case ('--format')
-         request%format = value
-      case ('--legend')
-         call append(request%legends, value)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--shard')
@@ -263,8 +247,8 @@ contains
          call read_positive(option, value, request%range%first, error)
       case ('--to')
          call read_positive(option, value, request%range%last, error)
-      case ('--print', '--quantity')
-         call add_names(option, value, request, error)
+      case ('--print')
+         call add_names(value, request, error)
       case default
          call append(request%own, option//'='//value)
       end select
@@ -282,8 +266,6 @@ contains
             continue
          case ('merge')
             call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
-         case ('plot')
-            call raise(error, error_usage, 'no file of results; expected vcor plot RESULT.h5')
          case default
             ! verify needs a case for settings only
             if (request%command /= 'verify' .or. size(request%settings) > 0) &
@@ -321,9 +303,8 @@ contains
       call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
 
-   !> Take the names of --print or --quantity
-   subroutine add_names(option, list, request, error)
-      character(len=*), intent(in) :: option
+   !> Take the names of --print
+   subroutine add_names(list, request, error)
       !> Names separated by commas
       character(len=*), intent(in) :: list
       type(request_t), intent(inout) :: request
@@ -339,8 +320,8 @@ contains
          name = trim(adjustl(list(first:last)))
          ! what has a dot is a parameter of a sweep, and whether there is one the case says
          if (index(name, '.') == 0 .and. .not. contains_word(quantity_names(), name)) then
-            call raise(error, error_usage, "unknown name '"//printable(name)//"' in "//option &
-               //'; '//suggestion(name, quantity_names()))
+            call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
+               //suggestion(name, quantity_names()))
             return
          end if
          call append(request%names, name)

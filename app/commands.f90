@@ -8,7 +8,7 @@ module vcor_app_commands
    public :: missing_package
 
    !> Known commands
-   character(len=*), parameter :: commands = "run merge check material fit plot verify help"
+   character(len=*), parameter :: commands = "run merge check material fit verify help"
    integer :: k
    !> Number of these
    integer, parameter :: command_count = count([(commands(k:k) == " ", k=1, len(commands))]) + 1
@@ -160,36 +160,6 @@ module vcor_app_commands
       //"the parameters."), &
       entry_t("example", "vcor fit examples/soft_rubber_data.csv --output soft_rubber.nml")]
 
-   !> Page of plot
-   type(entry_t), parameter :: plot_page(*) = [ &
-      entry_t("usage", "vcor plot RESULT.h5 ... [options]"), &
-      entry_t("summary", "draw figures of results"), &
-      entry_t("", "Draws the results of `vcor run` and `vcor material` with gnuplot. Several " &
-      //"files of one kind go into one figure with a legend. The kinds are:"), &
-      entry_t("history", "indentation, velocity and force over time, each divided by its largest " &
-      //"value, with the values at the end of contact; dashed: ghost lines after contact"), &
-      entry_t("loop", "contact force over indentation, with the energy lost in the legend"), &
-      entry_t("moduli", "relaxation modulus over time; storage modulus, loss modulus and loss " &
-      //"tangent over frequency, for each material"), &
-      entry_t("sweep", "quantities of the summary over the swept parameter"), &
-      entry_t("map", "contours of a quantity over two parameters"), &
-      entry_t("--kind KIND", "default: what the file holds (history for an impact, sweep for a " &
-      //"sweep of one parameter, map for two)"), &
-      entry_t("--quantity NAME,NAME", "columns for sweep (one panel each) or map; default: cor; " &
-      //"names: `vcor help output`"), &
-      entry_t("--legend TEXT", "text of the legend, once per file, in their order; default: the " &
-      //"titles, or what differs between the cases"), &
-      entry_t("--output PATH", "the figure, if PATH ends in .svg, .pdf or .png; otherwise the " &
-      //"folder for STEM_KIND.svg, created if it does not exist; default: STEM_KIND.svg in the " &
-      //"current folder"), &
-      entry_t("--format FORMAT", "svg, pdf or png; default: the ending of PATH, or svg"), &
-      entry_t("--script", "keep the gnuplot script and its data, as .gp and .dat beside the " &
-      //"figure, for changes by hand"), &
-      entry_t("--quiet", "print nothing"), &
-      entry_t("", "Figures are 8.5 cm (one column) or 17 cm (one page) wide. Without gnuplot, " &
-      //"the script is written and the exit code is 4."), &
-      entry_t("example", "vcor plot sls.h5 --kind loop --output loop.pdf")]
-
    !> Page of verify
    type(entry_t), parameter :: verify_page(*) = [ &
       entry_t("usage", "vcor verify [CASE.nml ...] [options]"), &
@@ -267,8 +237,6 @@ contains
          allocate (page, source=material_page)
       case ("fit")
          allocate (page, source=fit_page)
-      case ("plot")
-         allocate (page, source=plot_page)
       case ("verify")
          allocate (page, source=verify_page)
       case ("help")

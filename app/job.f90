@@ -10,8 +10,7 @@ module vcor_app_job
    use vcor_impact_problem, only : impact_t
    use vcor_io_case_reader, only : complete, override, read_case
    use vcor_io_data_file, only : data_file, read_data
-   use vcor_io_drawing, only : split_path
-   use vcor_io_path, only : directory_exists, join_path, same_file
+   use vcor_io_path, only : directory_exists, folder_of, join_path, same_file
    use vcor_text, only : integer_text, name_flaw, printable
    use vcor_words, only : contains_word, suggestion
    use vcor_solver, only : method_for
@@ -293,7 +292,8 @@ contains
       if (.not. allocated(request%directory) .or. count(job%writes) /= 1) return
       one = findloc(job%writes, .true., dim=1)
       extension = trim(job%endings(one)(index(job%endings(one), '.'):))
-      call split_path(request%directory, directory, name)
+      directory = folder_of(request%directory)
+      name = request%directory(len(directory) + 1:)
       last = len(name) - len(extension)
       is_file = .not. directory_exists(request%directory)
       if (is_file .and. last > 0) is_file = name(last + 1:) == extension

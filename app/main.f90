@@ -12,7 +12,6 @@ program vcor_main
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
    use vcor_app_merge, only : merge_shards
-   use vcor_app_plot, only : plot
    use vcor_app_run, only : run_impact
    use vcor_app_screen, only : short
    use vcor_app_signals, only : prepare_signals
@@ -81,8 +80,6 @@ contains
          call merge_shards(request, error)
       case ('fit')
          call fit_data(request, error)
-      case ('plot')
-         call plot(request, error)
       case default
          if (size(request%files) == 0) then
             call verify_program(request%quiet, error)

@@ -1,8 +1,7 @@
 !> Where a command that writes one file puts it
 module vcor_app_place
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_io_drawing, only : split_path
-   use vcor_io_path, only : directory_exists, join_path, make_directory
+   use vcor_io_path, only : directory_exists, folder_of, join_path, make_directory
    use vcor_words, only : contains_word, suggestion
    use vcor_text, only : printable
    implicit none
@@ -36,7 +35,8 @@ contains
 
       extension = ''
       path = trim(output)
-      call split_path(path, directory, name)
+      directory = folder_of(path)
+      name = path(len(directory) + 1:)
       is_directory = directory_exists(path)
       mark = index(name, '.', back=.true.)
       if (len(name) == 0 .or. is_directory .or. mark < 2) then

@@ -38,7 +38,7 @@ contains
 
    !> For the whole run: a signal that ends the program takes with it what is not complete, and a
    !> file that becomes too large is an error of writing (EFBIG) like a full disk. SIGXFSZ gets a
-   !> handler which does nothing, not SIG_IGN, which gnuplot would inherit
+   !> handler which does nothing, not SIG_IGN, which a program started by this one would inherit
    subroutine prepare_signals()
       type(c_funptr) :: ignored
 

@@ -20,7 +20,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME vcor)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS TRUE)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "gnuplot-nox | gnuplot, python3-vcor")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3-vcor")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "vcor computes how a sphere rebounds from a plate, a half space or another
 sphere when at least one of the bodies is viscoelastic: coefficient of

@@ -3,7 +3,8 @@
 #
 #   scripts/figures.sh [DIRECTORY]       default: docs/gallery
 #
-# Takes the program of $VCOR, of the release build, or of the PATH.
+# Takes the program of $VCOR, of the release build, or of the PATH; and vcor-plot of the PATH, or the
+# package as its sources are, with $PYTHON (default: that of build/venv) and the library of the build.
 set -euo pipefail
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -25,6 +26,15 @@ trap 'rm -rf "$scratch"' EXIT
 mkdir "$scratch/bin"
 ln -s "$vcor" "$scratch/bin/vcor"
 ln -s "$top/examples" "$scratch/examples"
+if ! command -v vcor-plot >"$scratch/found"; then
+   export PYTHON=${PYTHON:-$top/build/venv/bin/python}
+   export PYTHONPATH=$top/python/src${PYTHONPATH:+:$PYTHONPATH}
+   export VCOR_LIBRARY=${VCOR_LIBRARY:-$(dirname "$vcor")/libvcor_python.so}
+   "$PYTHON" -c 'import vcor.plot' 2>"$scratch/found" \
+      || fail "no vcor-plot: pip install './python[plot]'"
+   printf '#!/bin/sh\nexec "$PYTHON" -m vcor.plot "$@"\n' >"$scratch/bin/vcor-plot"
+   chmod +x "$scratch/bin/vcor-plot"
+fi
 awk '/^```sh$/ { on = 1; next } /^```$/ { on = 0 } on' "$top/docs/gallery.md" >"$scratch/commands.sh"
 
 cd "$scratch"

@@ -79,8 +79,6 @@ look() {
       need "pkg-config" "pkg-config" have pkg-config
       need "h5dump" "hdf5-tools" have h5dump
       need "OpenMPI with mpi_f08" "libopenmpi-dev openmpi-bin" have_mpi
-      # vcor plot draws with it, where it is there
-      need "gnuplot" "gnuplot-nox" have gnuplot
       need "python3 with venv" "python3 python3-venv" have_venv
       # the Python package is tested with Debian's
       need "xarray and others of Debian" "python3-xarray python3-h5netcdf python3-tqdm \

@@ -2,6 +2,7 @@
 
 import itertools
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -118,6 +119,8 @@ def test_a_sweep(results):
     np.testing.assert_allclose(curves(made.axes[1])[0].get_ydata(), 1e3 * data.contact_time)
     assert made.axes[1].get_ylabel() == "contact time [ms]"
     assert "beta = 900 1/s" in texts(made)
+    (line,) = curves(figure([vcor.read(SWEEPS / "sls_velocity.nml").run()], legends=["x"]).axes[0])
+    np.testing.assert_array_equal(line.get_ydata(), data.cor)
     given = figure([results / "sweep.h5", results / "soft.h5"], legends=["one", "two"])
     assert texts(given)[:2] == ["one", "two"]
 
@@ -490,6 +493,63 @@ def test_errors(bad, monkeypatch, capsys, words, code, line):
     assert (caught.value.code, out) == (code, "")
     assert re.fullmatch(rf"vcor: error: .*{line}.*\n", err), err
     assert sorted(bad.iterdir()) == before
+
+
+def test_no_damage_is_missed(results, tmp_path):
+    """Nothing of a damaged file comes to HDF5, which may crash."""
+    whole = (results / "sls_ghost.h5").read_bytes()
+    lot = random.Random(1)
+    for _ in range(100):
+        data = bytearray(whole)
+        place, length = lot.randrange(8, len(data) - 40), lot.randrange(1, 30)
+        data[place : place + length] = lot.randbytes(length)
+        (tmp_path / "a.h5").write_bytes(data)
+        if data != whole:
+            with pytest.raises(vcor.FileError, match="damaged"):
+                vcor.open(tmp_path / "a.h5")
+    os.mkfifo(tmp_path / "pipe.h5")
+    with pytest.raises(vcor.FileError, match="expected a file of results"):
+        vcor.open(tmp_path / "pipe.h5")
+
+
+NAMES = ["`touch X`", "$(touch X)", "x'; touch X; '", 'x".system("touch X")."', "-e x", "x & y",
+         "{touch X}", "#x", "%x", "x \\", "two words", "it's", "Stoß_α", "$x$"]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_names_are_names(results, tmp_path, monkeypatch, name):
+    """As the name of a figure, of its folder and of the file of results; the script works too."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(results / "sweep.h5", f"{name}.h5")
+    (tmp_path / "points ' \".csv").write_text("velocity,cor\n5,0.4\n")
+    main(["--quiet", "--output", f"{name}/", "--", f"./{name}.h5"])
+    assert (tmp_path / name / f"{name}_sweep.svg").exists()
+    words = ["--quiet", "--script", f"--output=out/{name}.svg"]
+    main([*words, "--", f"{name}.h5", "points ' \".csv"])
+    first = Path("out", f"{name}.svg").read_bytes()
+    Path("out", f"{name}.svg").unlink()
+    subprocess.run([sys.executable, f"./{name}.py"], cwd="out", check=True)
+    assert Path("out", f"{name}.svg").read_bytes() == first
+    assert not list(tmp_path.rglob("X"))
+
+
+@pytest.mark.parametrize("mask, mode", [(0o022, 0o644), (0o077, 0o600)])
+def test_permissions(results, tmp_path, mask, mode):
+    """Files have the permissions that the umask leaves, and a link gives way to the file."""
+    (tmp_path / "victim").write_text("precious")
+    (tmp_path / "b.svg").symlink_to(tmp_path / "victim")
+    before = os.umask(mask)
+    try:
+        for name in ("a", "b"):
+            target = f"{tmp_path}/{name}.svg"
+            main([str(results / "sweep.h5"), "--output", target, "--script", "--quiet"])
+    finally:
+        os.umask(before)
+    assert (tmp_path / "victim").read_text() == "precious"
+    assert not (tmp_path / "b.svg").is_symlink()
+    for name in ("a.svg", "a.py", "b.py"):
+        assert (tmp_path / name).stat().st_mode & 0o777 == mode
+    assert len(list(tmp_path.iterdir())) == 5
 
 
 def test_a_name_that_begins_a_pipe(results, tmp_path, monkeypatch, capsys):

@@ -300,8 +300,8 @@ contains
    end function control_in
 
    !> What is wrong with a name: the one rule for names of files, wherever they are written. A line
-   !> end leaves the comment of a script, an escape sequence goes to a terminal, and gnuplot, as
-   !> other programs, runs what follows `|` or `<` at the beginning of a name
+   !> end leaves the comment of a script, an escape sequence goes to a terminal, and some
+   !> programs run what follows `|` or `<` at the beginning of a name
    pure function name_flaw(name) result(flaw)
       !> Name of a file or a folder, or a path of such names
       character(len=*), intent(in) :: name

@@ -80,24 +80,6 @@ TARGETS = {
         SHARDS,
         ["out/case.h5", "out/case_summary.csv"],
     ),
-    "plot a sweep": Target(
-        ["plot", "out/case.h5", "--kind", "map", "--output", "map.svg"],
-        "out/case.h5",
-        ["out/case.h5"],
-        ["map.svg"],
-    ),
-    "plot an impact": Target(
-        ["plot", "out/one.h5", "--output", "one.svg"],
-        "out/one.h5",
-        ["out/one.h5"],
-        ["one.svg"],
-    ),
-    "plot materials": Target(
-        ["plot", "out/one_material.h5", "--output", "material.svg"],
-        "out/one_material.h5",
-        ["out/one_material.h5"],
-        ["material.svg"],
-    ),
 }
 
 
@@ -107,7 +89,6 @@ def make_files(folder):
     case, _ = edit(SLS, "solver", "accuracy", "1e-6")
     vcor.write(case, "one.nml")
     vcor.succeeds("run", "one.nml", "--output", "out")
-    vcor.succeeds("material", "one.nml", "--output", "out")
     vcor.write(case + SWEEP, "case.nml")
     assert vcor("run", "case.nml", "--output", "out").code == NUMERICAL
     for number in (1, 2):
@@ -118,9 +99,6 @@ def make_files(folder):
     part = folder / "out" / "case.part.h5"
     shutil.move(folder / "all" / "case_shard_1_of_1.h5", part)
     take_away(part, slice(5, 20))
-    for target in TARGETS.values():
-        if target.words[0] == "plot":
-            vcor.succeeds(*target.words)
 
 
 def column_place(path, name):

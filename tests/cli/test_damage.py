@@ -22,25 +22,10 @@ def test_damage(pristine, seed):
     assert sum(ends["refused"] for ends in found.values()) > 0
 
 
-@pytest.mark.parametrize("name", ["case.h5", "one.h5", "one_material.h5"])
-def test_what_others_do_to_a_file(pristine, tmp_path, name):
-    """HDF5 takes the seal off: a file that a user has added to is drawn as before."""
-    vcor = Vcor(tmp_path)
-    path = tmp_path / name
-    path.write_bytes((pristine / "out" / name).read_bytes())
-    assert path.read_bytes().endswith(b"vcorseal")
-    with h5py.File(path, "r+") as file:
-        file.attrs["remark"] = "looks good"
-    assert b"vcorseal" not in path.read_bytes()
-    words = ["--kind", "map"] if name == "case.h5" else []
-    vcor.succeeds("plot", name, *words, "--output", "figure.svg")
-
-
-@pytest.mark.parametrize("command", ["plot", "merge"])
-def test_pipe(vcor, command):
+def test_pipe(vcor):
     """Nobody is waited for."""
     os.mkfifo(vcor.folder / "case.h5")
-    vcor.refuses(command, "case.h5", code=FILE, says="expected a file of results")
+    vcor.refuses("merge", "case.h5", code=FILE, says="expected a file of results")
 
 
 def test_damaged_shard_is_finished_again(pristine, tmp_path):

@@ -97,6 +97,9 @@ def folder(vcor, tmp_path):
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/vcor").symlink_to(vcor)
+    plot = tmp_path / "bin/vcor-plot"
+    plot.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m vcor.plot "$@"\n')
+    plot.chmod(0o755)
     return tmp_path
 
 
@@ -123,7 +126,9 @@ def shell(folder, text, page=""):
 
 
 def commands(page):
-    """The blocks of commands of a page."""
+    """The blocks of commands of a page; those of the gallery are run with its figures."""
+    if page.name == "gallery.md":
+        return []
     found = blocks(page.relative_to(ROOT), "sh")
     return [block for block in found if "vcor " in block and not OTHER.search(block)]
 

@@ -12,7 +12,7 @@ program test_output
       write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_text, only : integer_text
-   use vcor_io_path, only : check_name, directory_exists, file_exists, for_shell, join_path, &
+   use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
       make_directory, quoted_path
    use vcor_io_posix, only : c_mkdtemp, c_text
    use vcor_io_number, only : decimal_text
@@ -153,10 +153,6 @@ contains
       call check_text(join_path("out", "/a.csv"), "/a.csv", "absolute path")
       call check_text(join_path("out  ", "a.csv "), "out/a.csv", "padding does not count")
       call check_text(quoted_path("a"//lf//"b c"), "'a?b c'", "messages have one line")
-      call check_text(for_shell("a.gp"), "'a.gp'", "a word of the shell")
-      call check_text(for_shell("/it's"), "'/it'\''s'", "a quote")
-      call check_text(for_shell("|a"), "'./|a'", "no pipe")
-      call check_text(for_shell("-a"), "'./-a'", "no option")
       call refuses_name("a"//achar(9)//"b", "holds a tab")
       call refuses_name("a/b"//cr, "holds a line end")
       call refuses_name("a"//char(194)//char(133), "holds the control character 133")

@@ -52,21 +52,25 @@ _AROUND = "&impact velocity = 1.0 /\n&sphere radius = 1.0, mass = 1.0, material 
     "&plate waves = 'none', material = '{name}' /\n"
 )
 _Range = tuple[float | None, float | None]
+_Source = str | os.PathLike[str] | xr.Dataset
 
 
 class Result:
-    """A file of results, or of materials: its summary, and what else it holds."""
+    """Results of a file, materials of a file, or a sweep: its summary, and what else it holds."""
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path = os.fspath(path)
+    def __init__(self, source: _Source) -> None:
+        self.path = "sweep" if isinstance(source, xr.Dataset) else os.fspath(source)
         self._moduli: dict[str, xr.Dataset] = {}
-        if self.path.endswith(".nml"):
+        self.groups: set[str] = set()
+        if isinstance(source, xr.Dataset):
+            self.summary = source
+        elif self.path.endswith(".nml"):
             self.summary, self._moduli = xr.Dataset(), _moduli_of(self.path)
-            self.groups = set(self._moduli)
+            self.groups |= set(self._moduli)
         else:
-            self.summary = open_results(path)
+            self.summary = open_results(source)
             with h5netcdf.File(self.path, "r") as file:
-                self.groups = set(file.groups)
+                self.groups |= set(file.groups)
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
         self.title = printable(str(self.summary.attrs.get("title", "")))
@@ -164,7 +168,7 @@ class _Wishes:
 
 
 def figure(
-    files: Sequence[str | os.PathLike[str]],
+    files: Sequence[_Source],
     *,
     kind: str | None = None,
     quantities: Sequence[str] = ("cor",),
@@ -180,8 +184,8 @@ def figure(
     Parameters
     ----------
     files
-        Files of results (.h5) or materials (.nml) of one kind, and of measured points (any other
-        ending).
+        Files of results (.h5) or materials (.nml) or sweeps of `Case.run`, all of one kind, and
+        files of measured points (any other ending).
     kind
         One of `KINDS`; None: what the first file is for.
     quantities
@@ -205,8 +209,8 @@ def figure(
     matplotlib.figure.Figure
         The figure, to be changed or saved.
     """
-    data = [Data(name) for name in files if not _is_result(name)]
-    results = [Result(name) for name in files if _is_result(name)]
+    results = [Result(source) for source in files if _is_result(source)]
+    data = [Data(name) for name in files if not (isinstance(name, xr.Dataset) or _is_result(name))]
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
@@ -245,8 +249,8 @@ def figure(
     return made
 
 
-def _is_result(name: str | os.PathLike[str]) -> bool:
-    return os.fspath(name).endswith((".h5", ".nml"))
+def _is_result(source: _Source) -> bool:
+    return isinstance(source, xr.Dataset) or os.fspath(source).endswith((".h5", ".nml"))
 
 
 # ------------------------------------------------------------------------------- kinds

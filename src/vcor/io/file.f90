@@ -31,7 +31,7 @@ module vcor_io_file
    implicit none
    private
 
-   public :: output_file_t, create_file, put, reserve, commit, discard, write_file, check_target
+   public :: output_file_t, create_file, put, reserve, commit, discard, write_file
    public :: move_file, remove_file
    public :: make_scratch, remember, remove_scratch, remove_all_scratch
    public :: write_stdout, write_terminal, stderr_is_terminal

@@ -11,7 +11,6 @@
 !> width and byte order, text of fixed or variable length. Every error is an `error_file` with the
 !> name of the file, but for what a file lacks that is there: that is an `error_input`.
 module vcor_io_hdf5_reader
-   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int64_t, c_loc, &
       c_null_char, c_null_ptr, c_ptr
    use hdf5, only : h5_index_crt_order_f, h5_index_name_f, h5_iter_inc_f, h5aclose_f, &
@@ -28,12 +27,11 @@ module vcor_io_hdf5_reader
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
    use vcor_io_seal, only : check_seal
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
-   use vcor_kinds, only : wp
    use vcor_text, only : integer_text, printable, shortened
    implicit none
    private
 
-   public :: reader_t, open_hdf5, close_hdf5, text_attribute, number_attribute
+   public :: reader_t, open_hdf5, close_hdf5, text_attribute
    public :: member_t, list_members
    public :: dataset_t, read_dataset, read_column, find_place
 
@@ -60,8 +58,6 @@ module vcor_io_hdf5_reader
       type(column_t) :: column
       !> Lengths of its dimensions, the slowest first; a single value has none
       integer, allocatable :: lengths(:)
-      !> Whether it is the scale of a dimension, which has its name
-      logical :: is_scale = .false.
    end type dataset_t
 
 contains
@@ -203,30 +199,6 @@ contains
       call h5aclose_f(attribute, ignored)
    end function text_attribute
 
-   !> A number as attribute of a group or a dataset
-   function number_attribute(reader, path, name) result(number)
-      type(reader_t), intent(in) :: reader
-      !> Path of the group or the dataset, `/` for the file
-      character(len=*), intent(in) :: path
-      character(len=*), intent(in) :: name
-      !> Its value; NaN if there is none or it is no single number
-      real(wp) :: number
-
-      real(wp), target :: value
-      type(c_ptr) :: place
-      integer(hid_t) :: attribute, space
-      integer :: ignored, status
-
-      number = ieee_value(1.0_wp, ieee_quiet_nan)
-      call open_attribute(reader, path, name, attribute, space, status)
-      if (status < 0) return
-      place = c_loc(value)
-      call h5aread_f(attribute, h5t_native_double, place, status)
-      if (status >= 0) number = value
-      call h5sclose_f(space, ignored)
-      call h5aclose_f(attribute, ignored)
-   end function number_attribute
-
    !> Open an attribute of one value
    subroutine open_attribute(reader, path, name, attribute, space, status)
       type(reader_t), intent(in) :: reader
@@ -274,7 +246,6 @@ contains
          column%unit = text_attribute(reader, path, 'units')
          column%long_name = text_attribute(reader, path, 'long_name')
          column%length = product(dataset%lengths)
-         dataset%is_scale = text_attribute(reader, path, 'CLASS') == 'DIMENSION_SCALE'
          if (class == h5t_float_f) then
             column%kind = real_column
             allocate (column%reals(column%length))

@@ -1,4 +1,4 @@
-!> What there is at a path, directories, and how a path stands in a message or in a command
+!> What there is at a path, directories, and how a path stands in a message
 !>
 !> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
 !> with the path and the system's reason.
@@ -12,7 +12,7 @@ module vcor_io_path
    private
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
-   public :: folder_of, join_path, path_from, same_file, quoted_path, for_shell
+   public :: folder_of, join_path, path_from, same_file, quoted_path
    public :: anything_at, check_name, check_plain, raise_system
 
 contains
@@ -192,24 +192,6 @@ contains
       end do
       quoted = printable(quoted)
    end function quoted_path
-
-   !> A path as the shell takes it, and as a program takes it that gives a meaning to a name's first
-   !> character: gnuplot reads `|name` as a pipe, many programs `-name` as an option
-   pure function for_shell(path) result(word)
-      character(len=*), intent(in) :: path
-      !> The path in single quotes; it begins with a slash, a point, a letter or a digit
-      character(len=:), allocatable :: word
-      character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz' &
-         //'ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789'
-      integer :: i
-
-      word = trim(path)
-      if (scan(word, letters//'/.') /= 1) word = './'//word
-      do i = len(word), 1, -1
-         if (word(i:i) == "'") word = word(:i-1)//"'\''"//word(i+1:)
-      end do
-      word = "'"//word//"'"
-   end function for_shell
 
    !> Check that something of that name may be written
    subroutine check_name(path, error)
