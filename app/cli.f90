@@ -1,11 +1,12 @@
 !> The command line as a request
 module vcor_app_cli
-   use, intrinsic :: iso_fortran_env, only : int64
+   use, intrinsic :: iso_fortran_env, only : int8
    use vcor_app_commands, only : commands, missing_package, options_of
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : time_range_t
+   use vcor_numeric_crc, only : crc32
    use vcor_sweep_part, only : most_threads
    use vcor_sweep_quantity, only : quantity_names
    use vcor_text, only : control_in, integer_text, name_flaw, printable
@@ -64,28 +65,21 @@ contains
       end do
    end subroutine get_arguments
 
-   !> A number >= 0 that tells command lines apart; what follows --threads does not count
+   !> A number that tells command lines apart; what follows --threads does not count
    pure function sum_of_words(words) result(sum)
       type(argument_t), intent(in) :: words(:)
       integer :: sum
 
-      integer(int64), parameter :: factor = 131_int64, modulus = 2147483647_int64
-      integer(int64) :: number
-      integer :: i, j
+      integer :: i
       logical :: counts
 
-      number = 0_int64
+      sum = 0
       counts = .true.
       do i = 1, size(words)
-         if (counts .and. index(words(i)%text, '--threads') /= 1) then
-            do j = 1, len(words(i)%text)
-               number = mod(factor*number + int(ichar(words(i)%text(j:j)), int64), modulus)
-            end do
-            number = mod(factor*number + 256_int64, modulus)
-         end if
+         if (counts .and. index(words(i)%text, '--threads') /= 1) &
+            sum = crc32(transfer(words(i)%text//achar(0), [0_int8]), sum)
          counts = words(i)%text /= '--threads'
       end do
-      sum = int(number)
    end function sum_of_words
 
    !> Append a word. (gfortran 12 writes past the end of a deferred-length component in an array

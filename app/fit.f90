@@ -3,7 +3,6 @@ module vcor_app_fit
    use vcor_app_cli, only : read_number, read_positive, read_whole, request_t
    use vcor_app_fit_screen, only : fit_remarks, fit_report
    use vcor_app_job, only : job_t, prepare
-   use vcor_app_place, only : find_place
    use vcor_app_window, only : find_window, window_t
    use vcor_case_address, only : material_names
    use vcor_case_case, only : case_t
@@ -16,7 +15,8 @@ module vcor_app_fit
    use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_file, write_stdout
    use vcor_io_header, only : frequency_units, modulus_units, time_units
-   use vcor_io_path, only : file_exists, same_file
+   use vcor_io_path, only : directory_exists, file_exists, folder_of, join_path, make_directory, &
+      same_file
    use vcor_io_sample_file, only : read_samples, reading_t, standard_input
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models, material_data_t, material_t
@@ -281,14 +281,25 @@ contains
       !> Of code `error_input` if the file is one that was read; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: extension
+      character(len=:), allocatable :: name
+      integer :: mark
 
-      call keep_what_was_read(output)
-      if (allocated(error)) return
-      call find_place(output, stem_of(source)//'_fit', 'nml', path, extension, error)
-      if (allocated(error)) return
-      path = path//'.nml'
+      path = trim(output)
       call keep_what_was_read(path)
+      if (allocated(error)) return
+      name = path(len(folder_of(path)) + 1:)
+      mark = index(name, '.', back=.true.)
+      if (directory_exists(path)) mark = 0
+      if (mark < 2) then
+         call make_directory(path, error)
+         path = join_path(path, stem_of(source)//'_fit.nml')
+      else if (name(mark:) == '.nml') then
+         call make_directory(folder_of(path), error)
+      else
+         call raise(error, error_usage, "unknown format '"//printable(name(mark + 1:))//"' of '" &
+            //printable(path)//"'; expected .nml; the name of a folder ends with a slash")
+      end if
+      if (.not. allocated(error)) call keep_what_was_read(path)
 
    contains
 

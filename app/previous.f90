@@ -5,8 +5,7 @@ module vcor_app_previous
    use vcor_app_job, only : job_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : write_stdout
-   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, list_members, member_t, open_hdf5, &
-      read_dataset, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, count_rows, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
    use vcor_sweep_quantity, only : quantities
    use vcor_io_path, only : plain_file_exists, quoted_path
@@ -104,8 +103,11 @@ contains
       integer :: rows
       logical :: is_ours
 
-      is_whole = previous%has_hdf5 .or. .not. job%writes(3)
-      if (previous%has_hdf5) is_whole = has_columns(previous%path)
+      is_whole = .not. job%writes(3)
+      ! the summary of an earlier version has fewer columns
+      associate (list => quantities())
+         if (previous%has_hdf5) is_whole = rows_in(previous%path, 'summary/'//list%name) > 0
+      end associate
       if (is_whole .and. job%writes(1)) then
          call read_csv(job%file(1), identity, is_ours, rows)
          is_whole = rows == job%part%count()
@@ -113,44 +115,27 @@ contains
       if (.not. (is_whole .and. job%writes(2))) return
       call read_csv(job%file(2), identity, is_ours, rows)
       is_whole = rows > 0
-      if (previous%has_hdf5) is_whole = rows == history_rows(previous%path)
+      if (previous%has_hdf5) is_whole = rows == rows_in(previous%path, ['history/time'])
    end function is_whole
 
-   !> Whether the summary in an HDF5 file has all columns: that of an earlier version has fewer
-   function has_columns(path)
+   !> Number of rows of a table in an HDF5 file
+   function rows_in(path, columns) result(rows)
       character(len=*), intent(in) :: path
-      logical :: has_columns
-
-      type(reader_t) :: reader
-      type(member_t), allocatable :: members(:)
-      type(error_t), allocatable :: error
-
-      has_columns = .false.
-      call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      call list_members(reader, 'summary', members, error)
-      has_columns = .not. allocated(error)
-      if (has_columns) has_columns = size(members) >= size(quantities())
-      call close_hdf5(reader)
-   end function has_columns
-
-   !> Number of times of the history in an HDF5 file
-   function history_rows(path) result(rows)
-      character(len=*), intent(in) :: path
-      !> Number of rows, 0 where there is no history
+      !> Paths of its columns
+      character(len=*), intent(in) :: columns(:)
+      !> 0 where one of them is missing
       integer :: rows
 
       type(reader_t) :: reader
-      type(dataset_t) :: time
       type(error_t), allocatable :: error
 
       rows = 0
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
-      call read_dataset(reader, 'history/time', time, error)
-      if (.not. allocated(error)) rows = time%column%length
+      call count_rows(reader, columns, rows, error)
+      if (allocated(error)) rows = 0
       call close_hdf5(reader)
-   end function history_rows
+   end function rows_in
 
    !> Nobody's results are replaced in silence
    function replaced(previous) result(text)

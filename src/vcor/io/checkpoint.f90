@@ -23,7 +23,7 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : make_scratch, move_file, remember, remove_file, remove_scratch
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, dataset_t, find_place, open_hdf5, read_column, &
+   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, &
       reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
@@ -412,16 +412,16 @@ contains
       integer, intent(inout), optional :: checks(:)
 
       type(reader_t) :: reader
-      type(dataset_t) :: dataset
+      type(column_t) :: column
       integer :: i, kind
 
       call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, size(summary%quantities)
-         associate (quantity => summary%quantities(i), column => dataset%column)
+         associate (quantity => summary%quantities(i))
             kind = merge(integer_column, real_column, quantity%is_whole)
             if (quantity%labels /= '' .and. .not. present(checks)) kind = text_column
-            call read_column(reader, path_of(quantity%name), kind, size(summary%status), dataset, &
+            call read_column(reader, path_of(quantity%name), kind, size(summary%status), column, &
                error)
             if (.not. allocated(error) .and. kind == text_column) &
                call number_texts(column, quantity, reader%path, error)
@@ -435,8 +435,8 @@ contains
          end associate
       end do
       if (present(checks) .and. .not. allocated(error)) then
-         call read_column(reader, path_of('check'), integer_column, size(checks), dataset, error)
-         if (.not. allocated(error)) checks = dataset%column%integers
+         call read_column(reader, path_of('check'), integer_column, size(checks), column, error)
+         if (.not. allocated(error)) checks = column%integers
       end if
       call close_hdf5(reader)
       if (.not. allocated(error)) return

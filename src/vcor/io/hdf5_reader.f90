@@ -2,9 +2,7 @@
 !>
 !>     call open_hdf5(reader, 'case.h5', error)
 !>     text = text_attribute(reader, '/', 'title')
-!>     call list_members(reader, 'summary', members, error)
-!>     call read_dataset(reader, 'summary/cor', dataset, error)
-!>     call read_column(reader, 'summary/cor', real_column, n, dataset, error)
+!>     call read_column(reader, 'summary/cor', real_column, n, column, error)
 !>     call close_hdf5(reader)
 !>
 !> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
@@ -13,15 +11,13 @@
 module vcor_io_hdf5_reader
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int64_t, c_loc, &
       c_null_char, c_null_ptr, c_ptr
-   use hdf5, only : h5_index_crt_order_f, h5_index_name_f, h5_iter_inc_f, h5aclose_f, &
-      h5aexists_by_name_f, h5aget_space_f, h5aget_type_f, h5aopen_by_name_f, h5aread_f, &
-      h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, h5dread_f, h5dvlen_reclaim_f, &
-      h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, h5gclose_f, h5gget_info_f, &
-      h5gopen_f, h5i_group_f, h5iget_type_f, h5lget_name_by_idx_f, h5oclose_f, h5oopen_f, &
-      h5p_default_f, h5sclose_f, h5sget_simple_extent_dims_f, h5sget_simple_extent_ndims_f, &
-      h5t_float_f, h5t_integer_f, h5t_native_double, h5t_native_integer, h5t_string, &
-      h5t_string_f, h5tclose_f, h5tcopy_f, h5tget_class_f, h5tget_cset_f, h5tget_size_f, &
-      h5tis_variable_str_f, h5tset_cset_f, hid_t, hsize_t, size_t
+   use hdf5, only : h5aclose_f, h5aexists_by_name_f, h5aget_space_f, h5aget_type_f, &
+      h5aopen_by_name_f, h5aread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, &
+      h5dread_f, h5dvlen_reclaim_f, h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, &
+      h5p_default_f, h5sclose_f, h5sget_simple_extent_npoints_f, h5t_float_f, h5t_integer_f, &
+      h5t_native_double, h5t_native_integer, h5t_string, h5t_string_f, h5tclose_f, h5tcopy_f, &
+      h5tget_class_f, h5tget_cset_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, hid_t, &
+      hsize_t, size_t
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
@@ -32,8 +28,7 @@ module vcor_io_hdf5_reader
    private
 
    public :: reader_t, open_hdf5, close_hdf5, text_attribute
-   public :: member_t, list_members
-   public :: dataset_t, read_dataset, read_column, find_place
+   public :: read_column, count_rows, find_place
 
    !> A file that is being read
    type :: reader_t
@@ -44,21 +39,6 @@ module vcor_io_hdf5_reader
       !> Handler of errors before
       type(handler_t), private :: handler
    end type reader_t
-
-   !> A member of a group
-   type :: member_t
-      character(len=:), allocatable :: name
-      !> Whether it is a group itself
-      logical :: is_group = .false.
-   end type member_t
-
-   !> A dataset
-   type :: dataset_t
-      !> Name, unit, meaning and values, the last dimension the fastest as in nested loops
-      type(column_t) :: column
-      !> Lengths of its dimensions, the slowest first; a single value has none
-      integer, allocatable :: lengths(:)
-   end type dataset_t
 
 contains
 
@@ -124,53 +104,6 @@ contains
       reader%file = -1_hid_t
    end subroutine close_hdf5
 
-   !> Members of a group, in the order they were written where the file knows it, else by name
-   subroutine list_members(reader, path, members, error)
-      type(reader_t), intent(in) :: reader
-      !> Path of the group, `/` for the file
-      character(len=*), intent(in) :: path
-      !> Its members, shape (n)
-      type(member_t), allocatable, intent(out) :: members(:)
-      !> Set if there is no such group or it cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      ! longest name of a member that is read [bytes]
-      character(len=512) :: name
-      integer(hid_t) :: group, object
-      integer :: count, i, ignored, kind, last_order, order, status, storage
-
-      allocate (members(0))
-      call h5gopen_f(reader%file, path, group, status)
-      if (status < 0) then
-         call raise(error, error_input, reader%path//": there is no group '"//shortened(path)//"'")
-         return
-      end if
-      call h5gget_info_f(group, storage, count, last_order, status)
-      if (status >= 0) then
-         deallocate (members)
-         allocate (members(count))
-      end if
-      order = h5_index_crt_order_f
-      do i = 1, size(members)
-         call h5lget_name_by_idx_f(group, '.', order, h5_iter_inc_f, int(i - 1, hsize_t), name, &
-            status)
-         if (status < 0 .and. i == 1) then
-            order = h5_index_name_f
-            call h5lget_name_by_idx_f(group, '.', order, h5_iter_inc_f, 0_hsize_t, name, status)
-         end if
-         if (status < 0) exit
-         members(i)%name = trim(name)
-         call h5oopen_f(group, trim(name), object, status)
-         if (status < 0) exit
-         call h5iget_type_f(object, kind, status)
-         members(i)%is_group = kind == h5i_group_f
-         call h5oclose_f(object, ignored)
-      end do
-      call h5gclose_f(group, ignored)
-      if (status < 0) call raise(error, error_file, reader%path//": the group '"//shortened(path) &
-         //"' is damaged")
-   end subroutine list_members
-
    !> A text attribute of a group or a dataset
    function text_attribute(reader, path, name) result(text)
       type(reader_t), intent(in) :: reader
@@ -209,8 +142,7 @@ contains
       !> Negative if there is none, or not one value; then nothing is open
       integer, intent(out) :: status
 
-      integer, allocatable :: lengths(:)
-      integer :: ignored
+      integer :: ignored, length
       logical :: exists
 
       call h5aexists_by_name_f(reader%file, path, name, exists, status)
@@ -218,82 +150,83 @@ contains
       if (status >= 0) call h5aopen_by_name_f(reader%file, path, name, attribute, status)
       if (status < 0) return
       call h5aget_space_f(attribute, space, status)
-      call read_lengths(space, lengths, status)
-      if (status >= 0 .and. product(lengths) == 1) return
+      call read_length(space, length, status)
+      if (status >= 0 .and. length == 1) return
       status = -1
       call h5sclose_f(space, ignored)
       call h5aclose_f(attribute, ignored)
    end subroutine open_attribute
 
-   !> Read a dataset with its unit and meaning
-   subroutine read_dataset(reader, path, dataset, error)
-      type(reader_t), intent(in) :: reader
-      character(len=*), intent(in) :: path
-      type(dataset_t), intent(out), target :: dataset
-      !> Set if there is none or it cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      type(c_ptr) :: place
-      integer(hid_t) :: set, space, type_id
-      integer :: class, i, ignored, status
-
-      call open_dataset(reader, path, set, space, dataset%lengths, error)
-      if (allocated(error)) return
-      call h5dget_type_f(set, type_id, status)
-      call h5tget_class_f(type_id, class, status)
-      associate (column => dataset%column)
-         column%name = path(index(path, '/', back=.true.) + 1:)
-         column%unit = text_attribute(reader, path, 'units')
-         column%long_name = text_attribute(reader, path, 'long_name')
-         column%length = product(dataset%lengths)
-         if (class == h5t_float_f) then
-            column%kind = real_column
-            allocate (column%reals(column%length))
-            place = c_loc(column%reals)
-            if (column%length > 0) call h5dread_f(set, h5t_native_double, place, status)
-         else if (class == h5t_integer_f) then
-            column%kind = integer_column
-            allocate (column%integers(column%length))
-            place = c_loc(column%integers)
-            if (column%length > 0) call h5dread_f(set, h5t_native_integer, place, status)
-         else if (class == h5t_string_f) then
-            column%kind = text_column
-            column%integers = [(i, i=1, column%length)]
-            call read_texts(set, .false., space, type_id, column, status)
-         else
-            status = -1
-         end if
-      end associate
-      call h5tclose_f(type_id, ignored)
-      call h5sclose_f(space, ignored)
-      call h5dclose_f(set, ignored)
-      if (status < 0) call raise(error, error_file, reader%path//": the dataset '"// &
-         shortened(path)//"' cannot be read as numbers or text")
-   end subroutine read_dataset
-
    !> Read a column of a table, of which it is known what it has
-   subroutine read_column(reader, path, kind, length, dataset, error)
+   subroutine read_column(reader, path, kind, length, column, error)
       type(reader_t), intent(in) :: reader
+      !> Path of the dataset
       character(len=*), intent(in) :: path
       !> Kind of its values
       integer, intent(in) :: kind
       !> Number of its values
       integer, intent(in) :: length
-      type(dataset_t), intent(out) :: dataset
+      !> Its values, the last dimension the fastest as in nested loops
+      type(column_t), intent(out), target :: column
       !> Set if there is none, or it has other values, or it cannot be read
       type(error_t), allocatable, intent(out) :: error
 
-      call read_dataset(reader, path, dataset, error)
+      type(c_ptr) :: place
+      integer(hid_t) :: set, space, type_id
+      integer :: classes(3), class, i, ignored, status
+
+      call open_dataset(reader, path, set, space, column%length, error)
       if (allocated(error)) return
-      if (dataset%column%length /= length) then
-         call raise(error, error_file, reader%path//': found ' &
-            //integer_text(dataset%column%length)//" values in '"//shortened(path) &
-            //"', expected "//integer_text(length))
-      else if (dataset%column%kind /= kind) then
-         call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
-            //"' cannot be read as "//trim(merge('text   ', 'numbers', kind == text_column)))
+      column%kind = kind
+      classes(real_column) = h5t_float_f
+      classes(integer_column) = h5t_integer_f
+      classes(text_column) = h5t_string_f
+      call h5dget_type_f(set, type_id, status)
+      call h5tget_class_f(type_id, class, status)
+      if (column%length /= length) then
+         call raise(error, error_file, reader%path//': found '//integer_text(column%length) &
+            //" values in '"//shortened(path)//"', expected "//integer_text(length))
+      else if (class /= classes(kind)) then
+         status = -1
+      else if (kind == text_column) then
+         column%integers = [(i, i=1, length)]
+         call read_texts(set, .false., space, type_id, column, status)
+      else if (kind == integer_column) then
+         allocate (column%integers(length))
+         place = c_loc(column%integers)
+         if (length > 0) call h5dread_f(set, h5t_native_integer, place, status)
+      else
+         allocate (column%reals(length))
+         place = c_loc(column%reals)
+         if (length > 0) call h5dread_f(set, h5t_native_double, place, status)
       end if
+      call h5tclose_f(type_id, ignored)
+      call h5sclose_f(space, ignored)
+      call h5dclose_f(set, ignored)
+      if (status < 0) call raise(error, error_file, reader%path//": the dataset '" &
+         //shortened(path)//"' cannot be read as " &
+         //trim(merge('text   ', 'numbers', kind == text_column)))
    end subroutine read_column
+
+   !> Number of rows of a table
+   subroutine count_rows(reader, paths, rows, error)
+      type(reader_t), intent(in) :: reader
+      !> Paths of its columns, shape (n), n > 0
+      character(len=*), intent(in) :: paths(:)
+      integer, intent(out) :: rows
+      !> Set if a column is missing
+      type(error_t), allocatable, intent(out) :: error
+
+      integer(hid_t) :: set, space
+      integer :: i, ignored
+
+      do i = 1, size(paths)
+         call open_dataset(reader, trim(paths(i)), set, space, rows, error)
+         if (allocated(error)) return
+         call h5sclose_f(space, ignored)
+         call h5dclose_f(set, ignored)
+      end do
+   end subroutine count_rows
 
    !> Find where in the file a dataset is that is stored in one piece
    subroutine find_place(reader, path, offset, error)
@@ -305,11 +238,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer(hid_t) :: set, space
-      integer, allocatable :: lengths(:)
-      integer :: ignored
+      integer :: ignored, length
 
       offset = -1_c_int64_t
-      call open_dataset(reader, path, set, space, lengths, error)
+      call open_dataset(reader, path, set, space, length, error)
       if (allocated(error)) return
       offset = c_get_offset(int(set, c_int64_t))
       call h5sclose_f(space, ignored)
@@ -319,13 +251,13 @@ contains
    end subroutine find_place
 
    !> Open a dataset
-   subroutine open_dataset(reader, path, set, space, lengths, error)
+   subroutine open_dataset(reader, path, set, space, length, error)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: path
       !> The dataset and its space
       integer(hid_t), intent(out) :: set, space
-      !> Lengths of its dimensions, the slowest first
-      integer, allocatable, intent(out) :: lengths(:)
+      !> Number of its values
+      integer, intent(out) :: length
       !> Error of code `error_input` if there is none; then nothing is open
       type(error_t), allocatable, intent(out) :: error
 
@@ -338,7 +270,7 @@ contains
          return
       end if
       call h5dget_space_f(set, space, status)
-      call read_lengths(space, lengths, status)
+      call read_length(space, length, status)
       if (status >= 0) return
       call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
          //"' cannot be read as numbers or text")
@@ -346,25 +278,20 @@ contains
       call h5dclose_f(set, ignored)
    end subroutine open_dataset
 
-   !> Lengths of the dimensions of a space
-   subroutine read_lengths(space, lengths, status)
+   !> Number of values of a space
+   subroutine read_length(space, length, status)
       integer(hid_t), intent(in) :: space
-      !> Lengths, the slowest first
-      integer, allocatable, intent(out) :: lengths(:)
+      integer, intent(out) :: length
       !> Negative on failure
       integer, intent(out) :: status
 
-      integer(hsize_t), allocatable :: backwards(:), largest(:)
-      integer :: rank
+      integer(hsize_t) :: number
 
-      allocate (lengths(0))
-      call h5sget_simple_extent_ndims_f(space, rank, status)
-      if (status < 0 .or. rank < 1) return
-      allocate (backwards(rank), largest(rank))
-      call h5sget_simple_extent_dims_f(space, backwards, largest, status)
-      if (product(real(backwards)) > real(huge(1))) status = -1
-      if (status >= 0) lengths = int(backwards(rank:1:-1))
-   end subroutine read_lengths
+      call h5sget_simple_extent_npoints_f(space, number, status)
+      if (number < 0 .or. number > huge(1)) status = -1
+      length = 0
+      if (status >= 0) length = int(number)
+   end subroutine read_length
 
    !> Read text, of a dataset or an attribute
    subroutine read_texts(object, is_attribute, space, type_id, column, status)

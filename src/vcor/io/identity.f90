@@ -1,7 +1,7 @@
 !> What a file of results is about: the program's version, the case and its data, and how many
 !> points there are
 module vcor_io_identity
-   use, intrinsic :: iso_fortran_env, only : int64
+   use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_data_file, only : data_file
    use vcor_io_hdf5, only : remark_t
@@ -9,6 +9,7 @@ module vcor_io_identity
    use vcor_text, only : integer_text, shortened
    use vcor_io_path, only : quoted_path
    use vcor_kinds, only : wp
+   use vcor_numeric_crc, only : crc32
    use vcor_case_case, only : case_t
    use vcor_case_printed, only : case_text
    use vcor_sweep_part, only : new_part, part_t
@@ -54,24 +55,22 @@ contains
       character(len=:), allocatable :: text
 
       real(wp), allocatable :: numbers(:), times(:), moduli(:)
-      character(len=16) :: digits
-      integer(int64) :: sum
-      integer :: item, i
+      character(len=8) :: digits
+      integer(int32) :: sum
+      integer :: item
 
-      sum = 0_int64
+      sum = 0
       text = ''
       do item = 1, case%count('material')
          call case%get('material', 'shift_file', numbers, item)
          if (data_file(case, item) /= '') then
             call case%get('material', 'times', times, item)
             call case%get('material', 'moduli', moduli, item)
-            numbers = [numbers, ([times(i), moduli(i)], i=1, size(times))]
+            numbers = [numbers, times, moduli]
          end if
          if (size(numbers) == 0) cycle
-         do i = 1, size(numbers)
-            sum = ieor(ishftc(sum, 7), transfer(numbers(i), sum))
-         end do
-         write (digits, '(z16.16)') sum
+         sum = crc32(transfer(numbers, [0_int8]), sum)
+         write (digits, '(z8.8)') sum
          text = digits
       end do
    end function data_of
@@ -82,14 +81,8 @@ contains
       type(identity_t), intent(in) :: identity
       integer :: number
 
-      character(len=:), allocatable :: text
-      integer :: i
-
-      text = identity%version//identity%case_text//identity%data
-      number = identity%part%number
-      do i = 1, len(text)
-         number = ieor(ishftc(number, 5), iachar(text(i:i)))
-      end do
+      number = crc32(transfer(identity%version//identity%case_text//identity%data, [0_int8]), &
+         int(identity%part%number, int32))
    end function number_of
 
    !> What a file says about itself beside version, title and case
