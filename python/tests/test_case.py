@@ -1,6 +1,7 @@
 """Cases: the same bits as the program, its errors, threads, processes."""
 
 import concurrent.futures
+import csv
 import multiprocessing
 import os
 import pickle
@@ -75,6 +76,30 @@ def test_a_sweep(program, tmp_path, threads):
     assert same(cube, vcor.open(tmp_path / "cube.h5"))
     assert cube.cor.dims == ("impact.velocity", "sphere.radius")
     assert cube["sphere.radius"].attrs["units"] == "m"
+
+
+def test_every_column_is_that_of_the_csv_file(program, tmp_path):
+    """run, sweep, points and solve give the same bits as the program, in every column."""
+    path = SWEEPS / "velocity_and_radius.nml"
+    settings = ["output.stem=cube", "output.hdf5=F"]
+    words = [word for setting in settings for word in ("--set", setting)]
+    program("run", path, *words, "--output", tmp_path, "--quiet")
+    lines = (tmp_path / "cube_summary.csv").read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    case = vcor.read(path)
+    cube = case.run(progress=False)
+    axes = {name: cube[name].values for name in cube.dims}
+    values = {name: [float(row[name]) for row in rows] for name in axes}
+    points = case.points(values, progress=False)
+    assert same(case.sweep(axes, progress=False), cube)
+    assert set(rows[0]) == {*axes, *cube.data_vars} == {*axes, *points.data_vars}
+    columns = {name: cube[name].values.ravel() for name in cube.data_vars}
+    for i, row in enumerate(rows):
+        one = case.solve({name: values[name][i] for name in axes})
+        for name, column in columns.items():
+            shown = row[name] if column.dtype.kind == "U" else float(row[name])
+            for value in (column[i], points[name].values[i], one[name]):
+                assert value == shown or value != value and shown != shown, (name, i)
 
 
 def test_points_and_sweeps_are_single_impacts(sls):

@@ -124,15 +124,9 @@ contains
 
    !> A case from its text or its file
    function vcor_read(text, name, self, error) bind(c) result(code)
-      !> Text of the case, or null
-      type(c_ptr), value :: text
-      !> Name of the file
-      type(c_ptr), value :: name
-      !> The case; null on failure
+      type(c_ptr), value :: text, name
       type(c_ptr), intent(out) :: self
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -157,7 +151,6 @@ contains
 
    !> Release a case
    subroutine vcor_free(self) bind(c)
-      !> The case, or null
       type(c_ptr), value :: self
 
       type(handle_t), pointer :: handle
@@ -169,15 +162,7 @@ contains
 
    !> Set a value
    function vcor_set(self, address, value, error) bind(c) result(code)
-      !> The case
-      type(c_ptr), value :: self
-      !> Where
-      type(c_ptr), value :: address
-      !> What
-      type(c_ptr), value :: value
-      !> `vcor_error`, or null
-      type(c_ptr), value :: error
-      !> 0 or the code of the error
+      type(c_ptr), value :: self, address, value, error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -197,30 +182,21 @@ contains
 
    !> Value at an address
    function vcor_get(self, address, value, error) bind(c) result(code)
-      !> The case
-      type(c_ptr), value :: self
-      !> Where
-      type(c_ptr), value :: address
-      !> Its text, or null
+      type(c_ptr), value :: self, address
       type(c_ptr), intent(out) :: value
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(address_t) :: place
       type(entry_t) :: entry
-      character(len=:), allocatable :: message
 
       value = c_null_ptr
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
-      call resolve(handle%case, fortran(address), place, message)
-      if (allocated(message)) then
-         call raise(trouble, error_usage, shortened(fortran(address))//': '//message)
-      else
+      call find_place(handle%case, fortran(address), place, trouble)
+      if (.not. allocated(trouble)) then
          entry = handle%case%entry(place)
          if (place%element > 0) then
             value = c_text(real_text(entry%number))
@@ -234,27 +210,19 @@ contains
 
    !> Path, unit and meaning of an address
    function vcor_describe(self, address, column, error) bind(c) result(code)
-      !> The case
-      type(c_ptr), value :: self
-      !> Where
-      type(c_ptr), value :: address
+      type(c_ptr), value :: self, address
       type(c_column_t), intent(out) :: column
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
       type(address_t) :: place
-      character(len=:), allocatable :: message
 
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
-      call resolve(handle%case, fortran(address), place, message)
-      if (allocated(message)) then
-         call raise(trouble, error_usage, shortened(fortran(address))//': '//message)
-      else
+      call find_place(handle%case, fortran(address), place, trouble)
+      if (.not. allocated(trouble)) then
          associate (key => catalogue(max(place%row, handle%case%row(place))))
             call put_column(column, handle%case%path(place), key%unit, key%meaning)
          end associate
@@ -265,15 +233,10 @@ contains
 
    !> The case as namelists
    function vcor_case_text(self, complete, text, error) bind(c) result(code)
-      !> The case
       type(c_ptr), value :: self
-      !> Whether with all defaults
       integer(c_int), value :: complete
-      !> The text, null on failure
       type(c_ptr), intent(out) :: text
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -290,12 +253,8 @@ contains
 
    !> A column of a table
    function vcor_column_of(table, index, column) bind(c) result(found)
-      !> Which table
-      integer(c_int), value :: table
-      !> Which column, from 0
-      integer(c_int), value :: index
+      integer(c_int), value :: table, index
       type(c_column_t), intent(out) :: column
-      !> 1, or 0 if there is none
       integer(c_int) :: found
 
       type(quantity_t), allocatable :: list(:)
@@ -329,19 +288,12 @@ contains
 
    !> What a &sweep group of the case varies
    function vcor_axis(self, index, column, n, values, error) bind(c) result(code)
-      !> The case
       type(c_ptr), value :: self
-      !> Which group, from 0
       integer(c_int), value :: index
-      !> Its parameter
       type(c_column_t), intent(out) :: column
-      !> Number of values
       integer(c_int), intent(out) :: n
-      !> The values, null if there is no such group
       type(c_ptr), intent(out) :: values
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -370,26 +322,16 @@ contains
    !> Solve points
    function vcor_solve(self, m, addresses, n, values, k, columns, results, threads, error) &
       bind(c) result(code)
-      !> The case
       type(c_ptr), value :: self
-      !> Number of addresses
       integer(c_int), value :: m
       type(c_ptr), intent(in) :: addresses(m)
-      !> Number of points
       integer(c_int), value :: n
-      !> Values of the points
       real(c_double), intent(in) :: values(m, n)
-      !> Number of columns
       integer(c_int), value :: k
-      !> Names of the columns
       type(c_ptr), intent(in) :: columns(k)
-      !> What they are
       real(c_double), intent(inout) :: results(k, n)
-      !> Threads, 0: as many as there are cores
       integer(c_int), value :: threads
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -397,26 +339,24 @@ contains
       type(sweep_t) :: sweep
       type(summary_t) :: summary
       type(failures_t) :: failures
-      type(quantity_t), allocatable :: list(:)
       integer(c_int) :: current
       integer :: places(k), team, i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
-      allocate (list, source=quantities())
+      call new_summary(summary, n, trouble)
       do i = 1, k
-         places(i) = findloc(list%name == fortran(columns(i)), .true., dim=1)
-         if (places(i) > 0) cycle
-         call raise(trouble, error_usage, "unknown name '"//shortened(fortran(columns(i))) &
-            //"'; "//suggestion(fortran(columns(i)), quantity_names()))
-         exit
+         if (allocated(trouble)) exit
+         places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)
+         if (places(i) == 0) call raise(trouble, error_usage, "unknown name '" &
+            //shortened(fortran(columns(i)))//"'; " &
+            //suggestion(fortran(columns(i)), quantity_names()))
       end do
       if (.not. allocated(trouble) .and. n > 0) call build(handle, addresses, values, trouble)
       if (.not. allocated(trouble) .and. n > 0) then
          sweep = handle%sweep
          call give_values(sweep, handle%case, addresses, values)
-         call new_summary(summary, n, trouble)
       end if
       team = max(1, min(int(threads), most_threads))
       if (threads == 0) team = default_threads()
@@ -454,15 +394,10 @@ contains
 
    !> History of a single impact
    function vcor_history(self, rows, values, error) bind(c) result(code)
-      !> The case
       type(c_ptr), value :: self
-      !> Number of times
       integer(c_int), intent(out) :: rows
-      !> The columns at each time, null on failure
       type(c_ptr), intent(out) :: values
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -498,19 +433,11 @@ contains
 
    !> Relaxation modulus of a material
    function vcor_relaxation(self, material, n, times, moduli, error) bind(c) result(code)
-      !> The case
-      type(c_ptr), value :: self
-      !> Name of the material
-      type(c_ptr), value :: material
-      !> Number of times
+      type(c_ptr), value :: self, material
       integer(c_int), value :: n
-      !> Times [s]
       real(c_double), intent(in) :: times(n)
-      !> E(t) [Pa]
       real(c_double), intent(inout) :: moduli(n)
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       class(material_t), allocatable :: body
@@ -524,21 +451,12 @@ contains
    !> Storage and loss modulus of a material
    function vcor_complex_modulus(self, material, n, frequencies, storage, loss, error) bind(c) &
       result(code)
-      !> The case
-      type(c_ptr), value :: self
-      !> Name of the material
-      type(c_ptr), value :: material
-      !> Number of frequencies
+      type(c_ptr), value :: self, material
       integer(c_int), value :: n
-      !> Angular frequencies [rad/s]
       real(c_double), intent(in) :: frequencies(n)
-      !> Storage modulus [Pa]
       real(c_double), intent(inout) :: storage(n)
-      !> Loss modulus [Pa]
       real(c_double), intent(inout) :: loss(n)
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       class(material_t), allocatable :: body
@@ -556,13 +474,9 @@ contains
 
    !> The case by all methods
    function vcor_verify(self, results, error) bind(c) result(code)
-      !> The case
       type(c_ptr), value :: self
-      !> Best value, internal variables, product integration, digits
       real(c_double), intent(inout) :: results(4, size(compared_names))
-      !> `vcor_error`, or null
       type(c_ptr), value :: error
-      !> 0 or the code of the error
       integer(c_int) :: code
 
       type(handle_t), pointer :: handle
@@ -598,6 +512,20 @@ contains
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
    end function vcor_verify
+
+   !> The place of an address in a case
+   subroutine find_place(case, address, place, error)
+      type(case_t), intent(in) :: case
+      character(len=*), intent(in) :: address
+      type(address_t), intent(out) :: place
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: message
+
+      call resolve(case, address, place, message)
+      if (allocated(message)) call raise(error, error_usage, shortened(address)//': '//message)
+   end subroutine find_place
 
    !> Build what the impacts of a case have in common, unless it is there already
    subroutine build(handle, addresses, values, error)

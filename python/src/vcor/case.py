@@ -163,7 +163,7 @@ class Case:
         values: Mapping[str, float] | None = None,
         quantities: Sequence[str] | None = None,
     ) -> dict[str, float | str]:
-        """Solve one impact, for loops: plain numbers, about 30 us more than the solver takes.
+        """Solve one impact, for loops: plain numbers, less than 0.1 ms beside the solver.
 
         Parameters
         ----------

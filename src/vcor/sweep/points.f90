@@ -14,7 +14,7 @@ module vcor_sweep_points
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : gathered, largest, of_first, rank_count, this_rank
    use vcor_sweep_part, only : most_threads, new_part, part_t
-   use vcor_sweep_quantity, only : point_pending, quantities, values_of
+   use vcor_sweep_quantity, only : point_pending, values_of
    use vcor_sweep_summary, only : summary_t
    use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
    implicit none
@@ -178,7 +178,7 @@ contains
       integer :: columns, team, chunk, count, i, j, k
 
       own = new_part(size(places), this_rank() + 1, rank_count())
-      columns = size(quantities())
+      columns = size(values_of(outcome_t()))
       allocate (rows(columns, own%count()))
       team = max(1, min(size(workers), own%count()))
       ! short enough that all threads end at about the same time
