@@ -29,6 +29,9 @@ module vcor_app_commands
       entry_t("", "Solves the impact of each case and writes three files: STEM_summary.csv (one " &
       //"row per impact), STEM.csv (the time history) and STEM.h5 (both). STEM is the name of " &
       //"the case file without its ending."), &
+      entry_t("", "A file with nothing but &material groups is no case of its own: it completes " &
+      //"the cases before it. `vcor check`, `vcor material` and `vcor verify` take such files, " &
+      //"too."), &
       entry_t("", "A case with &sweep groups is solved at every point of its grid. The summary " &
       //"has one row per point, and there is no time history. A point without a result (values " &
       //"out of range, no separation, numerical failure) gets a status and `nan` in its row. The " &

@@ -340,3 +340,51 @@ def test_results_are_xarray(sls):
     assert sls.run().max_force.attrs["units"] == "N"
     assert sls.run().cor.attrs["long_name"].startswith("coefficient of restitution")
     assert "units" not in sls.run().status.attrs
+
+
+def rubber(shift=True):
+    """A ball on a rubber that the temperature shifts, as groups."""
+    groups = {key: dict(value) for key, value in GROUPS.items() if key != "material"}
+    material = dict(GROUPS["material"][1])
+    if shift:
+        material.update(shift="wlf", reference_temperature=298.15, wlf_c1=8.86, wlf_c2=101.6)
+    return {**groups, "material": [GROUPS["material"][0], material]}
+
+
+def test_a_sweep_over_the_temperature():
+    """Alone and beside the speed; at the reference temperature nothing changes by a bit."""
+    temperatures = [283.15, 298.15, 313.15]
+    case = vcor.Case(rubber())
+    cube = case.sweep({"impact.temperature": temperatures, "impact.velocity": [2.0, 10.0]})
+    assert cube["impact.temperature"].attrs["units"] == "K"
+    assert cube.cor.shape == (3, 2)
+    assert len(set(cube.cor.values.ravel())) == 6
+    for temperature in temperatures:
+        case["impact.temperature"] = temperature
+        single = case.run().cor
+        assert single == cube.cor.sel({"impact.temperature": temperature, "impact.velocity": 10.0})
+    plain = vcor.Case(rubber(shift=False)).run().cor
+    assert plain == cube.cor.sel({"impact.temperature": 298.15, "impact.velocity": 10.0})
+    with pytest.raises(vcor.InputError, match="needs a shift"):
+        vcor.Case(rubber(shift=False)).sweep({"impact.temperature": temperatures})
+
+
+def test_moduli_at_a_temperature():
+    """Times a_T as long."""
+    case = vcor.Case(rubber())
+    plain = case.material("rubber").relaxation([1e-4])
+    case["impact.temperature"] = 310.0
+    factor = 10 ** (-8.86 * 11.85 / (101.6 + 11.85))
+    assert case.material("rubber").relaxation([1e-4 * factor]) == pytest.approx(plain, rel=1e-13)
+
+
+def test_a_number_of_a_list():
+    """An address may be a number of a list, in a case, a sweep and points."""
+    case = vcor.Case(GROUPS)
+    cor = case.sweep({"rubber.moduli(2)": [1e6, 2e6]}).cor
+    assert cor[1] == case.run().cor
+    case["rubber.moduli(2)"] = 1e6
+    assert float(case["rubber.moduli(2)"]) == 1e6
+    assert cor[0] == case.run().cor == case.points({"rubber.moduli(2)": [1e6]}).cor[0]
+    with pytest.raises(vcor.InputError, match="moduli"):
+        case["rubber.moduli(3)"] = 1e6

@@ -558,9 +558,10 @@ contains
          call resolve(case, fortran(addresses(i)), address, message)
          if (.not. allocated(message)) then
             if (any(own == address)) cycle
-            ! a value that was set has no say in a point that brings its own
+            ! a value that was set, or a list of them, has no say in a point that brings its own
+            address%element = 0
             entry = case%entry(address)
-            if (allocated(entry%origin) .and. address%element == 0) then
+            if (allocated(entry%origin)) then
                deallocate (entry%origin)
                call case%set(address, entry)
             end if

@@ -8,7 +8,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 SWEEPS = sorted((ROOT / "examples" / "sweeps").glob("*.nml"))
-EXAMPLES = sorted(set((ROOT / "examples").glob("**/*.nml")) - set(SWEEPS))
+MATERIALS = sorted((ROOT / "examples" / "materials").glob("*.nml"))
+EXAMPLES = sorted(set((ROOT / "examples").glob("**/*.nml")) - set(SWEEPS) - set(MATERIALS))
 PAPER = ROOT / "examples" / "paper"
 
 # Exit codes

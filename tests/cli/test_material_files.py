@@ -1,8 +1,10 @@
 """Cases completed by files of materials."""
 
+import re
+
 import h5py
 import pytest
-from program import INPUT, USAGE
+from program import INPUT, MATERIALS, PAPER, USAGE
 
 BODIES = """&impact velocity = 5 /
 &sphere radius = 0.01, material = 'steel' /
@@ -127,6 +129,34 @@ def test_no_result_replaces_a_file_of_materials(vcor):
                  code=INPUT, says=["m.csv"])  # fmt: skip
 
 
+@pytest.mark.parametrize("path", MATERIALS, ids=lambda path: path.stem)
+def test_materials_of_the_examples(vcor, path):
+    """A ball of each on a rigid floor; every value has its source in the head of the file."""
+    name = re.search(r"name *= '(.*)'", path.read_text(encoding="utf-8"))[1]
+    shifts = "shift" in path.read_text(encoding="utf-8")
+    temperature = ", temperature = 313.15" if shifts else ""
+    vcor.write(
+        f"&impact velocity = 0.5{temperature} /\n&sphere radius = 0.005, material = '{name}' /\n"
+        "&plate material = 'floor', waves = 'none' /\n&material name = 'floor', model = 'rigid' /\n",
+        "a.nml",
+    )
+    numbers = vcor.numbers("a.nml", path)
+    assert numbers["status"] == "separated"
+    assert "warning" not in vcor("check", "a.nml", path).err
+    assert path.read_text(encoding="utf-8").startswith("! ")
+
+
+def test_butyl_is_that_of_the_paper(vcor):
+    """Shear moduli in the library, tensile ones in the paper."""
+    vcor.write(BODIES.replace("'rubber'", "'butyl'") + STEEL, "a.nml")
+    butyl = next(path for path in MATERIALS if path.stem == "butyl")
+    paper = PAPER / "butyl_power_law.nml"
+    found = vcor("run", "a.nml", butyl, "--print", "cor", "--quiet").out
+    vcor.write(paper.read_text(encoding="utf-8"), "b.nml")
+    words = ["--set", "impact.velocity=5", "--print", "cor", "--quiet"]
+    assert float(found) == pytest.approx(float(vcor.succeeds("run", "b.nml", *words)), rel=1e-12)
+
+
 SWEEP = BODIES + "&sweep parameter = 'impact.velocity', start = 1, stop = 5, count = 9 /\n"
 
 
@@ -152,3 +182,16 @@ def test_merge(vcor):
         vcor.succeeds("run", "a.nml", "m.nml", "--shard", f"{i}/2", "--quiet", "--output", "parts")
     vcor.succeeds("merge", "parts/a_shard_1_of_2.h5", "parts/a_shard_2_of_2.h5", "--output", "out")
     assert (vcor.folder / "out/a_summary.csv").read_bytes() == whole
+
+
+def test_a_number_of_a_list_in_a_fit(vcor):
+    """vcor fit samples the case with what --set says of a list."""
+    prony = RUBBER.replace("'sls'", "'prony'").replace(
+        "glassy_modulus = 15e6, alpha = 300, beta = 1200",
+        "equilibrium_modulus = 4e6, moduli = 6e6, 9e6, times = 2e-4, 3e-3",
+    )
+    vcor.write(BODIES + STEEL + prony, "a.nml")
+    vcor.write(BODIES + STEEL + prony.replace("9e6", "7e6"), "b.nml")
+    words = ("fit", "--terms", "2", "--name", "x", "--from-model")
+    found = vcor.succeeds(*words, "a.nml", "--set", "rubber.moduli(2)=7e6").split("&material")[1]
+    assert found == vcor.succeeds(*words, "b.nml").split("&material")[1]

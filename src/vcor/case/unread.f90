@@ -108,9 +108,8 @@ contains
          reason = ''
          select case (group_and_key(address))
          case ('case.title', 'impact.velocity', 'impact.drop_height', &
-            'sphere.shape', 'sphere.radius', 'sphere.material', 'sphere.mass', &
-            'sphere.half_angle', 'sphere.punch_radius', 'sphere.profile_coefficient', &
-            'sphere.profile_power', 'plate.material', 'plate.surface_radius', 'solver.method', &
+            'sphere.radius', 'sphere.material', 'sphere.mass', &
+            'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
             'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
             'solver.continue_after_separation')
             continue
@@ -128,9 +127,6 @@ contains
             reason = why_plate_rests(case)
          case ('plate.waves', 'plate.half_thickness')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
-         case ('contact.law')
-            if (case%model(find_group('sphere'), 1) == 'punch') &
-               reason = 'the contact of a flat punch does not recede'
          case ('contact.pair')
             reason = why_no_pair(case)
          case ('solver.time_step')

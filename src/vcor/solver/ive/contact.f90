@@ -140,9 +140,8 @@ contains
          if (signed) self%accuracy = max(self%accuracy, error_of_kernel*contact%error)
          finer = self%accuracy/usual_accuracy
          self%recedes = impact%law%receding
+         self%velocity = impact%velocity
          self%start%alpha = impact%plate%alpha(0.0_wp)
-         self%start%force = impact%first_force()
-         self%velocity = impact%velocity - self%start%alpha*self%start%force
          allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
          if (impact%plate%hereditary()) &
             allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
