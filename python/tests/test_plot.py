@@ -512,8 +512,7 @@ def test_no_damage_is_missed(results, tmp_path):
         vcor.open(tmp_path / "pipe.h5")
 
 
-NAMES = ["`touch X`", "$(touch X)", "x'; touch X; '", 'x".system("touch X")."', "-e x", "x & y",
-         "{touch X}", "#x", "%x", "x \\", "two words", "it's", "Stoß_α", "$x$"]  # fmt: skip
+NAMES = ["$(touch X)", "x'; touch X; '", 'x".system("touch X")."', "-e {x}", "#x \\", "Stoß_α"]
 
 
 @pytest.mark.parametrize("name", NAMES)

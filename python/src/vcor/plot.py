@@ -323,7 +323,9 @@ def _history(wishes: _Wishes) -> Figure:
         axis.set_xlabel(f"time [{unit}]")
         axis.set_ylabel(label)
         axis.set_xlim(0, factor * max(course["time"][-1] for course in courses))
-    _legend(made, axes[0])
+        if not one:
+            axis.locator_params(axis="x", nbins=4)
+    _legend(made, *axes)
     return made
 
 
@@ -417,7 +419,7 @@ def _moduli(wishes: _Wishes) -> Figure:
         low, high = axis.dataLim.intervaly
         axis.set_yscale("log" if high > 10 * low else "linear")
         axis.set_ylabel(_with_unit("storage and loss modulus" if single and k else words, unit))
-    _legend(made, *(axes[1:] if single else axes[:1]))
+    _legend(made, *axes)
     return made
 
 
@@ -472,7 +474,7 @@ def _sweep(wishes: _Wishes) -> Figure:
             axis.set_xscale("log")
         axis.set_xlabel(_label(at[0], x_unit))
         axis.set_ylabel(_label(results[0].summary[name], y_unit))
-    _legend(made, axes[0])
+    _legend(made, *axes)
     return made
 
 
@@ -553,7 +555,7 @@ def _map(wishes: _Wishes) -> Figure:
                          label=_stem(one), **options)  # fmt: skip
         axis.set_xlabel(_label(x, x_unit))
         axis.set_ylabel(_label(y, y_unit))
-    _legend(made, axes[0])
+    _legend(made, *axes)
     return made
 
 
@@ -566,12 +568,12 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
     elif "z" in (wishes.log or ""):
         if not 0 < low < high:
             raise InputError(f"found values from {low:g} to {high:g}, of which no logarithm is")
-        ends = math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1
-        levels = [m * 10.0**k for k in range(*ends) for m in (1, 2, 5)]
-        first = max(i for i, level in enumerate(levels) if level <= low * (1 + 1e-9))
-        levels = levels[first : next(i for i, v in enumerate(levels) if v >= high * (1 - 1e-9)) + 1]
-        if len(levels) > 2 * wishes.levels:
-            levels = [level for level in levels if f"{level:e}".startswith("1.0")]
+        first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
+        steps = (1, 2, 5) if 3 * (last - first) <= 2 * wishes.levels else (1,)
+        levels = [m * 10.0**k for k in range(first, last + 1) for m in steps]
+        below = [level for level in levels if level <= low * (1 + 1e-9)]
+        above = [level for level in levels if level >= high * (1 - 1e-9)]
+        levels = [level for level in levels if below[-1] <= level <= above[0]]
     else:
         ticks = MaxNLocator(wishes.levels, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         levels = [float(round(tick, 12)) for tick in ticks]
@@ -639,7 +641,7 @@ def _points(axis: Axes, data: list[Data], x: str, y: str, fx: float, fy: float) 
             fx * at, fy * values,
             None if sigma is None else fy * sigma, None if at_sigma is None else fx * at_sigma,
             fmt="osD^v"[number % 5], color="0.3", mfc="white", capsize=1.5, elinewidth=0.7, ls="",
-            label=_stem(one), zorder=5,
+            label=_stem(one), zorder=1.8,
         )  # fmt: skip
 
 
@@ -694,7 +696,7 @@ def _adjust(made: Figure, wishes: _Wishes) -> None:
         if axis.get_label() == "<colorbar>":
             continue
         for letter, which in (("x", axis.xaxis), ("y", axis.yaxis)):
-            if wishes.log is not None:
+            if wishes.log not in (None, "z"):
                 scale = "log" if letter in wishes.log else "linear"
                 axis.set(**{f"{letter}scale": scale})
                 if scale == "log" and min(which.get_view_interval()) <= 0:
