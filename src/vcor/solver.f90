@@ -78,10 +78,17 @@ contains
       else if (impact%gravity > 0.0_wp .and. .not. is_product) then
          call refuse("adams_bashforth marches the paper's wave equation, without a weight; use " &
             //"method = 'ive', or 'direct' with scheme = 'product'", 'gravity scheme')
+      else if (impact%plate%layered() .and. two_terms) then
+         call refuse("waves = 'body' is linear theory, a second term of the Volterra series is " &
+            //'not', 'waves volterra_order')
       else if (impact%plate%hereditary() .and. .not. is_product) then
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
             //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
             'waves scheme')
+      else if (impact%plate%layered() .and. settings%method == 'direct') then
+         call refuse("waves = 'body' is solved by method = 'ive'", 'waves method')
+      else if (impact%plate%layered() .and. impact%law%receding) then
+         call refuse("waves = 'body' is solved for law = 'boltzmann'", 'waves law')
       end if
 
    contains
@@ -187,6 +194,8 @@ contains
       type(error_t), allocatable :: failure
 
       call self%ive%solve(impact, trajectory, error)
+      ! product integration knows no layers
+      if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)

@@ -115,10 +115,14 @@ module vcor_case_catalogue
          positive), &
       !
       key_t("plate", "half_thickness", real_key, &
-         "Half the thickness; not needed without waves", "m", positive), &
+         "Half the thickness; not needed without waves, with 'body' a half space if not given", &
+         "m", positive), &
       key_t("plate", "material", text_key, "Name of its material", required=.true.), &
-      key_t("plate", "waves", text_key, "Model of the bending waves in the plate", &
-         choices="none constant relaxing frozen hereditary", default="relaxing"), &
+      key_t("plate", "waves", text_key, "Model of the waves in the plate", &
+         choices="none constant relaxing frozen hereditary body", default="relaxing"), &
+      key_t("plate", "footprint", real_key, &
+         "Radius of the disc that loads a plate with waves = 'body'; default: from the impact", &
+         "m", positive), &
       key_t("plate", "surface_radius", real_key, &
          "Radius of curvature of the surface; 0: flat, negative: concave", "m", default="0.0"), &
       key_t("plate", "extent", real_key, &

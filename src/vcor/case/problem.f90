@@ -16,8 +16,8 @@ module vcor_case_problem
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, waves_constant, waves_frozen, waves_hereditary, &
-      waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, waves_body, waves_constant, waves_frozen, &
+      waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
@@ -54,7 +54,7 @@ module vcor_case_problem
    !> Addresses of the numbers that an impact is made from
    type :: numbers_t
       type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
-      type(address_t) :: half_thickness
+      type(address_t) :: half_thickness, footprint
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
    end type numbers_t
@@ -118,6 +118,7 @@ contains
       self%at%surface_radius = case%address('plate', 'surface_radius')
       self%at%half_thickness = case%address('plate', 'half_thickness')
       self%at%extent = case%address('plate', 'extent')
+      self%at%footprint = case%address('plate', 'footprint')
       self%at%time_step = case%address('solver', 'time_step')
       self%at%end_time = case%address('solver', 'end_time')
       self%at%accuracy = case%address('solver', 'accuracy')
@@ -133,6 +134,8 @@ contains
          self%waves = waves_frozen
       case ('hereditary')
          self%waves = waves_hereditary
+      case ('body')
+         self%waves = waves_body
       case default
          self%waves = waves_relaxing
       end select
@@ -383,6 +386,7 @@ contains
       self%around%radius = case%number(self%at%radius)
       self%around%is_sphere = case%number(self%at%surface_radius) > 0.0_wp
       self%around%thickness = 2.0_wp*case%number(self%at%half_thickness)
+      self%around%is_layer = self%impact%plate%layered()
       self%around%extent = case%number(self%at%extent)
       self%around%drops = .not. ieee_is_nan(case%number(self%at%drop_height))
       self%around%is_weighed = self%impact%gravity > 0.0_wp
@@ -437,7 +441,7 @@ contains
          end if
       end if
       call self%impact%launch(velocity, mass, radius, case%number(self%at%surface_radius), error, &
-         gravity)
+         gravity, number_or_zero(case, self%at%footprint))
    end subroutine launch
 
    !> Follow the numbers of the solver

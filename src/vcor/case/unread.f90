@@ -127,6 +127,10 @@ contains
             reason = why_plate_rests(case)
          case ('plate.waves', 'plate.half_thickness')
             if (body_model(case, 'plate') == 'rigid') reason = why_plate_rests(case)
+         case ('plate.footprint')
+            call case%get('plate', 'waves', method)
+            reason = why_plate_rests(case)
+            if (reason == '' .and. method /= 'body') reason = "it is for plate.waves = 'body'"
          case ('contact.pair')
             reason = why_no_pair(case)
          case ('solver.time_step')

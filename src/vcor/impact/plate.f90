@@ -1,6 +1,8 @@
 !> Plate that carries the impact's energy away in bending waves
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
+   use vcor_impact_layer, only : layer_t, new_layer
+   use vcor_impact_layer_sum, only : line_fit_t, new_line_fit
    use vcor_impact_memory, only : memory_t, new_memory
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -10,6 +12,7 @@ module vcor_impact_plate
 
    public :: plate_t, new_plate
    public :: waves_none, waves_constant, waves_relaxing, waves_frozen, waves_hereditary
+   public :: waves_body
 
    !> Plate models: the plate does not move, U = 0
    integer, parameter :: waves_none = 0
@@ -21,6 +24,8 @@ module vcor_impact_plate
    integer, parameter :: waves_frozen = 3
    !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a viscoelastic plate
    integer, parameter :: waves_hereditary = 4
+   !> U = C F in the Laplace domain, the compliance of a layer or a half space by elastodynamics
+   integer, parameter :: waves_body = 5
 
    !> Modulus that counts as one [Pa]: what has decayed to nothing is kept off zero, so far that
    !> products with alpha and its rate are numbers; the plate then gives way at once
@@ -39,6 +44,12 @@ module vcor_impact_plate
       class(material_t), allocatable :: material
       !> What a hereditary plate remembers of the force, otherwise not allocated
       type(memory_t), allocatable :: memory
+      !> The plate as a layer, otherwise not allocated
+      type(layer_t), allocatable :: layer
+      !> What the fits of its response have in common
+      type(line_fit_t) :: line_fit
+      !> Radius of the disc that loads the layer [m], > 0
+      real(wp), public :: footprint = 0.0_wp
    contains
       !> Whether it moves at all
       procedure :: moves
@@ -52,12 +63,16 @@ module vcor_impact_plate
       procedure :: alpha_and_rate
       !> Whether the plate is the frozen one and differs from the relaxing one
       procedure :: frozen
+      !> Whether it is a layer by elastodynamics
+      procedure :: layered
+      !> Whether it is too thin to be one
+      procedure :: is_sheet
       !> Whether the plate remembers the force
       procedure :: hereditary
       !> Whether its velocity is no function of force and impulse
       procedure :: drifts
-      !> The memory as a sum of exponentials
-      procedure :: memory_exponentials
+      !> Its response as a sum of exponentials
+      procedure :: response
       !> Integral of the memory
       procedure :: memory_integral
    end type plate_t
@@ -69,7 +84,7 @@ contains
       class(plate_t), intent(in) :: self
       logical :: moves
 
-      moves = self%coefficient > 0.0_wp
+      moves = self%coefficient > 0.0_wp .or. self%layered()
    end function moves
 
    !> Build a plate
@@ -77,7 +92,7 @@ contains
       type(plate_t), intent(out) :: self
       !> Its material; a rigid one never moves
       class(material_t), intent(in) :: material
-      !> Half thickness h [m], > 0 if the plate moves
+      !> Half thickness h [m], > 0 if the plate moves; 0 for a half space of `waves_body`
       real(wp), intent(in) :: half_thickness
       !> One of the `waves_*` constants
       integer, intent(in) :: waves
@@ -87,23 +102,31 @@ contains
       real(wp), parameter :: largest = 1.0e60_wp
 
       if (waves == waves_none .or. material%rigid) return
-      if (.not. half_thickness > 0.0_wp) then
+      if (.not. half_thickness > 0.0_wp .and. waves /= waves_body) then
          call raise(error, error_input, 'a plate with waves needs half_thickness > 0 [m]; use ' &
             //"waves = 'none' for a half space", about='half_thickness')
       else if (.not. material%density() > 0.0_wp) then
          call raise(error, error_input, 'a plate with waves needs the density of its ' &
             //"material; use waves = 'none' for a half space", about='density')
       else if (max(half_thickness, material%density()) > largest &
-               .or. min(half_thickness, material%density()) < 1.0_wp/largest) then
+               .or. material%density() < 1.0_wp/largest .or. half_thickness < 1.0_wp/largest &
+               .and. half_thickness > 0.0_wp) then
          call raise(error, error_input, 'half_thickness or density of the plate are beyond all ' &
             //'that can be computed', about='half_thickness density')
-      else if (.not. material%glassy() > 0.0_wp .and. waves /= waves_hereditary) then
+      else if (.not. material%glassy() > 0.0_wp .and. waves < waves_hereditary) then
          call raise(error, error_input, 'a plate with waves needs a material that is more than ' &
             //'a dashpot: its modulus is 0 and its deflection infinite', &
             about='waves equilibrium_modulus')
       end if
       if (allocated(error)) return
 
+      if (waves == waves_body) then
+         self%waves = waves
+         allocate (self%layer)
+         call new_layer(self%layer, material, 2.0_wp*half_thickness)
+         call new_line_fit(self%line_fit)
+         return
+      end if
       self%coefficient = sqrt(3.0_wp*material%density()/material%plane_strain_factor()) &
          /(16.0_wp*material%density()*half_thickness**2)
       if (material%glassy() > 0.0_wp) self%initial = self%coefficient/sqrt(material%glassy())
@@ -165,7 +188,7 @@ contains
       real(wp) :: value
 
       value = self%alpha(t)
-      if (self%hereditary()) value = value + self%memory_integral(t)
+      if (allocated(self%memory)) value = value + self%memory_integral(t)
    end function alpha_after
 
    !> Whether U' = int alpha F' dt instead of (alpha I)'
@@ -183,8 +206,31 @@ contains
       !> Whether it does; an elastic plate does not
       logical :: hereditary
 
-      hereditary = allocated(self%memory)
+      hereditary = allocated(self%memory) .or. allocated(self%layer)
    end function hereditary
+
+   !> Whether the plate is a layer or a half space by elastodynamics
+   elemental function layered(self)
+      !> The plate
+      class(plate_t), intent(in) :: self
+      !> Whether it is
+      logical :: layered
+
+      layered = allocated(self%layer)
+   end function layered
+
+   !> Whether it is a layer so thin against the disc that loads it that its compliance takes too
+   !> long to integrate
+   elemental function is_sheet(self)
+      class(plate_t), intent(in) :: self
+      logical :: is_sheet
+
+      real(wp), parameter :: thinnest = 0.01_wp
+
+      is_sheet = self%layered()
+      if (is_sheet) is_sheet = self%layer%thickness > 0.0_wp &
+         .and. self%layer%thickness < thinnest*self%footprint
+   end function is_sheet
 
    !> Whether the velocity U' - alpha F is a quantity of its own, not alpha' I
    elemental function drifts(self)
@@ -194,19 +240,32 @@ contains
       drifts = self%frozen() .or. self%hereditary()
    end function drifts
 
-   !> The memory psi of a hereditary plate as a sum of exponentials
-   pure subroutine memory_exponentials(self, window, accuracy, terms)
+   !> Response of a hereditary plate on a window of time as a sum of exponentials,
+   !> U' = viscosity F + instant F' + int psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
+   pure subroutine response(self, window, accuracy, terms, instant, velocity_error)
       !> The plate, a hereditary one
       class(plate_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
+      !> Wanted relative accuracy, > 0; a layer takes what the fit gives
       real(wp), intent(in) :: accuracy
-      !> The sum, in [m/(N s2)], alpha [m/(N s)] as its viscosity
+      !> psi in [m/(N s2)], alpha [m/(N s)] as its viscosity; the error is that of the velocity
+      !> under a constant force over that velocity, or of a layer's deflection per force [m/N]
       type(exponential_sum_t), intent(out) :: terms
+      !> Deflection that follows the force at once [m/N], <= 0; not 0 for a layer only
+      real(wp), intent(out) :: instant
+      !> Error of a layer's velocity times the window per force [m/N], else 0
+      real(wp), intent(out) :: velocity_error
 
-      call self%memory%exponentials(window, accuracy, terms)
-   end subroutine memory_exponentials
+      instant = 0.0_wp
+      velocity_error = 0.0_wp
+      if (allocated(self%layer)) then
+         call self%line_fit%fit(self%layer, self%footprint, window, terms, instant, &
+            velocity_error)
+      else
+         call self%memory%exponentials(window, accuracy, terms)
+      end if
+   end subroutine response
 
    !> Integral of the memory psi of a hereditary plate from 0 to t
    elemental function memory_integral(self, t) result(value)

@@ -98,15 +98,14 @@ contains
       !> Gravity [m/s2], >= 0; absent: none
       real(wp), intent(in), optional :: gravity
 
-      call self%launch(velocity, mass, radius, surface_radius, error, gravity)
-      if (allocated(error)) return
       self%modulus = modulus
       self%plate = plate
       if (present(law)) self%law = law
+      call self%launch(velocity, mass, radius, surface_radius, error, gravity)
    end subroutine new_impact
 
    !> Give the sphere another motion or size; modulus, plate and law stay
-   pure subroutine launch(self, velocity, mass, radius, surface_radius, error, gravity)
+   pure subroutine launch(self, velocity, mass, radius, surface_radius, error, gravity, footprint)
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
@@ -119,10 +118,14 @@ contains
       type(error_t), allocatable, intent(out) :: error
       !> Gravity [m/s2], >= 0; absent: none
       real(wp), intent(in), optional :: gravity
+      !> Radius of the disc that loads a plate by elastodynamics [m]; absent or 0: one that is
+      !> larger than the contact, 1.6 sqrt(R 1.0936 v0 T), 1.0936 v0 T being the largest
+      !> indentation of an elastic impact of the time scale T
+      real(wp), intent(in), optional :: footprint
 
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
-      real(wp) :: hertz_radius
+      real(wp) :: hertz_radius, time_scale
 
       ! the mass of a tiny sphere may be nothing
       if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. radius > 0.0_wp)) then
@@ -148,6 +151,18 @@ contains
       self%gravity = 0.0_wp
       if (present(gravity)) self%gravity = gravity
       self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
+      if (.not. self%plate%layered()) return
+      self%plate%footprint = 0.0_wp
+      if (present(footprint)) self%plate%footprint = footprint
+      ! a number that jumped with the rounding of T would make the results jump
+      if (.not. self%plate%footprint > 0.0_wp) then
+         time_scale = self%time_scale(1.0e-14_wp)
+         self%plate%footprint = 1.6_wp &
+            *sqrt(hertz_radius*1.0936_wp*self%speed_scale(time_scale)*time_scale)
+      end if
+      if (self%plate%is_sheet()) call raise(error, error_input, 'the plate is less than a ' &
+         //"hundredth of the disc that loads it: use waves = 'hereditary'", &
+         about='half_thickness footprint')
    end subroutine launch
 
    !> Way of the sphere without a contact force, v0 t + g t^2/2
@@ -254,14 +269,18 @@ contains
    end function kernel_viscosity
 
    !> Time scale of the contact: that of an elastic impact with the mean kernel over it
-   pure function time_scale(self) result(scale)
+   pure function time_scale(self, tolerance) result(scale)
       class(impact_t), intent(in) :: self
+      !> Relative error that it may have; absent: 1e-3
+      real(wp), intent(in), optional :: tolerance
       !> Time scale [s]
       real(wp) :: scale
 
-      real(wp) :: firmness, viscosity, guess
+      real(wp) :: firmness, viscosity, guess, least
       integer :: iteration
 
+      least = 1.0e-3_wp
+      if (present(tolerance)) least = tolerance
       ! start from the time scale of the glassy contact, or 1 s, and iterate; with a kernel t^-a the
       ! map contracts by a/(n + 1)
       scale = 1.0_wp
@@ -271,7 +290,7 @@ contains
       do iteration = 1, 60
          firmness = (self%kernel_integral(scale) + viscosity)/scale
          guess = self%elastic_time(firmness)
-         if (abs(guess - scale) <= 1.0e-3_wp*guess) exit
+         if (abs(guess - scale) <= least*guess) exit
          scale = guess
       end do
       scale = guess

@@ -83,6 +83,9 @@ module vcor_impact_validity
       real(wp) :: extent = none
       !> Yield strength, the smaller one of the two bodies [Pa]
       real(wp) :: yield_strength = none
+      !> Whether the plate is computed as a layer: thin plates and losses into a half space do not
+      !> count then
+      logical :: is_layer = .false.
       !> Whether the sphere falls from a height that is given, and with what gravity [m/s2]
       logical :: drops = .false.
       real(wp) :: gravity = standard_gravity
@@ -193,7 +196,8 @@ contains
 
       ! neither a rigid body nor a dashpot has waves
       if (.not. storage > 0.0_wp) return
-      if (impact%plate%moves()) then
+      wave_number = 0.0_wp
+      if (impact%plate%moves() .and. .not. ieee_is_nan(around%thickness)) then
          outcome%deflection_ratio = maxval(abs(trajectory%state(col_plate, 0:trajectory%last))) &
             /around%thickness
          wave_number = sqrt(frequency/around%thickness*sqrt(12.0_wp*plate%density() &
@@ -203,6 +207,11 @@ contains
       end if
       if (around%is_sphere .or. .not. plate%density() > 0.0_wp) return
       shear_speed = sqrt(storage/(2.0_wp*(1.0_wp + plate%poisson_ratio())*plate%density()))
+      ! no wave along a layer is faster than about this
+      if (around%is_layer) then
+         outcome%needed_extent = 0.5_wp*shear_speed*outcome%contact_time
+         if (wave_number*outcome%needed_extent > pi) outcome%needed_extent = pi/wave_number
+      end if
       ! int (dF/dt)^2 dt of a half sine is (pi F)^2/(2 t0)
       outcome%half_space_loss = around%resistance/(2.0_wp*pi*plate%density()*shear_speed**3) &
          *outcome%max_force/outcome%initial_energy*outcome%max_force &
@@ -218,11 +227,19 @@ contains
       !> The numbers [-]
       real(wp) :: values(size(thresholds))
 
+      ! what a layer computes itself
+      character(len=*), parameter :: of_thin_plates(3) = [character(len=17) :: &
+         'plate_wave_number', 'deflection_ratio', 'half_space_loss']
+      integer :: i
+
       values = [outcome%contact_ratio, outcome%thickness_ratio, outcome%plate_wave_number, &
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
          outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
+      do i = 1, size(thresholds)
+         if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none
+      end do
       ! NaN is not to be compared
       if (.not. ieee_is_nan(values(1)*outcome%sphere_ratio)) &
          values(1) = max(values(1), sphere_weight*outcome%sphere_ratio)

@@ -18,16 +18,32 @@ module vcor_material_exponential_sum
       real(wp), allocatable :: rates(:)
       !> Viscosity of the dashpot in parallel [Pa s], >= 0
       real(wp) :: viscosity = 0.0_wp
+      !> One of each pair of conjugate terms, of which the real part counts: moduli [Pa] and rates
+      !> [1/s], shape (m); not allocated where nothing rings
+      complex(wp), allocatable :: pair_moduli(:), pair_rates(:)
       !> Largest relative error against the modulus that it stands for [-]; 0: it is that modulus
       real(wp) :: error = 0.0_wp
    contains
       !> Multiply it by a factor
       procedure :: scale
+      !> Number of its internal variables
+      procedure :: variables
       !> Its integral from 0 to t, dashpot included
       procedure :: integral
    end type exponential_sum_t
 
 contains
+
+   !> Number of real internal variables: one for each real rate, two for each pair
+   pure function variables(self) result(n)
+      !> The sum
+      class(exponential_sum_t), intent(in) :: self
+      !> Number
+      integer :: n
+
+      n = size(self%rates)
+      if (allocated(self%pair_rates)) n = n + 2*size(self%pair_rates)
+   end function variables
 
    !> Multiply the sum by a factor
    pure subroutine scale(self, factor)

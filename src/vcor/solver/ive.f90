@@ -14,8 +14,9 @@ module vcor_solver_ive
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_ive_tuning, only : early_force, error_of_kernel, kernel_share, &
-      loosest_accuracy, no_sum, plate_share, window_growth, window_margin
+   use vcor_solver_ive_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
+      layer_growth, layer_ladder, layer_margin, layer_reach, loosest_accuracy, &
+      no_sum, plate_share, window_growth, window_margin
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -58,7 +59,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(modes_t) :: modes
-      real(wp) :: end_time, ghost_end, window, time_scale, error_of_sums
+      real(wp) :: end_time, ghost_end, window, growth, time_scale, error_of_sums
       logical :: complete
 
       time_scale = impact%time_scale()
@@ -66,6 +67,11 @@ contains
       if (.not. end_time > 0.0_wp) end_time = impact%patience(time_scale)
       ghost_end = merge(self%settings%end_time, -1.0_wp, self%settings%ghost)
       window = window_margin*impact%law%contact_time*time_scale
+      growth = window_growth
+      if (impact%plate%layered()) then
+         window = layer_window(impact%law%contact_time*time_scale)
+         growth = layer_growth
+      end if
       do
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
          if (.not. modes%contact%error < no_sum) then
@@ -74,7 +80,12 @@ contains
             return
          end if
          if (impact%plate%hereditary()) then
-            call impact%plate%memory_exponentials(window, plate_share*self%accuracy, modes%plate)
+            call impact%plate%response(window, plate_share*self%accuracy, modes%plate, &
+               modes%instant, modes%velocity_error)
+            if (impact%plate%layered()) then
+               modes%plate%error = modes%plate%error*impact%mass/window**2
+               modes%velocity_error = error_of_layer*modes%velocity_error*impact%mass/window**2
+            end if
             if (.not. modes%plate%error < no_sum) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
                   //"plate remembers: use another plate.waves, or method = 'direct'")
@@ -87,20 +98,34 @@ contains
          call follow(self%collocator, impact, modes, self%accuracy, time_scale, end_time, &
             ghost_end, window, trajectory, complete, error)
          if (complete .or. allocated(error)) exit
-         window = window_growth*window
+         window = growth*window
       end do
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel &
             *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)
-         trajectory%cor_error = trajectory%cor_error + error_of_sums
+         trajectory%cor_error = trajectory%cor_error + error_of_sums + modes%velocity_error
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
       trajectory%accuracy = self%settings%accuracy
+      ! the default is not for the velocity of the face of a layer
+      if (impact%plate%layered() .and. .not. abs(trajectory%accuracy - default_accuracy('ive')) &
+          > 0.0_wp) trajectory%accuracy = layer_reach
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error
       end associate
    end subroutine solve
+
+   !> Time that the sum of a layer holds: rounded up so that impacts of about the same duration have
+   !> the same
+   pure function layer_window(contact_time) result(window)
+      !> Expected contact time [s], > 0
+      real(wp), intent(in) :: contact_time
+      !> Window [s]
+      real(wp) :: window
+
+      window = layer_ladder**ceiling(log(layer_margin*contact_time)/log(layer_ladder))
+   end function layer_window
 
    !> Error of the kernel as an impact feels it: where heavy losses end the loading early in the
    !> window, that of the kernel's integral up to there, if that is more, in the share of the

@@ -30,7 +30,8 @@ module vcor_solver_ive_contact
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
       force_share, frozen_first, &
-      grown_alpha, harmless, inner_allowed, inner_felt, levels_base, levels_error, most_ahead, &
+      grown_alpha, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
+      levels_error, most_ahead, &
       most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
       usual_accuracy, usually_better
@@ -138,13 +139,15 @@ contains
          signed = any(contact%moduli < 0.0_wp)
          ! the noise of moduli of both signs is not to be resolved
          if (signed) self%accuracy = max(self%accuracy, error_of_kernel*contact%error)
+         if (impact%plate%layered()) &
+            self%accuracy = max(self%accuracy, layer_accuracy, self%problem%modes%plate%error)
          finer = self%accuracy/usual_accuracy
          self%recedes = impact%law%receding
          self%velocity = impact%velocity
          self%start%alpha = impact%plate%alpha(0.0_wp)
          allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
          if (impact%plate%hereditary()) &
-            allocate (self%start%p(size(self%problem%modes%plate%rates)), source=0.0_wp)
+            allocate (self%start%p(self%problem%modes%plate%variables()), source=0.0_wp)
          self%coarse_start = self%start
 
          relaxes = any(contact%rates*self%time_scale > fast)
@@ -460,6 +463,10 @@ contains
             + time*(alpha_rate*panel%impulse(n)/panel%time(n) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
+         ! at a branch point both solutions have F' = 0, but not at the same time
+         if (.not. self%branches) cor_error = cor_error + (part*abs(panel%recoil(n) &
+            - coarse%recoil(n - 1)) + time*abs(slope_at_end(rule, panel, panel%recoil))) &
+            /impact%velocity
       end associate
    end subroutine estimate_errors
 

@@ -8,7 +8,7 @@
 module vcor_solver_ive_modes
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_radau_algebra, only : apply, constant, pairs, times, width
+   use vcor_numeric_radau_algebra, only : apply, constant, pairs, ratio, times, width
    use vcor_numeric_radau_collocation, only : panel_map_t
    implicit none
    private
@@ -22,6 +22,10 @@ module vcor_solver_ive_modes
       !> Memory of a hereditary plate: weights w_j and rates l_j, alpha as its viscosity [m/(N s)];
       !> without terms for other plates
       type(exponential_sum_t) :: plate
+      !> Deflection of the plate that follows the force at once [m/N]
+      real(wp) :: instant = 0.0_wp
+      !> Error of the velocity of a layer at the end over that of the impact [-]
+      real(wp) :: velocity_error = 0.0_wp
    end type modes_t
 
 contains
@@ -47,7 +51,7 @@ contains
       r = constant(terms%equilibrium)
       c = 0.0_wp
       square = map%square
-      do k = 1, size(p)
+      do k = 1, size(terms%rates)
          associate (rate => terms%rates(k), modulus => terms%moduli(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
@@ -62,9 +66,41 @@ contains
             end do
          end associate
       end do
+      if (allocated(terms%pair_rates)) call resolve_pairs(terms, p, square, lambda, r, c)
       response = r
       past = times(square, c, map%left_one)
    end subroutine resolve
+
+   !> The same of pairs of conjugate terms: with 1/(1 + l H) = (1 + conjg(l) H)/n the real part of
+   !> w/(1 + l H) is (Re w + Re(w conjg(l)) H)/n, n = 1 + 2 Re l H + |l|^2 H^2
+   pure subroutine resolve_pairs(terms, p, square, lambda, r, c)
+      !> The sum
+      type(exponential_sum_t), intent(in) :: terms
+      !> Internal variables, those of the pairs last, real and imaginary part
+      real(wp), intent(in) :: p(:)
+      !> j^2
+      real(wp), intent(in) :: square(pairs)
+      !> Eigenvalues of H [s]
+      real(wp), intent(in) :: lambda(width)
+      !> Sums, to which the pairs are added
+      real(wp), intent(inout) :: r(width), c(width)
+
+      real(wp), dimension(width) :: norm, squared
+      complex(wp) :: past
+      integer :: k, n
+
+      squared = times(square, lambda, lambda)
+      n = size(terms%rates) + 1
+      do k = 1, size(terms%pair_rates)
+         associate (l => terms%pair_rates(k), w => terms%pair_moduli(k))
+            norm = constant(1.0_wp) + 2.0_wp*real(l, wp)*lambda + abs(l)**2*squared
+            past = w*cmplx(p(n), p(n + 1), wp)
+            r = r + ratio(square, constant(real(w, wp)) + real(w*conjg(l), wp)*lambda, norm)
+            c = c + ratio(square, constant(real(past, wp)) + real(past*conjg(l), wp)*lambda, norm)
+         end associate
+         n = n + 2
+      end do
+   end subroutine resolve_pairs
 
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
    !> stage for x = 0 at the start
@@ -86,7 +122,7 @@ contains
       lambda = scale*map%eigenvalue
       from_x = at_end(apply(map%left, x))
       from_p = at_end(map%left_one)
-      do k = 1, size(p)
+      do k = 1, size(terms%rates)
          associate (rate => terms%rates(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
@@ -97,6 +133,7 @@ contains
          end associate
          p(k) = (lag(1) + lag(2)) + (lag(3) + lag(4))
       end do
+      if (allocated(terms%pair_rates)) call advance_pairs(map, lambda, terms, from_x, from_p, p)
 
    contains
 
@@ -114,5 +151,35 @@ contains
          end associate
       end function at_end
    end subroutine advance_lags
+
+   !> The same of pairs of conjugate terms, whose internal variables are complex
+   pure subroutine advance_pairs(map, lambda, terms, from_x, from_p, p)
+      !> Map of the panel
+      type(panel_map_t), intent(in) :: map
+      !> Eigenvalues of H [s]
+      real(wp), intent(in) :: lambda(width)
+      !> Sum with the rates l
+      type(exponential_sum_t), intent(in) :: terms
+      !> What x and 1 add to the last stage
+      real(wp), intent(in) :: from_x(width), from_p(width)
+      !> Internal variables, those of the pairs last, real and imaginary part
+      real(wp), intent(inout) :: p(:)
+
+      real(wp), dimension(width) :: norm, squared, re, im
+      integer :: k, n
+
+      squared = times(map%square, lambda, lambda)
+      n = size(terms%rates) + 1
+      do k = 1, size(terms%pair_rates)
+         associate (l => terms%pair_rates(k))
+            norm = constant(1.0_wp) + 2.0_wp*real(l, wp)*lambda + abs(l)**2*squared
+            re = ratio(map%square, constant(1.0_wp) + real(l, wp)*lambda, norm)
+            im = ratio(map%square, -aimag(l)*lambda, norm)
+         end associate
+         p(n:n + 1) = [sum((from_x + p(n)*from_p)*re) - p(n + 1)*sum(from_p*im), &
+            sum((from_x + p(n)*from_p)*im) + p(n + 1)*sum(from_p*re)]
+         n = n + 2
+      end do
+   end subroutine advance_pairs
 
 end module vcor_solver_ive_modes

@@ -27,6 +27,8 @@ module vcor_solver_ive_panel
       real(wp) :: deflection = 0.0_wp
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift = 0.0_wp
+      !> Velocity of a plate that follows the rate of the force at once [m/s]
+      real(wp) :: recoil = 0.0_wp
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition = 0.0_wp
       !> Its time t1 [s]
@@ -62,6 +64,8 @@ module vcor_solver_ive_panel
       real(wp) :: deflection(0:width)
       !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
       real(wp) :: drift(0:width)
+      !> Velocity of a plate that follows the rate of the force at once [m/s]
+      real(wp) :: recoil(0:width)
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition(0:width)
       !> Its time t1 [s]
@@ -101,6 +105,7 @@ contains
       self%alpha(0) = start%alpha
       self%deflection = start%deflection
       self%drift = start%drift
+      self%recoil = start%recoil
       self%condition(0) = start%condition
       self%t1(0) = start%t1
    end subroutine begin
@@ -142,13 +147,14 @@ contains
          start%alpha = panel%alpha(n)
          start%deflection = panel%deflection(n)
          start%drift = panel%drift(n)
+         start%recoil = panel%recoil(n)
          start%condition = panel%condition(n)
          start%t1 = panel%t1(n)
       end associate
    end subroutine move_to_end
 
    !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
-   !> drift of a frozen or hereditary plate
+   !> drift of a frozen or hereditary plate, and its recoil
    pure function plate_velocity(impact, panel, j) result(velocity)
       type(impact_t), intent(in) :: impact
       type(panel_t), intent(in) :: panel
@@ -159,7 +165,7 @@ contains
 
       velocity = panel%alpha(j)*panel%force(j)
       if (impact%plate%drifts()) then
-         velocity = velocity - panel%drift(j)
+         velocity = velocity - panel%drift(j) + panel%recoil(j)
       else
          velocity = velocity + panel%impulse(j) &
             *impact%plate%alpha_rate(panel%time(j), panel%alpha(j))

@@ -64,6 +64,7 @@ module vcor_solver_ive_problem
       procedure :: move
       procedure :: find_forces
       procedure :: integrate
+      procedure, private :: follow_force
       procedure :: settle
       procedure :: second_term
       procedure :: advance
@@ -93,6 +94,8 @@ module vcor_solver_ive_problem
       real(wp) :: impulsive(width)
       !> Velocity of a hereditary plate per impulse in the panel, by its memory [1/kg]
       real(wp) :: plate(width)
+      !> Deflection of the plate that follows the force at once [m/N], force at the start [N]
+      real(wp) :: instant, start_force
       !> V^-1 of its velocity by what it remembers of earlier panels [m/s]
       real(wp) :: past(width)
       !> Plate parameter alpha [m/(N s)]
@@ -206,6 +209,12 @@ contains
          if (e%remembers) e%yield = e%yield &
             + times(map%square, e%lambda, times(map%square, e%lambda, e%plate))
          if (.not. e%varies) e%yield = e%yield + e%alpha(1)*e%lambda
+         e%instant = self%modes%instant
+         e%start_force = start%force
+         if (abs(e%instant) > 0.0_wp) then
+            e%yield = e%yield + constant(e%instant)
+            e%gain = e%gain + e%instant*e%start_force
+         end if
 
          call resolve(contact, start%lag, map, e%lambda, e%stiffness, e%memory)
          if (.not. e%rebounds) then
@@ -287,6 +296,8 @@ contains
          impulse = times(map%square, e%lambda, numbers)
          lost = e%alpha*force + e%inverse_mass*apply(map%right, impulse)
          if (e%remembers) lost = lost + apply_product(map%right, map%square, e%plate, impulse)
+         if (abs(e%instant) > 0.0_wp) &
+            lost = lost + e%instant*apply(map%right, ratio(map%square, numbers, e%lambda))
          if (e%frozen) then
             lost = lost - integral(e, e%alpha_rate*force)
          else if (e%varies) then
@@ -446,9 +457,43 @@ contains
             panel%drift(1:) = -apply(map%right, rate)
             panel%deflection(1:) = panel%deflection(0) &
                + apply_product(map%right, map%square, e%lambda, rate)
+            if (abs(e%instant) > 0.0_wp) call self%follow_force(e, numbers, panel)
          end if
       end associate
    end subroutine integrate
+
+   !> What a plate that follows the force at once adds to the deflection, and its recoil. With
+   !> F = kappa u(s) - M, kappa about dF/du, M is smooth in time where s goes to zero and F is not:
+   !> F' = kappa u' s' - M' with s' = w - instant F'
+   pure subroutine follow_force(self, e, numbers, panel)
+      class(panel_problem_t), intent(in) :: self
+      type(equations_t), intent(in) :: e
+      !> Numbers of the forces [N]
+      real(wp), intent(in) :: numbers(width)
+      type(panel_t), intent(inout) :: panel
+
+      real(wp), dimension(width) :: memory_rate, stiffness, velocity
+      real(wp) :: kappa
+      integer :: n
+
+      n = panel%stages
+      associate (map => e%map, contact => self%modes%contact)
+         panel%deflection(1:) = panel%deflection(1:) &
+            + e%instant*(panel%force(1:) - panel%force(0))
+         kappa = 0.0_wp
+         if (.not. (e%rebounds .or. contact%viscosity > 0.0_wp)) kappa = contact%equilibrium &
+            + sum(contact%moduli/(1.0_wp + contact%rates*e%elapsed(n)))
+         memory_rate = panel%force(0)*map%left_one - numbers
+         if (kappa > 0.0_wp) memory_rate = memory_rate + kappa*apply(map%left, e%f)
+         memory_rate = apply(map%right, ratio(map%square, memory_rate, e%lambda))
+         stiffness = 0.0_wp
+         if (kappa > 0.0_wp) stiffness = kappa*e%slope
+         velocity = self%impact%free_velocity(panel%time(1:)) - panel%impulse(1:)*e%inverse_mass &
+            - e%alpha*panel%force(1:) + panel%drift(1:)
+         panel%recoil(1:) = e%instant*(stiffness*velocity - memory_rate) &
+            /(1.0_wp + e%instant*stiffness)
+      end associate
+   end subroutine follow_force
 
    !> Where time stands still at the end of the panel, collocation there says nothing about internal
    !> variables that settle in it, and the end has no weight in the integrals of the panel: what

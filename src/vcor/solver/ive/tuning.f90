@@ -35,9 +35,21 @@ module vcor_solver_ive_tuning
    !> the contact outlasts it
    real(wp), parameter :: window_margin = 2.0_wp ! tested
    real(wp), parameter :: window_growth = 20.0_wp ! time
+   !> The same where the plate is a layer, whose sum is the better the tighter the window is; and
+   !> the ladder of windows, for impacts to share one
+   real(wp), parameter :: layer_margin = 1.25_wp
+   real(wp), parameter :: layer_growth = 2.0_wp
+   real(wp), parameter :: layer_ladder = 2.0_wp**0.25_wp
    !> Time of the largest force over that of the window from which on the error of the kernel is
    !> what it is in the whole window
    real(wp), parameter :: early_force = 0.05_wp ! guard
+
+   !> Accuracy that an impact on a layer is worked to at best: what rings is not to be resolved
+   real(wp), parameter :: layer_accuracy = 3.0e-8_wp
+   !> What the velocity of its face at the end feels of the misfit, measured between sums of other
+   !> rates: most where the force ends as s^1.5; and the accuracy that it reaches
+   real(wp), parameter :: error_of_layer = 1.0e3_wp
+   real(wp), parameter :: layer_reach = 3.0e-4_wp
 
    ! Newton's method
 

@@ -1,0 +1,70 @@
+"""Plates by elastodynamics, waves = 'body': a layer or a half space."""
+
+import pytest
+
+CASE = """
+&impact velocity = {velocity} /
+&sphere radius = {radius}, material = 'ball' /
+&plate {thickness} material = 'plate', waves = 'body', footprint = {footprint} /
+&material name = 'ball', model = 'rigid', density = {density} /
+&material name = 'plate', {material} /
+"""
+GLASS = "model = 'elastic', modulus = 70e9, density = 2500, poisson_ratio = 0.22"
+PMMA = (
+    "model = 'prony', equilibrium_modulus = 2.6e9, moduli = 0.5e9, 0.9e9, rates = 3e4, 4e5, density = 1190, "
+    "poisson_ratio = 0.35"
+)
+RUBBER = (
+    "model = 'prony', equilibrium_modulus = 3.75e6, moduli = 11.25e6, rates = 1200, density = 1100, "
+    "poisson_ratio = 0.48"
+)
+# velocity, radius, half thickness, footprint, density of the sphere, material, cor_sphere by sums of exponentials
+# and a Runge-Kutta method, or by time marching with the response to a ramp
+IMPACTS = {
+    "layer of glass": (1.0, 0.002, 0.002, 0.00016947256508207135, 7800, GLASS, 0.82699177),
+    "half space": (1.0, 0.002, None, 0.00016947256508207135, 7800, GLASS, 0.99414708),
+    "pmma": (3.1, 0.001, 0.005, 0.00018507566307094617, 2500, PMMA, 0.81318815),
+    "rubber": (10.0, 0.01, 0.04, 0.011051796728578494, 7800, RUBBER, 0.45625910),
+}
+
+
+def text(name):
+    velocity, radius, half, footprint, density, material, _ = IMPACTS[name]
+    thickness = f"half_thickness = {half}," if half else ""
+    return CASE.format(
+        velocity=velocity, radius=radius, thickness=thickness, footprint=footprint, density=density, material=material
+    )
+
+
+@pytest.mark.parametrize("name", IMPACTS)
+def test_restitution_and_energy(vcor, name):
+    vcor.write(text(name))
+    out = vcor.succeeds("run", "case.nml", "--print", "cor_sphere,wave_energy,energy_imbalance,initial_energy")
+    restitution, waves, imbalance, initial = (float(word) for word in out.split())
+    assert restitution == pytest.approx(IMPACTS[name][-1], abs=3e-8)
+    assert waves > 0.0
+    assert abs(imbalance) <= 1e-8 * initial
+
+
+def test_default_footprint_is_continuous(vcor):
+    """The radius of the disc follows the impact without jumps."""
+    vcor.write(text("rubber").replace(", footprint = 0.011051796728578494", ""))
+    found = [
+        float(vcor.succeeds("run", "case.nml", "--print", "cor_sphere", "--set", f"impact.velocity={v}"))
+        for v in (3.0, 3.001, 3.002)
+    ]
+    assert abs(found[2] - 2.0 * found[1] + found[0]) <= 3e-8
+
+
+@pytest.mark.parametrize(
+    ("setting", "reason"),
+    [
+        ("solver.volterra_order=2", "linear theory"),
+        ("solver.scheme=adams_bashforth", "differentiates"),
+        ("plate.half_thickness=1e-9", "waves = 'hereditary'"),
+        ("plate.footprint=0", "expected a number > 0"),
+    ],
+)
+def test_refused(vcor, setting, reason):
+    vcor.write(text("layer of glass"))
+    vcor.refuses("run", "case.nml", "--set", setting, code=3, says=reason)
