@@ -107,7 +107,14 @@ contains
       do i = 1, size(jobs)
          select case (request%command)
          case ('run')
-            call run_case(request, jobs(i), trouble)
+            ! all ranks run a sweep, the first one an impact
+            if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(jobs(i))
+            if (jobs(i)%sweep%is_grid()) then
+               call run_sweep(request, jobs(i), trouble)
+            else if (this_rank() == 0) then
+               call run_impact(request, jobs(i), trouble)
+            end if
+            call share_error(trouble)
          case ('check')
             call warn_of_slips(jobs(i))
             call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
@@ -123,23 +130,6 @@ contains
          if (error%code /= error_numerical) return
       end do
    end subroutine treat_cases
-
-   !> Run a case; all ranks call this
-   subroutine run_case(request, job, error)
-      type(request_t), intent(in) :: request
-      type(job_t), intent(in) :: job
-      !> Error of code `error_numerical` if an impact has no result, of another if there is worse;
-      !> unallocated on success. All ranks have the same
-      type(error_t), allocatable, intent(out) :: error
-
-      if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(job)
-      if (job%sweep%is_grid()) then
-         call run_sweep(request, job, error)
-      else if (this_rank() == 0) then
-         call run_impact(request, job, error)
-      end if
-      call share_error(error)
-   end subroutine run_case
 
    !> One line on stderr; all ranks have the same to say
    subroutine complain(error)

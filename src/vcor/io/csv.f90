@@ -96,23 +96,33 @@ contains
 
       ! a few milliseconds: long against what threads wait for each other
       integer, parameter :: some = 2048
-      integer :: rows, team
+      integer :: n, rows, team
 
+      n = size(table%dimensions)
       rows = row_count(table)
       team = 1
       if (present(threads)) team = min(threads, rows/some + 1)
 !$omp parallel default(none) num_threads(team) &
-!$omp shared(table, places, separator, error, file, rows)
+!$omp shared(table, places, separator, error, file, n, rows)
       block
          type(text_block_t) :: lines
-         integer :: first, row
+         integer :: first, i, row
 
          call new_block(lines, table, places, some)
 !$omp do ordered schedule(static, 1)
          do first = 1, rows, some
             lines%last = 0
             do row = first, min(rows, first + some - 1)
-               call put_row(lines, table, places, row, separator)
+               do i = 1, size(places)
+                  if (places(i) > n) then
+                     call put_value(lines, table%columns(places(i) - n), row, separator)
+                  else
+                     call put_value(lines, table%dimensions(places(i)), &
+                        coordinate_row(table, places(i), row), separator)
+                  end if
+               end do
+               ! the line ends in place of the last separator
+               lines%text(lines%last:lines%last) = c_new_line
             end do
 !$omp ordered
             if (.not. allocated(error) .and. present(file)) &
@@ -125,30 +135,6 @@ contains
       end block
 !$omp end parallel
    end subroutine put_rows
-
-   !> Add a row
-   subroutine put_row(block, table, places, row, separator)
-      !> Text with room for the row
-      type(text_block_t), intent(inout) :: block
-      type(table_t), intent(in) :: table
-      integer, intent(in) :: places(:)
-      integer, intent(in) :: row
-      character, intent(in) :: separator
-
-      integer :: i, n
-
-      n = size(table%dimensions)
-      do i = 1, size(places)
-         if (places(i) > n) then
-            call put_value(block, table%columns(places(i) - n), row, separator)
-         else
-            call put_value(block, table%dimensions(places(i)), &
-               coordinate_row(table, places(i), row), separator)
-         end if
-      end do
-      ! the line ends in place of the last separator
-      block%text(block%last:block%last) = c_new_line
-   end subroutine put_row
 
    !> Make room for a block of text
    pure subroutine new_block(block, table, places, rows)
