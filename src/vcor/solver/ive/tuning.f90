@@ -88,8 +88,6 @@ module vcor_solver_ive_tuning
    !> Power of the accuracy where the contact recedes: the rebound feels the solution between the
    !> ends of the panels, too
    real(wp), parameter :: first_receding_growth = 0.1_wp ! tested
-   !> Share of it where alpha' of a frozen plate is infinite at first contact
-   real(wp), parameter :: frozen_first = 0.5_wp ! tested
    !> Share of its way that a sphere may lose to the plate in the first step, at most, where alpha
    !> grows by more than this factor from first contact to its end
    real(wp), parameter :: early_yield = 0.3_wp ! tested
@@ -107,6 +105,8 @@ module vcor_solver_ive_tuning
 
    !> Share of the accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 1.2_wp ! tested
+   !> The same for the first panel on a frozen plate
+   real(wp), parameter :: first_drift = 0.1_wp ! tested
    !> Error over what it may be that can be put up with if it is inherited
    real(wp), parameter :: tolerable = 4.0_wp ! tested
    !> A panel is longer than the one before by this factor at most
