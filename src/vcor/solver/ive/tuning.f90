@@ -171,10 +171,8 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: flat_end = 1.0e-6_wp ! time
    !> Error of the position of a maximum: its square is what the maximum feels
    real(wp), parameter :: peak_position = 1.0e-6_wp ! tested
-   !> The force is better than that of the companion by these factors, measured over 180 impacts: at
-   !> the start of a panel it is that of a whole panel, at the maximum that of a part
+   !> The force is better than that of the companion by this factor at least
    real(wp), parameter :: force_better = 3.0_wp ! tested
-   real(wp), parameter :: force_better_inside = 12.0_wp ! tested
    !> Share of a panel in which the force may be that of the panel before
    real(wp), parameter :: next_to_start = 0.1_wp ! tested
 
