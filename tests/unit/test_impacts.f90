@@ -45,7 +45,8 @@ program test_impacts
 
    !> Checks that are known to fail, by the beginning of their names: a plate that relaxes within a
    !> hundredth of the contact (59); the largest force at 1e-10 (17; 303 and 25 by rounding in debug
-   !> builds), by direct (27, found 6); the end of a receding contact of bodies that creep apart (371, 50)
+   !> builds), by direct (27, found 6); the end of a receding contact of bodies that creep apart
+   !> (371, 50)
    character(len=*), parameter :: known(*) = [character(len=50) :: &
       "practical.txt 303, ive 1.0E-10: max_force", &
       "practical.txt 371, ive 1.0E-06: contact_time", &

@@ -268,8 +268,8 @@ contains
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
-         ! alpha' of a frozen plate is infinite at first contact: what a quadrature makes of it is no
-         ! better than what the companion makes of it, and stays for the rest of the contact
+         ! alpha' of a frozen plate is infinite at first contact: the quadrature of the solution is
+         ! no better than that of the companion, and its error stays for the rest of the contact
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) &
             self%excess = self%growth/(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
