@@ -97,9 +97,10 @@ def folder(vcor, tmp_path):
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/vcor").symlink_to(vcor)
-    plot = tmp_path / "bin/vcor-plot"
-    plot.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m vcor.plot "$@"\n')
-    plot.chmod(0o755)
+    for name in ("identify", "master", "plot", "uncertainty"):
+        script = tmp_path / f"bin/vcor-{name}"
+        script.write_text(f"#!{sys.executable}\nfrom vcor._command import {name}\n\n{name}()\n")
+        script.chmod(0o755)
     return tmp_path
 
 

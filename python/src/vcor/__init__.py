@@ -3,6 +3,9 @@
 All numbers are in SI units; results are `xarray.Dataset` objects with units in their attributes.
 """
 
+import importlib
+from typing import Any
+
 from ._library import (
     Error,
     FileError,
@@ -28,6 +31,26 @@ __all__ = [
     "UsageError",
     "__version__",
     "fit",
+    "identify",
+    "master",
     "open",
+    "propagate",
     "read",
+    "sensitivities",
 ]
+
+#: What needs scipy, by its module; imported when it is used
+_LATER = {
+    "identify": "identification",
+    "master": "master_curve",
+    "propagate": "uncertainty",
+    "sensitivities": "uncertainty",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'vcor' has no attribute '{name}'")
+    found = getattr(importlib.import_module(f"vcor.{_LATER[name]}"), name)
+    globals()[name] = found
+    return found

@@ -8,11 +8,13 @@ import importlib
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
 from ._library import Error, FileError, UsageError, __version__
+
+FORMATS = ("svg", "pdf", "png")
 
 
 class Parser(argparse.ArgumentParser):
@@ -21,6 +23,14 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(prog=f"vcor {name}", allow_abbrev=False, **options)
         self.add_argument("--version", action="version", version=f"vcor {__version__}")
+
+    def add_outputs(self) -> None:
+        """Add the options of a command that writes several files and a figure."""
+        self.add_argument("--output", metavar="FOLDER", default=".", help="folder for the files")
+        self.add_argument(
+            "--format", choices=FORMATS, default="svg", help="format of the figure; default: svg"
+        )
+        self.add_argument("--quiet", action="store_true", help="print nothing")
 
     def error(self, message: str) -> NoReturn:
         """Refuse the options."""
@@ -53,22 +63,36 @@ def one_line() -> Iterator[None]:
         sys.exit(130)
 
 
-def _run(name: str) -> None:
-    """Run a command, if what it needs is there."""
+def _run(name: str, module: str) -> None:
+    """Run the command of a module, if what it needs is there."""
     with one_line():
         try:
-            module = importlib.import_module(f"vcor.{name}")
+            importlib.import_module(f"vcor.{module}").main()
         except ModuleNotFoundError as error:
             raise UsageError(
                 f"vcor {name} needs the Python package {error.name}, expected: "
                 f"pip install {error.name}"
             ) from None
-        module.main()
+
+
+def identify() -> None:
+    """Run `vcor identify`."""
+    _run("identify", "identification")
+
+
+def master() -> None:
+    """Run `vcor master`."""
+    _run("master", "master_curve")
 
 
 def plot() -> None:
     """Run `vcor plot`."""
-    _run("plot")
+    _run("plot", "plot")
+
+
+def uncertainty() -> None:
+    """Run `vcor uncertainty`."""
+    _run("uncertainty", "uncertainty")
 
 
 def printable(text: str) -> str:
@@ -146,3 +170,20 @@ def write(path: Path, data: bytes) -> None:
         if isinstance(error, Error):
             raise
         raise FileError(f"{path}: {error.strerror}") from None
+
+
+def finish(
+    options: argparse.Namespace, report: str, stem: str, texts: Mapping[str, str], figure: Any
+) -> None:
+    """Write texts by the ends of their names and a figure, and print a report of them."""
+    from .plot import save
+
+    folder = options.output if options.output.endswith("/") else f"{options.output}/"
+    paths = [place(folder, stem + end.rpartition(".")[0], [end.rpartition(".")[2]], None, [])
+             for end in texts]  # fmt: skip
+    for path, text in zip(paths, texts.values(), strict=True):
+        write(path, text.encode())
+    paths.append(place(folder, stem, [options.format], None, []))
+    save(figure, paths[-1])
+    if not options.quiet:
+        sys.stdout.write(f"{report}\nwritten {', '.join(map(str, paths))}\n")

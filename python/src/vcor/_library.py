@@ -135,6 +135,9 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
     "vcor_verify": [c_void_p, _doubles],
     "vcor_fit_data": [c_void_p],
+    "vcor_read_moduli": [
+        c_char_p, c_double, POINTER(c_int), POINTER(c_int), POINTER(c_void_p),
+    ],
 }  # fmt: skip
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]

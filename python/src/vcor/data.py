@@ -16,11 +16,17 @@ PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 #: Units that take a prefix
 SCALED = ("m", "s", "m/s", "N", "Pa", "J", "W", "Hz", "rad/s", "g")
 #: Sizes of units that are not those of the columns of vcor
-_SIZES = {"Hz": 2 * math.pi, "g": 1e-3, "%": 0.01, "min": 60.0, "h": 3600.0, "N/mm2": 1e6}
+_SIZES = {
+    "Hz": 2 * math.pi, "g": 1e-3, "%": 0.01, "min": 60.0, "h": 3600.0, "N/mm2": 1e6, "cm": 0.01,
+    "cm/s": 0.01,
+}  # fmt: skip
+#: 0 C [K]
+_ZERO_C = 273.15
 _PLAIN = ("", "1", "-", "1/s", "kg", "kg/m3", "K", "N s", "N/m2")
 #: Names that others give to columns, and what these are
 _NAMES = {
-    "t": "time", "omega": "frequency", "w": "frequency", "angular_frequency": "frequency",
+    "T": "temperature", "t": "time", "omega": "frequency", "w": "frequency",
+    "angular_frequency": "frequency",
     "f": "frequency", "freq": "frequency", "e": "cor", "E": "relaxation_modulus",
     "E(t)": "relaxation_modulus", "modulus": "relaxation_modulus", "E_relax": "relaxation_modulus",
     "E'": "storage_modulus", "E_stor": "storage_modulus", "storage": "storage_modulus",
@@ -77,7 +83,9 @@ class Data:
                 values = [float(cell) if cell else math.nan for cell in cells]
             except (ValueError, IndexError):
                 raise InputError(f"{self.path}: column '{name}' holds more than numbers") from None
-            self.columns[_NAMES.get(name, name)] = np.array(values) * self._size(unit or "")
+            zero = _ZERO_C if (unit or "").strip("°") == "C" else 0.0
+            size = 1.0 if zero else self._size(unit or "")
+            self.columns[_NAMES.get(name, name)] = np.array(values) * size + zero
 
     def _size(self, unit: str) -> float:
         """A unit in SI units."""

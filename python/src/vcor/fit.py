@@ -154,3 +154,38 @@ def fit(
         for line, (value, error, state) in zip(lines, numbers, strict=True)
     )
     return Fit(parameters, group, float(wish.rms), not wish.structured)
+
+
+def read_moduli(
+    path: str | os.PathLike[str], poisson_ratio: float | None = None
+) -> dict[str, _library.Floats]:
+    """Read a data file of moduli as `vcor fit` does, units and kind by its header.
+
+    Parameters
+    ----------
+    path
+        The file: columns, or the export of an instrument.
+    poisson_ratio
+        Poisson's ratio, for a file of shear moduli.
+
+    Returns
+    -------
+    dict
+        `time` [s] and `relaxation_modulus` [Pa], or `frequency` [rad/s], `storage_modulus` and
+        `loss_modulus` [Pa], of shape (n,), rising.
+    """
+    n, dynamic, values = c_int(), c_int(), c_void_p()
+    ratio = 2 * _INCOMPRESSIBLE if poisson_ratio is None else poisson_ratio
+    _library._call(
+        "vcor_read_moduli",
+        os.fsencode(path),
+        ratio,
+        ctypes.byref(n),
+        ctypes.byref(dynamic),
+        ctypes.byref(values),
+    )
+    names = ("frequency", "storage_modulus", "loss_modulus")
+    if not dynamic:
+        names = ("time", "relaxation_modulus")  # type: ignore[assignment]
+    table = _library._take_numbers(values, len(names) * n.value).reshape(len(names), -1)
+    return dict(zip(names, table, strict=True))

@@ -14,7 +14,7 @@ module vcor_fit_c_api
    implicit none
    private
 
-   public :: c_fit_t, vcor_fit_data
+   public :: c_fit_t, vcor_fit_data, vcor_read_moduli
 
    !> What is to be fitted, and what was found
    type, bind(c) :: c_fit_t
@@ -121,6 +121,42 @@ contains
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
    end function vcor_fit_data
+
+   !> Read moduli from a data file as `vcor fit` does, in SI units
+   function vcor_read_moduli(file, poisson_ratio, n, dynamic, values, error) bind(c) result(code)
+      !> Name of the file
+      type(c_ptr), value :: file
+      !> Poisson's ratio for shear moduli; beyond 0.5: not given
+      real(c_double), value :: poisson_ratio
+      !> Number of samples, and whether they are storage and loss moduli
+      integer(c_int), intent(out) :: n, dynamic
+      !> Times or angular frequencies, moduli, and loss moduli if dynamic; released by free()
+      type(c_ptr), intent(out) :: values
+      !> `vcor_error`, or null
+      type(c_ptr), value :: error
+      !> 0 or the code of the error
+      integer(c_int) :: code
+
+      type(error_t), allocatable :: trouble
+      type(samples_t) :: samples
+      type(reading_t) :: reading
+      character(len=:), allocatable :: note, place
+
+      n = 0
+      dynamic = 0
+      values = c_null_ptr
+!$omp critical (vcor_c_api)
+      allocate (reading%units(0))
+      reading%poisson_ratio = poisson_ratio
+      call read_samples(samples, fortran(file), reading, note, place, trouble)
+      if (.not. allocated(trouble)) then
+         n = size(samples%at)
+         dynamic = merge(1_c_int, 0_c_int, samples%dynamic)
+         values = c_numbers([samples%at, samples%modulus, samples%loss])
+      end if
+!$omp end critical (vcor_c_api)
+      code = told(trouble, error)
+   end function vcor_read_moduli
 
    !> Samples that are given
    subroutine take_samples(c_fit, samples)

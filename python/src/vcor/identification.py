@@ -1,0 +1,766 @@
+"""Identification of parameters from measured impacts, records of force and moduli.
+
+Least squares of (model - datum)/sigma over the logarithms of the parameters. What the data do not
+determine is found from the singular values of the derivatives, and said instead of a number.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.special import ndtri, stdtrit
+
+from . import _command, _library
+from ._library import Error, Floats, InputError, NumericalError, UsageError
+from .case import Case, read
+from .fit import fit
+from .observations import Block, Impacts, Record, Source, number, observations
+
+#: Accuracy of the impacts; derivatives are differences of them
+ACCURACY = 1e-9
+#: Step of the logarithms of parameters for derivatives
+STEP = 1e-3
+#: Relative response of the data to a combination of parameters below which there is none
+NO_RESPONSE = 1e-5
+#: Standard error of the logarithm of a combination above which it is not determined: a factor e
+UNDETERMINED = 1.0
+#: Levels of the intervals
+LEVELS = (0.6827, 0.95)
+#: Points that a fit may start from, and how many of them do
+STARTS, REFINED = 64, 4
+#: Logarithm of the factor beyond which an interval is open
+OPEN = math.log(1e4)
+#: What could be measured next, each to NEXT_ERROR
+NEXT = ("cor_sphere", "contact_time", "max_force")
+NEXT_ERROR = 0.01
+#: Abscissae of data that are no impacts
+_ACROSS = {
+    "force": "time [s]",
+    "relaxation_modulus": "time [s]",
+    "storage_modulus": "frequency [rad/s]",
+    "loss_modulus": "frequency [rad/s]",
+}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter that was identified, in SI units."""
+
+    address: str
+    unit: str
+    value: float
+    #: Standard error
+    standard_error: float
+    #: Profile intervals that hold the value with 68 and 95 %; an open end is 0 or inf
+    interval_68: tuple[float, float]
+    interval_95: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Identification:
+    """What the data say about the parameters.
+
+    `str` gives the report that the command prints.
+    """
+
+    case: Case
+    estimates: tuple[Estimate, ...]
+    #: Covariance of the logarithms of the parameters
+    covariance: Floats
+    #: Sum of the squares of (model - datum)/sigma; its degrees of freedom
+    chi2: float
+    dof: int
+    #: Relative error of each datum, estimated; None: the data have errors of their own
+    relative_error: float | None
+    #: Combinations of parameters from the best to the worst determined, with the relative error
+    combinations: tuple[tuple[str, float], ...]
+    eigenvalues: Floats
+    aic: float
+    bic: float
+    #: A row per datum: source, quantity, at, value, sigma, model, residual
+    data: tuple[dict[str, Any], ...]
+    #: Times that the data see [s]
+    window: tuple[float, float]
+    #: The measurement that would help most: quantity, velocity [m/s], and by how much
+    advice: str
+    #: Prediction of cor: velocity, cor, and the ends of its 95 % band
+    band: dict[str, list[float]] = field(repr=False)
+    model: str = ""
+
+    def __getitem__(self, address: str) -> float:
+        """Value of a parameter."""
+        return {one.address: one.value for one in self.estimates}[address]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results as they are written to JSON."""
+        values = np.array([one.value for one in self.estimates])
+        deviations = np.sqrt(np.diag(self.covariance))
+        return {
+            "program": "vcor",
+            "version": _library.__version__,
+            "model": self.model,
+            "parameters": [
+                {
+                    "name": one.address,
+                    "unit": one.unit,
+                    "value": one.value,
+                    "standard_error": one.standard_error,
+                    "interval_68": _finite(one.interval_68),
+                    "interval_95": _finite(one.interval_95),
+                }
+                for one in self.estimates
+            ],
+            "covariance": (self.covariance * np.outer(values, values)).tolist(),
+            "correlation": (self.covariance / np.outer(deviations, deviations)).tolist(),
+            "fisher": {
+                "eigenvalues": self.eigenvalues.tolist(),
+                "combinations": [
+                    {"combination": text, "relative_error": error}
+                    for text, error in self.combinations
+                ],
+            },
+            "chi2": self.chi2,
+            "degrees_of_freedom": self.dof,
+            "relative_error": self.relative_error,
+            "aic": self.aic,
+            "bic": self.bic,
+            "window": list(self.window),
+            "next": self.advice,
+            "data": list(self.data),
+            "band": self.band,
+        }
+
+    def __str__(self) -> str:
+        return _report(self)
+
+    def figure(self) -> Any:
+        """Figure (matplotlib): data, model with the band of cor, and residuals below."""
+        from matplotlib import style
+        from matplotlib.figure import Figure
+
+        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _scale, _with_unit
+
+        names = list(dict.fromkeys(row["quantity"] for row in self.data))
+        width = COLUMN if len(names) == 1 else PAGE
+        with style.context(STYLE):
+            made = Figure(figsize=(width / 2.54, 1.4 * HEIGHT / 2.54), layout="constrained")
+            axes = made.subplots(2, len(names), sharex="col", squeeze=False, height_ratios=(3, 1))
+            for (above, below), name in zip(axes.T, names, strict=True):
+                rows = sorted(
+                    (r for r in self.data if r["quantity"] == name), key=lambda r: r["at"]
+                )
+                at, value, sigma, model, residual = (
+                    np.array([row[key] for row in rows])
+                    for key in ("at", "value", "sigma", "model", "residual")
+                )
+                known = _library.columns(0)
+                unit = known[name].unit if name in known else "N" if name == "force" else "Pa"
+                factor, unit = _scale(unit, value)
+                if name == "cor" and self.band["velocity"]:
+                    band = {key: np.array(column) for key, column in self.band.items()}
+                    above.fill_between(
+                        band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1"
+                    )
+                    line, text = (band["velocity"], band["cor"]), "model, 95 % band"
+                else:
+                    line, text = (at, factor * model), "model"
+                above.plot(*line, marker="", color="C1", label=text)
+                above.errorbar(
+                    at, factor * value, factor * sigma, fmt="o", ms=3, color="black",
+                    mfc="white", label="data",
+                )  # fmt: skip
+                above.set_ylabel(_with_unit(name.replace("_", " "), unit))
+                above.legend()
+                below.axhline(0, lw=0.5, color="grey", marker="")
+                below.plot(at, residual, "o", ms=3, color="black")
+                below.set_ylabel("residual/error")
+                below.set_xlabel(_ACROSS.get(name, "velocity [m/s]"))
+                if at.min() > 0 and at.max() > 8 * at.min():
+                    above.set_xscale("log")
+                if "modulus" in name:
+                    above.set_yscale("log")
+        return made
+
+
+class _Problem:
+    """Residuals of all data over the logarithms x of the parameters."""
+
+    def __init__(
+        self,
+        case: Case,
+        free: Sequence[str],
+        blocks: Sequence[Block],
+        errors: Mapping[str, float],
+    ) -> None:
+        self.case, self.free, self.blocks = case, list(free), list(blocks)
+        self.quantity = [name for block in blocks for name in block.quantity]
+        self.value = np.concatenate([block.value for block in blocks])
+        scale = np.concatenate([getattr(b, "scale", np.abs(b.value)) for b in blocks])
+        sigma = np.concatenate([block.sigma for block in blocks])
+        for name in errors:
+            if name not in self.quantity:
+                raise UsageError(f"--error {name}: the data have no such column")
+        given = np.array([errors.get(name, np.nan) for name in self.quantity])
+        sigma = np.where(np.isnan(sigma), given * scale, sigma)
+        missing = np.isnan(sigma)
+        if missing.any() and not missing.all():
+            name = self.quantity[int(np.argmax(missing))]
+            raise InputError(f"some data have a standard error and {name} has none: give a column "
+                             f"{name}_sigma, or --error {name}=2%")  # fmt: skip
+        self.estimated = bool(missing.all())
+        self.sigma = scale if self.estimated else sigma
+        if not (self.sigma > 0).all():
+            raise InputError("found a standard error or a datum that is not > 0")
+        self.dof = len(self.value) - len(self.free) - sum(isinstance(b, Record) for b in blocks)
+        if self.dof < (1 if self.estimated else 0):
+            raise InputError(f"found {len(self.value)} data for {len(self.free)} parameters, "
+                             "expected more")  # fmt: skip
+
+    def predict(self, x: Floats) -> Floats:
+        """Data for each row of x, shape (rows, data)."""
+        values = np.exp(np.clip(x, -690, 690))
+        return np.hstack([b.predict(self.case, self.free, values) for b in self.blocks])
+
+    def residuals(self, x: Floats) -> Floats:
+        """Residuals at one point, shape (data,)."""
+        found: Floats = (self.predict(x[None])[0] - self.value) / self.sigma
+        return found
+
+    def derivatives(self, x: Floats, which: Sequence[int], what: Any = None) -> Floats:
+        """Derivatives of the data, shape (data, parameters); one-sided beside a limit."""
+        predict = what or self.predict
+        steps = STEP * np.eye(len(x))[list(which)]
+        found = predict(np.vstack([x, x + steps, x - steps]))
+        k = len(steps)
+        above, below = found[1 : k + 1], found[k + 1 :]
+        slope: Floats = np.where(
+            np.isnan(above),
+            found[0] - below,
+            np.where(np.isnan(below), above - found[0], (above - below) / 2),
+        )
+        return slope.T / STEP
+
+    def minimize(self, x: Floats, which: Sequence[int], most: int = 60) -> tuple[Floats, float]:
+        """Least squares over some of the parameters from x; inf where there is no result."""
+        which, x = list(which), x.copy()
+
+        def full(part: Floats) -> Floats:
+            x[which] = part
+            return x
+
+        if not np.isfinite(self.residuals(x)).all():
+            return x, math.inf
+        if which:
+            found = least_squares(
+                lambda part: self.residuals(full(part)),
+                x[which],
+                lambda part: self.derivatives(full(part), which) / self.sigma[:, None],
+                xtol=1e-11, ftol=1e-12, gtol=1e-12, max_nfev=most,
+            )  # fmt: skip
+            full(found.x)
+        return x, float(np.sum(self.residuals(x) ** 2))
+
+    def best(self, seed: int) -> tuple[Floats, float]:
+        """The smallest sum of squares from several starts, the first one the case itself."""
+        x = np.log([_positive(self.case, address) for address in self.free])
+        spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
+        starts = np.vstack([x, x + spread])
+        sums = np.sum(((self.predict(starts) - self.value) / self.sigma) ** 2, axis=1)
+        order = np.argsort(np.where(np.isnan(sums), np.inf, sums), kind="stable")[:REFINED]
+        if not np.isfinite(sums[order[0]]):
+            raise NumericalError(f"{self.case.name}: no start of the parameters has a result for "
+                                 "all data")  # fmt: skip
+        every = range(len(x))
+        found = [self.minimize(starts[i], every, 30) for i in dict.fromkeys([0, *order])]
+        return self.minimize(min(found, key=lambda one: one[1])[0], every)
+
+
+def identify(
+    case: Case | str | os.PathLike[str],
+    data: Source | Sequence[Source],
+    free: Sequence[str],
+    *,
+    fix: Mapping[str, float] | None = None,
+    errors: Mapping[str, float] | None = None,
+    model: str | None = None,
+    seed: int = 1,
+) -> Identification:
+    """Identify parameters of a case from measured data, as `vcor identify` does.
+
+    Parameters
+    ----------
+    case
+        The case; the values of the free parameters are a first guess.
+    data
+        Files, or mappings of columns in SI units. Impacts have a row each: `velocity` or
+        `drop_height`, `temperature`, `radius`, `mass` or any address, and measured columns of the
+        summary, such as `cor`, `cor_sphere`, `resilience`, `rebound_height`, `contact_time`,
+        `max_force`; `bounce_time` are the times in flight of one sequence of bounces. `time` and
+        `force` are a record of one impact; `time` and `relaxation_modulus`, or `frequency`,
+        `storage_modulus` and `loss_modulus`, are moduli of the material that is free. NAME_sigma
+        is the standard error of a column. Without errors all data have the same relative one.
+    free
+        Addresses of the parameters, all > 0; of a material with `model` they may be empty.
+    fix
+        Values at addresses that are given.
+    errors
+        Relative standard errors by column, where the data have none.
+    model
+        Another model for the material, `prony:2` for two terms; all its parameters are free.
+    seed
+        Seed of the starts.
+
+    Returns
+    -------
+    Identification
+        Values, intervals, and what the data do not say.
+
+    Raises
+    ------
+    InputError
+        The data cannot be used.
+    NumericalError
+        The data do not determine the parameters; the message names the combinations that they do
+        determine, and what would help.
+    """
+    case = (case if isinstance(case, Case) else read(case)).copy()
+    for address, value in (fix or {}).items():
+        case[address] = float(value)
+    sources = [data] if isinstance(data, (str, os.PathLike, Mapping)) else list(data)
+    free = [address for address in free if address not in (fix or {})]
+    if model:
+        case, free = _with_model(case, free, model, fix or {}, sources)
+    if not free:
+        raise UsageError("expected at least one free parameter")
+    if len(set(free)) < len(free):
+        raise UsageError("a free parameter is named twice")
+    blocks = [observations(case, source, free) for source in sources]
+    if case["solver.method"] != "direct":
+        case["solver.accuracy"] = min(ACCURACY, number(case, "solver.accuracy"))
+    problem = _Problem(case, free, blocks, errors or {})
+    x, chi2 = problem.best(seed)
+    return _judged(problem, x, chi2, model or "")
+
+
+def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identification:
+    """What the fit says; refused if a combination is not determined."""
+    case, free, dof = problem.case, problem.free, problem.dof
+    every = range(len(x))
+    slopes = problem.derivatives(x, every) / problem.sigma[:, None]
+    scale = math.sqrt(chi2 / dof) if problem.estimated else 1.0
+    relative = slopes * (problem.sigma / np.abs(problem.value).clip(1e-300))[:, None]
+    relative = relative[np.isfinite(relative).all(axis=1)]
+    lost = _lost(slopes, scale, relative)
+    if lost.size:
+        raise NumericalError(_not_determined(problem, x, lost))
+    eigenvalues, vectors = np.linalg.eigh(slopes.T @ slopes / scale**2)
+    covariance = (vectors / eigenvalues) @ vectors.T
+    for at, value in zip(free, np.exp(x), strict=True):
+        case[at] = float(value)
+    limits = [_intervals(problem, x, chi2, scale, covariance, i) for i in every]
+    deviations = np.sqrt(np.diag(covariance))
+    estimates = tuple(
+        Estimate(
+            address,
+            case._handle.describe(address).unit,
+            float(np.exp(x[i])),
+            float(np.exp(x[i]) * deviations[i]),
+            *limits[i],
+        )
+        for i, address in enumerate(free)
+    )
+    n, k = len(problem.value), len(x) + int(problem.estimated)
+    likelihood = n * math.log(max(chi2, 1e-300) / n) if problem.estimated else chi2
+    windows = [block.window(case) for block in problem.blocks]
+    found = problem.predict(x[None])[0]
+    rows = tuple(
+        {
+            "source": block.source,
+            "quantity": block.quantity[i],
+            "at": float(block.at[i]),
+            "value": float(block.value[i]),
+            "sigma": float(scale * problem.sigma[start + i]),
+            "model": float(found[start + i]),
+            "residual": float(
+                (found[start + i] - block.value[i]) / max(scale * problem.sigma[start + i], 1e-300)
+            ),
+        }
+        for start, block in zip(
+            np.cumsum([0, *[len(b.value) for b in problem.blocks]]), problem.blocks, strict=False
+        )
+        for i in range(len(block.value))
+    )
+    order = np.argsort(-eigenvalues)
+    return Identification(
+        case=case,
+        estimates=estimates,
+        covariance=covariance,
+        chi2=chi2,
+        dof=dof,
+        relative_error=scale if problem.estimated else None,
+        combinations=tuple(
+            (_product(free, vectors[:, j]), float(1 / np.sqrt(eigenvalues[j]))) for j in order
+        ),
+        eigenvalues=eigenvalues[order],
+        aic=likelihood + 2 * k,
+        bic=likelihood + k * math.log(n),
+        data=rows,
+        window=(min(one[0] for one in windows), max(one[1] for one in windows)),
+        advice=_next(problem, x, eigenvalues, vectors),
+        band=_band(problem, x, covariance),
+        model=model,
+    )
+
+
+def _lost(slopes: Floats, scale: float, relative: Floats) -> Floats:
+    """Directions of the logarithms that the data do not determine, shape (n, directions)."""
+    _, singular, rows = np.linalg.svd(slopes / max(scale, 1e-300), full_matrices=False)
+    lost = []
+    for value, direction in zip(singular, rows, strict=True):
+        response = np.sqrt(np.mean((relative @ direction) ** 2)) if len(relative) else 1.0
+        if response < NO_RESPONSE or value * UNDETERMINED < 1:
+            lost.append(direction)
+    return np.array(lost).T
+
+
+def _not_determined(problem: _Problem, x: Floats, lost: Floats) -> str:
+    """Line that says which combinations the data determine, and what would fix the rest."""
+    free = problem.free
+    involved = [i for i in range(len(free)) if np.linalg.norm(lost[i]) > 0.01]
+    # basis of the determined space, each combination with one parameter of its own
+    kept = np.linalg.svd(lost[involved].T)[2][lost.shape[1] :]
+    texts = []
+    if len(kept):
+        order = np.argsort(np.linalg.norm(lost[involved], axis=1), kind="stable")
+        own, rest = order[: len(kept)], order[len(kept) :]
+        powers = np.linalg.solve(kept[:, own], kept[:, rest])
+        for i, row in zip(own, powers, strict=True):
+            direction = np.zeros(len(free))
+            direction[involved[i]] = 1
+            direction[[involved[j] for j in rest]] = row
+            texts.append(_product(free, direction))
+    names = " and ".join([", ".join(free[i] for i in involved[:-1]), free[involved[-1]]][
+        len(involved) == 1 :])  # fmt: skip
+    each = " each" if len(involved) > 1 else ""
+    said = f"the data do not determine {names}{each}"
+    if texts:
+        said += f": they fix {' and '.join(texts)}"
+    helps = [name for name in NEXT if _responds(problem, x, lost, name)]
+    if helps:
+        said += f"; give a {' or a '.join(helps)}, or fix one of them (--fix ADDRESS=VALUE)"
+    else:
+        said += "; fix one of them (--fix ADDRESS=VALUE)"
+    return f"{problem.case.name}: {said}"
+
+
+def _responds(problem: _Problem, x: Floats, lost: Floats, name: str) -> bool:
+    """Whether a measured quantity would respond to every combination that is lost."""
+    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
+    if block is None:
+        return False
+
+    def logarithms(points: Floats) -> Floats:
+        found = block.quantities(problem.case, problem.free, np.exp(points), [name])
+        return np.log(np.abs(found[:, :, 0]))
+
+    slopes = problem.derivatives(x, range(len(x)), logarithms)
+    known = np.linalg.svd(slopes @ lost, compute_uv=False)
+    return len(known) >= lost.shape[1] and bool(known.min() > NEXT_ERROR)
+
+
+def _intervals(
+    problem: _Problem, x: Floats, chi2: float, scale: float, covariance: Floats, i: int
+) -> list[tuple[float, float]]:
+    """Profile intervals of a parameter, one of each of LEVELS."""
+    intervals = []
+    for level in LEVELS:
+        half = (1 + level) / 2
+        width = stdtrit(problem.dof, half) if problem.estimated else ndtri(half)
+        ends = [
+            _end(problem, x, chi2, scale, covariance, i, side * float(width)) for side in (-1, 1)
+        ]
+        intervals.append((float(np.exp(x[i] + ends[0])), float(np.exp(x[i] + ends[1]))))
+    return intervals
+
+
+def _end(
+    problem: _Problem, x: Floats, chi2: float, scale: float, covariance: Floats, i: int,
+    width: float,
+) -> float:  # fmt: skip
+    """Change of a logarithm at which the smallest sum of squares is larger by width^2."""
+    others = [j for j in range(len(x)) if j != i]
+    ratio = covariance[:, i] / covariance[i, i]
+    good, z_good, bad = 0.0, 0.0, None
+    shift = width * math.sqrt(covariance[i, i])
+    for _ in range(25):
+        if abs(shift) > OPEN:
+            return math.copysign(math.inf, width)
+        start = x + ratio * shift
+        start[i] = x[i] + shift
+        _, found = problem.minimize(start, others, 30)
+        if not math.isfinite(found):
+            bad = shift
+            if abs(bad - good) < 1e-3 * abs(bad):
+                return good
+            shift = (good + bad) / 2
+            continue
+        z = math.copysign(math.sqrt(max(found - chi2, 0.0)) / max(scale, 1e-300), width)
+        if abs(z - width) < 5e-3 * abs(width):
+            return shift
+        # on a straight line in z, but at most threefold, and never beyond what has no result
+        slope = (z - z_good) / (shift - good)
+        good, z_good, last = shift, z, good
+        shift += (width - z) / slope if slope > 0 else shift - last
+        if abs(shift) > 3 * abs(good):
+            shift = 3 * good
+        if bad is not None and abs(shift) > abs(bad):
+            shift = (good + bad) / 2
+    return good
+
+
+def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
+    """The measurement that would bring the worst combination down most."""
+    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
+    speeds = block.settings["impact.velocity"] if block else np.array(
+        [number(problem.case, "impact.velocity")])  # fmt: skip
+    grid = np.geomspace(speeds.min() / 10, speeds.max() * 10, 13)
+    case, free = problem.case, problem.free
+    probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
+
+    def logarithms(points: Floats) -> Floats:
+        found = probe.quantities(case, free, np.exp(points), list(NEXT))
+        return np.log(np.abs(found.reshape(len(points), -1)))
+
+    slopes = problem.derivatives(x, range(len(x)), logarithms) / NEXT_ERROR
+    fisher = (vectors * eigenvalues) @ vectors.T
+    now = np.sqrt(np.diag(np.linalg.inv(fisher)))
+    best, where = 1.0, None
+    for j, row in enumerate(slopes):
+        if not np.isfinite(row).all():
+            continue
+        then = np.sqrt(np.diag(np.linalg.inv(fisher + np.outer(row, row))))
+        if then.max() / now.max() < best:
+            best, where = then.max() / now.max(), j
+    if where is None or best > 0.98:
+        return "no single measurement of an impact would help much"
+    name, speed = NEXT[where % len(NEXT)], grid[where // len(NEXT)]
+    worst = free[int(np.argmax(now))]
+    return (f"{name} at {speed:.3g} m/s to {100 * NEXT_ERROR:g} %: {worst} to "
+            f"{_percent(best * now.max())} instead of {_percent(now.max())}")  # fmt: skip
+
+
+def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
+    """Prediction of cor over velocity with its 95 % band, of the case otherwise."""
+    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
+    speeds = block.settings["impact.velocity"] if block else np.array(
+        [number(problem.case, "impact.velocity")])  # fmt: skip
+    grid = np.geomspace(speeds.min() / 2, speeds.max() * 2, 41)
+    probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, problem.case)
+
+    def cor(points: Floats) -> Floats:
+        return probe.predict(problem.case, problem.free, np.exp(points))
+
+    slopes = problem.derivatives(x, range(len(x)), cor)
+    deviation = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
+    middle, half = cor(x[None])[0], float(ndtri(0.975)) * deviation
+    columns = {"velocity": grid, "cor": middle, "low": middle - half, "high": middle + half}
+    good = np.isfinite(middle)
+    return {name: column[good].tolist() for name, column in columns.items()}
+
+
+def _with_model(
+    case: Case, free: Sequence[str], model: str, fix: Mapping[str, float], sources: Sequence[Source]
+) -> tuple[Case, list[str]]:
+    """The case with another model for the material of the free parameters, all of it free."""
+    names = list(dict.fromkeys(address.rpartition(".")[0] for address in free))
+    if len(names) != 1:
+        raise UsageError("--model: the free parameters must be those of one material")
+    name = names[0]
+    kind, _, terms = model.partition(":")
+    probe = [observations(case, source, free) for source in sources]
+    first = min(block.window(case)[0] for block in probe)
+    last = max(block.window(case)[1] for block in probe)
+    times = np.geomspace(first, last, 60)
+    moduli = case.material(name).relaxation(times)
+    keys: dict[str, list[float]] = {}
+    if kind == "prony":
+        # equal moduli and times that are apart, also where one term would do
+        n = int(terms or 1)
+        keys["equilibrium_modulus"] = [moduli[-1]]
+        keys["moduli"] = [(moduli[0] - moduli[-1]) / n] * n
+        keys["times"] = list(np.geomspace(first, last, n + 2)[1:-1])
+    else:
+        for one in fit((times, moduli), model=kind, name=name).parameters:
+            keys[one.name] = [one.value]
+    groups = [group for group in case.text().split("\n&") if group.strip()]
+    kept, old = [], ""
+    for group in groups:
+        if f"name = '{name}'" in group.replace('"', "'"):
+            old = group
+        else:
+            kept.append("&" + group.lstrip("&"))
+    common = [
+        line for line in old.splitlines()
+        if line.split("=")[0].strip() in ("density", "poisson_ratio")
+    ]  # fmt: skip
+    lines = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
+    rest = [f"&material\n   name = '{name}'\n   model = '{kind}'", *lines, *common, "/\n"]
+    changed = Case("\n".join([*kept, *rest]), name=case.name)
+    addresses = [
+        f"{name}.{key}({i + 1})" if key in ("moduli", "times") else f"{name}.{key}"
+        for key, row in keys.items()
+        for i, x in enumerate(row)
+        if x > 0
+    ]
+    for address, value in fix.items():
+        if address in addresses:
+            changed[address] = float(value)
+            addresses.remove(address)
+    return changed, addresses
+
+
+def _product(names: Sequence[str], direction: Floats) -> str:
+    """A direction of logarithms as a product of powers, the largest power 1."""
+    scaled = direction / direction[np.argmax(np.abs(direction))]
+    factors = []
+    for name, power in zip(names, scaled, strict=True):
+        if abs(power) >= 0.02:
+            text = f"{power:.2f}".rstrip("0").rstrip(".")
+            factors.append(name if text == "1" else f"{name}^{text}")
+    return "*".join(factors)
+
+
+def _positive(case: Case, address: str) -> float:
+    value = number(case, address)
+    if not value > 0:
+        raise UsageError(f"{address}: found {case[address]}, expected a number > 0 as first guess")
+    return value
+
+
+def _finite(interval: tuple[float, float]) -> list[float | None]:
+    """An interval for JSON, which has no infinity."""
+    return [value if math.isfinite(value) else None for value in interval]
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2g} %"
+
+
+def _report(found: Identification) -> str:
+    """What the command prints."""
+    lines = [
+        f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}"
+    ]
+    head = f"{'':32s}{'value':>13s}{'error':>9s}  {'68 % interval':26s}{'95 % interval':26s}"
+    lines += ["", head.rstrip()]
+    for one in found.estimates:
+        ends = "".join(
+            f"{f'{low:.5g} to {high:.5g}':26s}" for low, high in (one.interval_68, one.interval_95)
+        )
+        error = _percent(one.standard_error / one.value)
+        name = f"{one.address} [{one.unit}]" if one.unit not in ("", "1") else one.address
+        lines.append(f"{name:32s}{one.value:13.6g}{error:>9s}  {ends}".rstrip())
+    if found.relative_error is None:
+        lines += ["", f"chi2/dof {found.chi2 / max(found.dof, 1):.3g} ({found.dof} dof)"]
+    else:
+        lines += ["", f"error of each datum {_percent(found.relative_error)}, from the misfit "
+                  f"({found.dof} degrees of freedom)"]  # fmt: skip
+    lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
+    lines += ["", "what the data determine, from best to worst (eigenvalue of the Fisher matrix):"]
+    lines += [
+        f"  {_percent(error):>8s}  {text}  ({value:.3g})"
+        for (text, error), value in zip(found.combinations, found.eigenvalues, strict=True)
+    ]
+    low, high = found.window
+    lines += ["", f"the data see the material from {low:.2g} to {high:.2g} s"]
+    lines += [f"what would help most: {found.advice}", ""]
+    lines.append(f"{'datum':20s}{'at':>12s}{'value':>13s}{'model':>13s}{'residual/error':>16s}")
+    shown = sorted(found.data, key=lambda row: -abs(row["residual"]))[:20]
+    lines += [
+        f"{r['quantity']:20s}{r['at']:12.5g}{r['value']:13.6g}{r['model']:13.6g}"
+        f"{r['residual']:16.2f}"
+        for r in found.data if any(r is one for one in shown)
+    ]  # fmt: skip
+    if len(found.data) > len(shown):
+        lines.append(f"(the {len(shown)} largest of {len(found.data)} residuals)")
+    return "\n".join(lines) + "\n"
+
+
+def _pairs(words: Sequence[str], option: str) -> dict[str, float]:
+    """NAME=NUMBER of an option, percent as a fraction."""
+    found = {}
+    for word in words:
+        name, _, text = word.partition("=")
+        try:
+            found[name] = float(text.removesuffix("%")) / (100 if text.endswith("%") else 1)
+        except ValueError:
+            raise UsageError(f"{option} {word}: expected NAME=NUMBER") from None
+    return found
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor identify`; exits with the codes of the program."""
+    parser = _command.Parser(
+        "identify",
+        description="Identify parameters of a case from measured impacts (a row each: velocity or "
+        "drop_height, and cor, contact_time ...), records of time and force, and moduli. Writes "
+        "the case, JSON and a figure.",
+    )
+    parser.add_outputs()
+    add = parser.add_argument
+    add("case", metavar="CASE.nml", help="case; its values are the first guess")
+    add("data", nargs="+", metavar="DATA", help="data files with a header")
+    add("--free", metavar="ADDRESS,ADDRESS", required=True, help="parameters to be identified")
+    add("--fix", metavar="ADDRESS=VALUE", action="append", default=[], help="a value that is given")
+    error = "relative error of a column that has none, such as cor=1%%"
+    add("--error", metavar="NAME=VALUE", action="append", default=[], help=error)
+    model = "another model of the material, such as sls or prony:2; several are compared"
+    add("--model", action="append", default=[], help=model)
+    add("--seed", type=int, default=1, help="seed of the starts")
+    with _command.one_line():
+        _work(parser.options(arguments))
+
+
+def _work(options: argparse.Namespace) -> None:
+    """Identify with each model, and write the files of the best."""
+    free = [word.strip() for word in options.free.split(",") if word.strip()]
+    fix, errors = _pairs(options.fix, "--fix"), _pairs(options.error, "--error")
+    found: list[Identification] = []
+    refused: list[Error] = []
+    for model in options.model or [None]:
+        try:
+            found.append(
+                identify(options.case, options.data, free, fix=fix, errors=errors, model=model,
+                         seed=options.seed)
+            )  # fmt: skip
+        except NumericalError as error:
+            refused.append(error)
+    if not found:
+        raise refused[0]
+    best = min(found, key=lambda one: one.aic)
+    report, written = str(best), best.as_dict()
+    if len(options.model) > 1:
+        order = sorted(found, key=lambda one: one.aic)
+        keys = ("model", "chi2", "aic", "bic")
+        written["models"] = [{key: getattr(one, key) for key in keys} for one in order]
+        report += f"\n{'model':16s}{'parameters':>11s}{'chi2':>12s}{'AIC':>10s}{'BIC':>10s}\n"
+        for one in order:
+            report += f"{one.model:16s}{len(one.estimates):11d}{one.chi2:12.4g}"
+            report += f"{one.aic:10.1f}{one.bic:10.1f}\n"
+        report += "".join(f"no result: {error}\n" for error in refused)
+    texts = {".nml": best.case.text(), ".json": json.dumps(written, indent=1) + "\n"}
+    stem = f"{Path(options.case).stem}_identified"
+    _command.finish(options, report, stem, texts, best.figure())
+
+
+if __name__ == "__main__":
+    main()

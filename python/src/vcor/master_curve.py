@@ -1,0 +1,417 @@
+"""Master curves: shift factors of moduli at several temperatures, and the laws they follow.
+
+Neighbouring temperatures are shifted along the logarithm of frequency (or minus that of time) until
+one polynomial of fourth degree goes through the storage (or relaxation) modulus of both, each
+weighted by the scatter of its own curve. The loss modulus scatters more and takes no part; in the
+figure it shows whether the same shifts bring it together, too: whether the material is
+thermorheologically simple.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import re
+import sys
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares, minimize_scalar
+
+from . import _command, _library
+from ._library import Error, FileError, Floats, InputError, NumericalError, UsageError
+from .fit import read_moduli
+
+#: Gas constant [J/(mol K)], and 0 C [K]
+GAS, ZERO_C = 8.31446261815324, 273.15
+#: Degree of the polynomial in ln E over ln omega that two curves share
+DEGREE = 4
+#: Smallest scatter of a curve that is believed, relative
+LEAST_SCATTER = 1e-3
+_TEMPERATURE = re.compile(r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(]\s*\W*([CK])\b.*)?")
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Moduli at one temperature."""
+
+    #: Temperature [K]
+    temperature: float
+    dynamic: bool
+    #: Angular frequency [rad/s] or time [s], shape (n,)
+    at: Floats
+    #: Storage and loss modulus, or relaxation modulus [Pa], shape (1 or 2, n)
+    moduli: Floats
+
+    @property
+    def x(self) -> Floats:
+        """Logarithm of the frequency, or of one over the time, rising."""
+        return np.log(self.at) if self.dynamic else -np.log(self.at)
+
+    def scatter(self) -> float:
+        """Scatter of the logarithm of the first modulus about a parabola."""
+        y = np.log(self.moduli[0])
+        if len(y) < 5:
+            return 0.02
+        smooth = np.polyval(np.polyfit(self.x, y, 2), self.x)
+        return max(LEAST_SCATTER, float(np.sqrt(np.sum((y - smooth) ** 2) / (len(y) - 3))))
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law of the shift factors, with standard errors."""
+
+    name: str
+    values: dict[str, float]
+    errors: dict[str, float]
+    #: Root of the mean square of the misfit of the steps of log10 a_T
+    rms: float
+
+
+@dataclass(frozen=True)
+class Master:
+    """A master curve; `str` is the report of the command."""
+
+    reference_temperature: float
+    #: Temperatures [K], log10 of the shift factors and their standard errors, shape (n,)
+    temperatures: Floats
+    log_shift: Floats
+    log_error: Floats
+    laws: tuple[Law, ...]
+    curves: tuple[Curve, ...]
+
+    def curve(self) -> tuple[Floats, ...]:
+        """Reduced frequency and moduli, or reduced time and modulus, in rising order."""
+        factors = 10**self.log_shift
+        at = np.concatenate([
+            one.at * factor if one.dynamic else one.at / factor
+            for one, factor in zip(self.curves, factors, strict=True)
+        ])  # fmt: skip
+        moduli = np.hstack([one.moduli for one in self.curves])
+        order = np.argsort(at, kind="stable")
+        return at[order], *moduli[:, order]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results as they are written to JSON."""
+        return {
+            "program": "vcor",
+            "version": _library.__version__,
+            "reference_temperature": self.reference_temperature,
+            "temperature": self.temperatures.tolist(),
+            "log10_shift": self.log_shift.tolist(),
+            "log10_shift_error": self.log_error.tolist(),
+            "laws": [
+                {"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms}
+                for one in self.laws
+            ],
+        }
+
+    def __str__(self) -> str:
+        lines = [f"reference temperature {self.reference_temperature:.2f} K", ""]
+        lines.append(f"{'T [K]':>10s}{'T [C]':>10s}{'log10 a_T':>12s}{'error':>8s}")
+        lines += [
+            f"{t:10.2f}{t - ZERO_C:10.2f}{shift:12.4f}{error:8.4f}"
+            for t, shift, error in zip(
+                self.temperatures, self.log_shift, self.log_error, strict=True
+            )
+        ]
+        for law in self.laws:
+            constants = ", ".join(
+                f"{name} {value:.5g} +- {law.errors[name]:.2g}"
+                for name, value in law.values.items()
+            )
+            lines += [
+                "",
+                f"{law.name}: {constants}",
+                f"   misfit of a step of log10 a_T {law.rms:.3g}",
+            ]
+        return "\n".join(lines) + "\n"
+
+    def figure(self) -> Any:
+        """Figure (matplotlib): the master curve, and the shift factors with their laws."""
+        from matplotlib import style
+        from matplotlib.figure import Figure
+
+        from .plot import HEIGHT, PAGE, STYLE
+
+        with style.context(STYLE):
+            made = Figure(figsize=(PAGE / 2.54, HEIGHT / 2.54), layout="constrained")
+            left, right = made.subplots(1, 2)
+            dynamic = self.curves[0].dynamic
+            at, *moduli = self.curve()
+            names = ("storage modulus", "loss modulus") if dynamic else ("relaxation modulus",)
+            for name, row, mark in zip(names, moduli, "os", strict=False):
+                left.loglog(at, row / 1e6, mark, ms=2, label=name)
+            what = "frequency [rad/s]" if dynamic else "time [s]"
+            left.set_xlabel(f"reduced {what} at {self.reference_temperature - ZERO_C:.1f} °C")
+            left.set_ylabel("modulus [MPa]")
+            left.legend()
+            t = np.linspace(self.temperatures.min(), self.temperatures.max(), 200)
+            for i, law in enumerate(self.laws):
+                shift = _shift(law, t, self.reference_temperature)
+                style_of = {"marker": "", "color": f"C{i + 1}", "ls": ("-", "--")[i % 2]}
+                right.plot(t - ZERO_C, shift, label=law.name, **style_of)
+            right.errorbar(
+                self.temperatures - ZERO_C, self.log_shift, self.log_error, fmt="o", ms=3,
+                color="black", mfc="white", label="shift factors",
+            )  # fmt: skip
+            right.set_xlabel("temperature [°C]")
+            right.set_ylabel("log$_{10}$ a$_T$")
+            right.legend()
+        return made
+
+
+def master(
+    data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
+    *,
+    reference_temperature: float | None = None,
+) -> Master:
+    """Master curve of moduli at several temperatures, as `vcor master` makes it.
+
+    Parameters
+    ----------
+    data
+        Files with a column of temperatures, or one file per temperature, `FILE@-20C` or `FILE@253`.
+    reference_temperature
+        [K], one of those of the data within 3 K is taken; None: that in their middle.
+
+    Returns
+    -------
+    Master
+        Shift factors, WLF and Arrhenius constants with standard errors, and the curve.
+
+    Raises
+    ------
+    InputError
+        The files have no moduli at two or more temperatures.
+    NumericalError
+        Two neighbouring temperatures have no modulus in common.
+    """
+    names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
+    curves = sorted((c for name in names for c in read_curves(name)), key=lambda c: c.temperature)
+    if len(curves) < 2 or len({curve.dynamic for curve in curves}) > 1:
+        raise InputError("expected moduli of one kind at two or more temperatures")
+    temperatures = np.array([curve.temperature for curve in curves])
+    if reference_temperature is None:
+        middle = len(curves) // 2
+    else:
+        middle = int(np.argmin(np.abs(temperatures - reference_temperature)))
+        if abs(temperatures[middle] - reference_temperature) > 3:
+            raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, "
+                             f"the nearest are at {temperatures[middle]:.2f} K")  # fmt: skip
+    pairs = zip(curves[:-1], curves[1:], strict=True)
+    steps, variances = np.array([_step(*pair) for pair in pairs]).T
+    steps, errors = steps / math.log(10), np.sqrt(variances) / math.log(10)
+    shift = np.concatenate([[0.0], np.cumsum(steps)])
+    variance = np.concatenate([[0.0], np.cumsum(errors**2)])
+    reference = float(temperatures[middle])
+    return Master(
+        reference,
+        temperatures,
+        shift - shift[middle],
+        np.sqrt(np.abs(variance - variance[middle])),
+        _laws(temperatures, steps, errors, reference),
+        tuple(curves),
+    )
+
+
+def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
+    """Curves of a file: one per temperature, or per set where it has a column of that name."""
+    path, _, given = os.fspath(name).partition("@")
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}") from None
+    if given:
+        return [_curve(path, lines, _kelvin(given, path))]
+    told = [line for line in lines[:40] if not line.lstrip().startswith("#")]
+    mark = next((mark for mark in ";\t," if any(mark in line for line in told)), None)
+    rows = [line.split(mark) for line in lines]
+    head = next((i for i, row in enumerate(rows) if len(row) > 2 and any(
+        _TEMPERATURE.fullmatch(cell.strip()) for cell in row)), None)  # fmt: skip
+    if head is None:
+        raise InputError(f"{path}: found no column of temperatures, expected one named T, or "
+                         f"{path}@-20C for a file of one temperature")  # fmt: skip
+    cells = [cell.strip() for cell in rows[head]]
+    place = next(i for i, cell in enumerate(cells) if _TEMPERATURE.fullmatch(cell))
+    found = _TEMPERATURE.fullmatch(cells[place])
+    units = [cell.strip().strip("[]()°") for cell in rows[head + 1]] if head + 1 < len(rows) else []
+    unit = (found[1] if found else None) or (units[place] if place < len(units) else "")
+    numbers, groups = [], []
+    which = next((i for i, cell in enumerate(cells) if cell.lower() == "set"), place)
+    for i in range(head + 1, len(rows)):
+        try:
+            numbers.append(float(rows[i][place].replace(",", ".")))
+            groups.append((i, float(rows[i][which].replace(",", "."))))
+        except (ValueError, IndexError):
+            continue
+    if not numbers:
+        raise InputError(f"{path}: found no temperatures in column {place + 1}")
+    # the degree sign comes in several encodings
+    unit = unit[-1:]
+    if unit not in ("C", "K"):
+        raise InputError(f"{path}: found no unit of the temperatures, expected T [C] or T [K]")
+    zero = ZERO_C if unit == "C" else 0.0
+    first = min(i for i, _ in groups)
+    curves, part = [], [0]
+    for j in range(1, len(groups) + 1):
+        # a new curve where the set changes, or the temperature jumps
+        jump = 0.0 if which != place else 1.0
+        if j == len(groups) or abs(groups[j][1] - groups[j - 1][1]) > jump:
+            rest = [lines[groups[k][0]] for k in part]
+            kelvin = float(np.mean([numbers[k] for k in part])) + zero
+            if cells[0] in ("t", "time"):
+                rest.sort(key=lambda line: float(line.split(mark)[0].replace(",", ".")))
+            curves.append(_curve(path, [*lines[:first], *rest], kelvin))
+            part = []
+        part.append(j)
+    return curves
+
+
+def _curve(path: str, lines: Sequence[str], temperature: float) -> Curve:
+    """Curve of the lines of a file, read as `vcor fit` reads them."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / Path(path).name
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        try:
+            columns = list(read_moduli(file).items())
+        except Error as error:
+            text = str(error).replace(str(file), path)
+            raise type(error)(f"{text} (at {temperature:.2f} K)") from None
+    order = slice(None) if columns[0][0] == "frequency" else slice(None, None, -1)
+    moduli = np.array([column[order] for _, column in columns[1:]])
+    return Curve(temperature, columns[0][0] == "frequency", columns[0][1][order], moduli)
+
+
+def _kelvin(text: str, path: str) -> float:
+    try:
+        number = float(text.rstrip("CK"))
+    except ValueError:
+        raise UsageError(f"{path}@{text}: expected a temperature such as -20C or 253K") from None
+    return number + (ZERO_C if text.endswith("C") else 0.0)
+
+
+def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
+    """Change of ln a_T from the colder to the warmer curve, and its variance."""
+    y = np.log(np.concatenate([cold.moduli[0], warm.moduli[0]]))
+    weight = 1 / np.repeat([cold.scatter(), warm.scatter()], [len(cold.at), len(warm.at)])
+    middle, span = np.mean(cold.x), np.ptp(cold.x) + np.ptp(warm.x)
+
+    def misfit(shift: float) -> float:
+        """Weighted sum of squares about one polynomial through both curves."""
+        x = (np.concatenate([cold.x, warm.x + shift]) - middle) / span
+        q = np.linalg.qr(np.vander(x, DEGREE + 1) * weight[:, None])[0]
+        rest = y * weight
+        return float(np.sum((rest - q @ (q.T @ rest)) ** 2))
+
+    # a warmer material is faster: its curve belongs to lower frequencies of the colder one, beside
+    # which it may end
+    trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
+    values = np.array([misfit(trial) for trial in trials])
+    best = int(np.argmin(values))
+    if best in (0, len(trials) - 1):
+        pair = f"{cold.temperature:.2f} and {warm.temperature:.2f} K"
+        raise NumericalError(f"the data at {pair} have no modulus in common")
+    h = trials[1] - trials[0]
+    found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
+                            options={"xatol": 1e-8})  # fmt: skip
+    curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
+    dof = max(1, y.size - DEGREE - 2)
+    return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature)
+
+
+def _shift(law: Law, t: Floats, reference: float) -> Floats:
+    """log10 a_T of a law."""
+    if law.name == "WLF":
+        c1, c2 = law.values.values()
+        shift: Floats = -c1 * (t - reference) / (c2 + t - reference)
+        return shift
+    energy = float(law.values["activation_energy"])
+    inverse: Floats = 1 / t - 1 / reference
+    return energy / GAS / math.log(10) * inverse
+
+
+def _laws(temperatures: Floats, steps: Floats, errors: Floats, reference: float) -> tuple[Law, ...]:
+    """WLF and Arrhenius laws by least squares of the steps, whose errors are independent."""
+    laws = []
+    lowest = float(np.min(temperatures - reference))
+    for name, keys, start in (
+        ("WLF", ("wlf_c1", "wlf_c2"), (17.44, 51.6 - lowest)),
+        ("Arrhenius", ("activation_energy",), (1e5,)),
+    ):
+
+        def law_of(x: Floats, name: str = name, keys: Sequence[str] = keys) -> Law:
+            return Law(name, dict(zip(keys, np.exp(x).tolist(), strict=True)), {}, 0.0)
+
+        def misfit(x: Floats, law_of: Callable[[Floats], Law] = law_of) -> Floats:
+            shift = _shift(law_of(x), temperatures, reference)
+            rest: Floats = (np.diff(shift) - steps) / errors
+            return rest
+
+        dof = len(steps) - len(keys)
+        if dof < 1:
+            continue
+        found = least_squares(misfit, np.log(start), max_nfev=500)
+        values = np.exp(found.x)
+        if name == "WLF" and values[1] + lowest <= 0:
+            continue
+        scale = max(1.0, 2 * found.cost / dof)
+        deviations = values * np.sqrt(np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * scale)
+        rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
+        law = law_of(found.x)
+        laws.append(Law(name, law.values, dict(zip(keys, deviations.tolist(), strict=True)), rms))
+    return tuple(laws)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor master`; exits with the codes of the program."""
+    parser = _command.Parser(
+        "master",
+        description="Master curve and shift factors of moduli at several temperatures. Writes "
+        "NAME_master.csv for vcor fit, NAME_master_shift.csv for shift_file, JSON and a figure.",
+    )
+    parser.add_outputs()
+    add = parser.add_argument
+    what = "file with a column T [C] or T [K], or FILE@-20C of one temperature"
+    add("data", nargs="+", metavar="DATA", help=what)
+    add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
+    # argparse takes -5C for an option
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if "--reference" in words[:-1]:
+        i = words.index("--reference")
+        words[i : i + 2] = [f"--reference={words[i + 1]}"]
+    with _command.one_line():
+        _work(parser.options(words))
+
+
+def _work(options: argparse.Namespace) -> None:
+    """Make a master curve and write its files."""
+    given = options.reference
+    reference = _kelvin(given, "--reference") if given is not None else None
+    found = master(options.data, reference_temperature=reference)
+    dynamic = found.curves[0].dynamic
+    head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
+    reference = found.reference_temperature
+    texts = {
+        ".csv": f"# master curve at {reference:.6g} K\n{head}\n" + _rows(found.curve()),
+        "_shift.csv": f"# reference temperature {reference:.6g} K\nT [K],log10 a_T\n"
+        + _rows((found.temperatures, found.log_shift)),
+        ".json": json.dumps(found.as_dict(), indent=1) + "\n",
+    }
+    stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
+    _command.finish(options, str(found), stem, texts, found.figure())
+
+
+def _rows(columns: Sequence[Floats]) -> str:
+    """Columns as rows of text."""
+    return "".join(",".join(f"{x:.9g}" for x in row) + "\n" for row in zip(*columns, strict=True))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,286 @@
+"""Measured data that parameters are identified from, and what a case predicts for them."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+
+from . import _library
+from ._library import Error, FileError, Floats, InputError
+from .case import Case
+from .data import Data
+from .fit import read_moduli
+
+Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
+
+#: Standard gravity [m/s2]
+GRAVITY = 9.80665
+#: Columns of a data file that say where a datum was taken
+SETTINGS = {
+    "velocity": "impact.velocity",
+    "temperature": "impact.temperature",
+    "radius": "sphere.radius",
+    "mass": "sphere.mass",
+}
+
+
+class Block(Protocol):
+    """Data of one file that are predicted together."""
+
+    source: str
+    #: What each datum is, shape (n,)
+    quantity: list[str]
+    #: Where it was taken: velocity, time or frequency in SI units, shape (n,)
+    at: Floats
+    value: Floats
+    #: Standard errors, nan where there are none, shape (n,)
+    sigma: Floats
+
+    def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
+        """Data for each row of values at the addresses, shape (rows, n); nan without result."""
+
+    def window(self, case: Case) -> tuple[float, float]:
+        """First and last time of the material that the data see [s]."""
+
+
+class Impacts:
+    """Impacts: a row of settings each, and what was measured."""
+
+    def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
+        self.source = source
+        columns = _as_velocities(source, dict(columns), case)
+        self.settings: dict[str, Floats] = {}
+        self.quantity, rows, values, sigmas = [], [], [], []
+        known = _library.columns(0)
+        for name, column in columns.items():
+            if name.endswith("_sigma") and name[:-6] in columns:
+                continue
+            if name in SETTINGS or "." in name:
+                self.settings[SETTINGS.get(name, name)] = column
+                continue
+            if name not in known or known[name].labels:
+                raise InputError(f"{source}: found column '{name}', expected a column of the "
+                                 f"summary, {', '.join(SETTINGS)} or an address")  # fmt: skip
+            if (column <= 0).any():
+                raise InputError(f"{source}: found a {name} that is not > 0")
+            sigma = columns.get(f"{name}_sigma", np.full(len(column), np.nan))
+            for i in np.flatnonzero(np.isfinite(column)):
+                self.quantity.append(name)
+                rows.append(i)
+                values.append(column[i])
+                sigmas.append(sigma[i])
+        if not values:
+            raise InputError(f"{source}: there is no measured quantity, such as cor, in this file")
+        if any(np.isnan(column).any() for column in self.settings.values()):
+            raise InputError(f"{source}: a row has no value of {' or '.join(self.settings)}")
+        self.names = list(dict.fromkeys(self.quantity))
+        self._rows = np.array(rows)
+        self._columns = np.array([self.names.index(name) for name in self.quantity])
+        self.value, self.sigma = np.array(values), np.array(sigmas)
+        n = max((len(column) for column in self.settings.values()), default=max(rows) + 1)
+        if "impact.velocity" not in self.settings:
+            self.settings["impact.velocity"] = np.full(n, number(case, "impact.velocity"))
+        self.at = self.settings["impact.velocity"][self._rows]
+
+    def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
+        """Data for each row of values."""
+        results = self.quantities(case, addresses, values, self.names)
+        return results[:, self._rows, self._columns]
+
+    def quantities(
+        self, case: Case, addresses: list[str], values: Floats, names: list[str]
+    ) -> Floats:
+        """Columns of all impacts, shape (rows of values, impacts, names)."""
+        settings = np.stack(list(self.settings.values()), axis=1)
+        m, n = len(values), len(settings)
+        table = np.hstack([np.tile(settings, (m, 1)), np.repeat(values, n, axis=0)])
+        threads = 1 if len(table) < 2000 else 0
+        results, _ = case._handle.solve([*self.settings, *addresses], table, names, threads)
+        return results.reshape(m, n, len(names))
+
+    def window(self, case: Case) -> tuple[float, float]:
+        """Times of the material that the data see [s]."""
+        times = self.quantities(case, [], np.empty((1, 0)), ["contact_time"])
+        return float(np.nanmin(times)) / 100, float(np.nanmax(times))
+
+
+class Record:
+    """Force over time of one impact; when it began is not known."""
+
+    def __init__(self, source: str, columns: Mapping[str, Floats], case: Case) -> None:
+        self.source = source
+        self.at, self.value = columns["time"], columns["force"]
+        if len(self.at) < 5 or not (np.diff(self.at) > 0).all():
+            raise InputError(f"{source}: expected five or more rising times with forces")
+        self.quantity = ["force"] * len(self.at)
+        # an error relative to the value would take the zeros beside the contact as exact
+        self.sigma = columns.get("force_sigma", np.full(len(self.at), np.nan))
+        self.scale = np.full(len(self.at), float(np.max(self.value)))
+        self.settings = {
+            address: float(columns[name][0])
+            for name, address in SETTINGS.items()
+            if name in columns
+        }
+        if not self.scale[0] > 0:
+            raise InputError(f"{source}: found no force > 0")
+
+    def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
+        """Data for each row of values."""
+        forces = np.full((len(values), len(self.at)), np.nan)
+        impact = case.copy()
+        for address, value in self.settings.items():
+            impact[address] = value
+        for row, numbers in zip(forces, values, strict=True):
+            for address, number in zip(addresses, numbers, strict=True):
+                impact[address] = float(number)
+            try:
+                history = impact.history()
+            except Error:
+                continue
+            row[:] = self._shifted(history["time"].values, history["force"].values)
+        return forces
+
+    def _shifted(self, times: Floats, forces: Floats) -> Floats:
+        """The force from the start that fits best, found by Gauss and Newton."""
+        course = CubicSpline(times, forces)
+        slope = course.derivative()
+        start = float(self.at[np.argmax(self.value)] - times[np.argmax(forces)])
+        for _ in range(30):
+            t = self.at - start
+            inside = (t > times[0]) & (t < times[-1])
+            model = np.where(inside, course(t), 0.0)
+            rate = np.where(inside, slope(t), 0.0)
+            change = float(rate @ (model - self.value)) / max(float(rate @ rate), 1e-300)
+            start += max(-0.2 * times[-1], min(0.2 * times[-1], change))
+            if abs(change) < 1e-12 * times[-1]:
+                break
+        return model
+
+    def window(self, case: Case) -> tuple[float, float]:
+        """Times of the material that the data see [s]."""
+        inside = self.at[self.value > 0.01 * self.scale[0]]
+        length = float(inside[-1] - inside[0])
+        return length / 100, length
+
+
+class Moduli:
+    """Relaxation moduli, or storage and loss moduli, of a material."""
+
+    def __init__(self, source: str, columns: Mapping[str, Floats], material: str) -> None:
+        self.source, self.material = source, material
+        self.dynamic = "frequency" in columns
+        names = ["storage_modulus", "loss_modulus"] if self.dynamic else ["relaxation_modulus"]
+        at = columns["frequency" if self.dynamic else "time"]
+        self.points = at
+        self.at = np.tile(at, len(names))
+        self.quantity = [name for name in names for _ in at]
+        self.value = np.concatenate([columns[name] for name in names])
+        self.sigma = np.concatenate(
+            [columns.get(f"{name}_sigma", np.full(len(at), np.nan)) for name in names]
+        )
+
+    def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
+        """Data for each row of values."""
+        moduli = np.full((len(values), len(self.at)), np.nan)
+        changed = case.copy()
+        for row, numbers in zip(moduli, values, strict=True):
+            try:
+                for address, number in zip(addresses, numbers, strict=True):
+                    changed[address] = float(number)
+                if self.dynamic:
+                    found = changed._handle.complex_modulus(self.material, self.points)
+                    row[:] = np.concatenate([found.real, found.imag])
+                else:
+                    row[:] = changed._handle.relaxation(self.material, self.points)
+            except Error:
+                continue
+        return moduli
+
+    def window(self, case: Case) -> tuple[float, float]:
+        """Times of the material that the data see [s]."""
+        low, high = float(self.points.min()), float(self.points.max())
+        return (1 / high, 1 / low) if self.dynamic else (low, high)
+
+
+def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[str, Floats]:
+    """Heights and times in flight as velocities and coefficients of restitution."""
+    given = case["impact.gravity"] if "impact.gravity" in str(case) else None
+    gravity = float(given) if isinstance(given, float) and given > 0 else GRAVITY
+
+    def put(name: str, value: Floats, sigma: Floats) -> None:
+        columns[name] = value
+        if not np.isnan(sigma).all():
+            columns[f"{name}_sigma"] = sigma
+
+    def take(name: str) -> tuple[Floats, Floats]:
+        value = columns.pop(name)
+        return value, columns.pop(f"{name}_sigma", np.full(len(value), np.nan))
+
+    if "drop_height" in columns:
+        if "velocity" in columns:
+            raise InputError(f"{source}: found both velocity and drop_height")
+        columns["velocity"] = np.sqrt(2 * gravity * take("drop_height")[0])
+    if "bounce_time" in columns:
+        times, sigma = take("bounce_time")
+        if len(times) < 2:
+            raise InputError(f"{source}: expected two or more bounce times in their order")
+        columns = {name: column[:-1] for name, column in columns.items()}
+        columns["velocity"] = gravity * times[:-1] / 2
+        ratio = times[1:] / times[:-1]
+        put("cor_sphere", ratio, ratio * np.hypot(sigma[1:] / times[1:], sigma[:-1] / times[:-1]))
+    if "rebound_height" in columns:
+        height, sigma = take("rebound_height")
+        speed = columns.get("velocity", number(case, "impact.velocity"))
+        ratio = np.sqrt(2 * gravity * height) / speed
+        put("cor_sphere", ratio, ratio * sigma / height / 2)
+    return columns
+
+
+def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
+    """Data of a file or of columns, by what they are."""
+    if isinstance(source, Mapping):
+        name = "data"
+        columns = {str(key): np.atleast_1d(np.asarray(column, dtype=float))
+                   for key, column in source.items()}  # fmt: skip
+        if len({len(column) for column in columns.values()}) > 1:
+            raise InputError("found columns of different lengths")
+    else:
+        name = os.fspath(source)
+        columns = read_columns(source)
+    if "force" in columns and "time" in columns:
+        return Record(name, columns, case)
+    if any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
+        names = list(dict.fromkeys(address.rpartition(".")[0] for address in free))
+        materials = [one for one in names if one not in ("impact", "sphere", "plate", "contact")]
+        if len(materials) != 1:
+            raise InputError(f"{name}: moduli belong to the material of the free parameters, "
+                             f"found {len(materials)} materials")  # fmt: skip
+        return Moduli(name, columns, materials[0])
+    return Impacts(name, columns, case)
+
+
+def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
+    """Columns of a data file of impacts or of a record; moduli as `vcor fit` reads them."""
+    impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
+    try:
+        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    except OSError as error:
+        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
+    head = next((line for line in lines if line.split("#")[0].strip()), "")
+    if impacts & set(re.findall(r"\w+", head)):
+        return Data(path).columns
+    return read_moduli(path)
+
+
+def number(case: Case, address: str) -> float:
+    """Number at an address, nan if there is none."""
+    value = case[address]
+    return float(value) if isinstance(value, (int, float)) else math.nan

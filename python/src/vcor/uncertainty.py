@@ -1,0 +1,511 @@
+"""Sensitivities, and uncertainty of results from that of their parameters."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtri
+
+from . import _command, _library
+from ._library import FileError, Floats, InputError, NumericalError, UsageError
+from .case import Case, read
+
+#: Accuracy of the solutions whose differences are sensitivities
+ACCURACY = 1e-11
+#: Step of the logarithms for differences of fourth order: errors 1e-9 of the step and the solution
+STEP = 5e-3
+#: Quantities that are shown if none are asked for
+USUAL = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation",
+         "residual_indentation", "hysteresis_energy", "wave_energy")  # fmt: skip
+#: Percentiles that are given
+PERCENTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
+#: Bootstrap samples for the errors of Sobol' indices
+RESAMPLES = 40
+#: What the exact linear theory takes
+EXACT = {"contact.law": "receding", "contact.pair": "series", "plate.waves": "body"}
+
+
+@dataclass(frozen=True)
+class Spread:
+    """How a parameter is distributed, as `--vary ADDRESS=TEXT` has it.
+
+    `5%` is the standard deviation of its logarithm (log-normal), `0.1` one in its own unit
+    (normal), `A:B` a uniform distribution from A to B.
+    """
+
+    address: str
+    value: float
+    kind: str
+    low: float
+    high: float = math.nan
+
+    @classmethod
+    def read(cls, case: Case, address: str, text: str | float) -> Spread:
+        """Distribution from its text; a number is a relative standard deviation."""
+        value = case[address]
+        if not isinstance(value, (int, float)):
+            raise UsageError(f"{address}: found {value}, expected a number")
+        if not isinstance(text, str):
+            text = f"{100 * text!r}%"
+        try:
+            if ":" in text:
+                low, high = (float(end) for end in text.split(":"))
+                good = low < high
+                found = cls(address, float(value), "uniform", low, high)
+            elif text.endswith("%"):
+                found = cls(address, float(value), "log-normal", float(text[:-1]) / 100)
+                good = found.low > 0 and value > 0
+            else:
+                found = cls(address, float(value), "normal", float(text))
+                good = found.low > 0
+        except ValueError:
+            good = False
+        if not good:
+            raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
+                             "larger than 0")  # fmt: skip
+        return found
+
+    @property
+    def deviation(self) -> float:
+        """Standard deviation, in the unit of the parameter."""
+        if self.kind == "uniform":
+            return (self.high - self.low) / math.sqrt(12)
+        return self.low * (self.value if self.kind == "log-normal" else 1)
+
+    def sample(self, share: Floats) -> Floats:
+        """Values at shares 0 < u < 1 of the distribution."""
+        if self.kind == "uniform":
+            return self.low + (self.high - self.low) * share
+        normal: Floats = ndtri(share)
+        if self.kind == "normal":
+            return self.value + self.low * normal
+        values: Floats = self.value * np.exp(self.low * normal)
+        return values
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """What is known of the results of an impact; `str` is the report of the command."""
+
+    #: Over `quantity`: value, numerical, material and model error, standard deviation, percentiles;
+    #: over `parameter` too: elasticity, first and total Sobol' index and their 95 % half widths
+    table: xr.Dataset
+    #: Samples, and how many of them have no result
+    samples: int
+    lost: int
+    dominant: str
+
+    def __str__(self) -> str:
+        return _report(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results as they are written to JSON."""
+        table = self.table
+        return {
+            "program": "vcor",
+            "version": _library.__version__,
+            "samples": self.samples,
+            "without_result": self.lost,
+            "quantities": {
+                str(name): {
+                    "unit": str(table.units.sel(quantity=name).item()),
+                    **{key: _plain(table[key].sel(quantity=name)) for key in table.data_vars},
+                }
+                for name in table.quantity.values
+            },
+        }
+
+    def figure(self, quantity: str = "cor") -> Any:
+        """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
+        from matplotlib import style
+        from matplotlib.figure import Figure
+
+        from .plot import COLUMN, STYLE
+
+        row = self.table.sel(quantity=quantity)
+        below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
+        order = np.argsort(np.abs(above - below))
+        with style.context(STYLE):
+            made = Figure(figsize=(COLUMN / 2.54, (2.5 + 0.6 * len(order)) / 2.54),
+                          layout="constrained")  # fmt: skip
+            axis = made.subplots()
+            names = [str(name) for name in row.parameter.values[order]]
+            for color, side, text in (
+                ("0.75", below[order], "one standard deviation less"),
+                ("C1", above[order], "one more"),
+            ):
+                start = float(row["value"])
+                axis.barh(names, side - start, left=start, label=text, color=color)
+            axis.axvline(start, color="black", lw=0.8, marker="")
+            unit = str(row.units.item())
+            axis.set_xlabel(quantity.replace("_", " ") + (f" [{unit}]" if unit != "1" else ""))
+            made.legend(loc="outside upper center", ncols=2)
+        return made
+
+
+def sensitivities(
+    case: Case | str | os.PathLike[str],
+    parameters: Sequence[str],
+    quantities: Sequence[str] = USUAL,
+) -> xr.DataArray:
+    """Elasticities d ln q/d ln p of results, by differences of solutions at 1e-11.
+
+    At the end of a parameter's range the difference is one-sided, of second order.
+
+    Parameters
+    ----------
+    case
+        The case, an impact.
+    parameters
+        Addresses of numbers other than 0.
+    quantities
+        Columns of the summary.
+
+    Returns
+    -------
+    xarray.DataArray
+        Elasticity [1] over `quantity` and `parameter`; nan where the quantity is 0.
+    """
+    case = _accurate(case)
+    values = np.array([_number(case, address) for address in parameters])
+    steps = np.array([-2, -1, 1, 2]) * STEP
+    table = np.tile(values, (4 * len(values) + 1, 1))
+    for i in range(len(values)):
+        table[4 * i : 4 * i + 4, i] *= np.exp(steps)
+    results = _solve(case, list(parameters), table, quantities)
+    found, middle = results[:-1].reshape(len(values), 4, -1), results[-1]
+    slope = np.einsum("ijk,j->ki", found, [1, -8, 8, -1]) / (12 * STEP)
+    # beside the end of a range, of second order
+    for side, far, near in ((1, 0, 1), (-1, 3, 2)):
+        one_sided = side * (3 * middle - 4 * found[:, near] + found[:, far]).T / (2 * STEP)
+        slope = np.where(np.isnan(slope), one_sided, slope)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = slope / middle[:, None]
+    return xr.DataArray(
+        np.where(np.isfinite(ratio), ratio, np.nan),
+        dims=("quantity", "parameter"),
+        coords={"quantity": list(quantities), "parameter": list(parameters)},
+        name="elasticity",
+    )
+
+
+def propagate(
+    case: Case | str | os.PathLike[str],
+    vary: Mapping[str, str | float] | None = None,
+    *,
+    covariance: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    samples: int = 4096,
+    quantities: Sequence[str] = USUAL,
+    seed: int = 1,
+    threads: int | None = None,
+) -> Uncertainty:
+    """Uncertainty of the results of an impact, and what it comes from.
+
+    Parameters
+    ----------
+    case
+        The case; its values are the middle of the distributions.
+    vary
+        Distribution at each address: 0.05 or "5%" of its value, "0.1" in its unit, "1:2" uniform.
+    covariance
+        JSON of `vcor fit` or `vcor identify`, or its content: values and covariance of parameters,
+        which count as one parameter for Sobol' indices, since they depend on each other.
+    samples
+        Impacts that are solved, about; rounded to a power of 2 times (parameters + 2).
+    quantities
+        Columns of the summary.
+    seed
+        Seed of the samples.
+    threads
+        As for `Case.run`.
+
+    Returns
+    -------
+    Uncertainty
+        Errors, percentiles, elasticities and Sobol' indices.
+    """
+    from SALib.analyze import sobol as analysis
+    from SALib.sample import sobol as sampling
+
+    case = (case if isinstance(case, Case) else read(case)).copy()
+    joint = _Joint.read(case, covariance)
+    spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()]
+    addresses = [spread.address for spread in spreads] + joint.addresses
+    if not addresses:
+        raise UsageError("expected at least one parameter that varies")
+    if len(set(addresses)) < len(addresses):
+        raise UsageError("a parameter varies twice")
+    groups = [spread.address for spread in spreads] + ["covariance"] * len(joint.addresses)
+    names = list(dict.fromkeys(groups))
+    # SALib counts groups; without joint parameters every parameter is its own
+    problem = {"num_vars": len(addresses), "names": addresses,
+               "bounds": [[0.0, 1.0]] * len(addresses), "groups": groups}  # fmt: skip
+    blocks = 2 ** max(3, round(math.log2(max(8, samples / (len(names) + 2)))))
+    share = sampling.sample(problem, blocks, calc_second_order=False, seed=seed)
+    share = np.clip(share, 1e-12, 1 - 1e-12)
+    table = np.hstack([
+        *[spread.sample(share[:, [i]]) for i, spread in enumerate(spreads)],
+        joint.sample(share[:, len(spreads) :]),
+    ])  # fmt: skip
+    found = case._solve_all(addresses, table, list(quantities), threads, None)
+    good = np.isfinite(found).all(axis=1).reshape(blocks, -1)
+    kept = good.all(axis=1)
+    if kept.sum() < 8:
+        raise NumericalError(f"{case.name}: {(~good).sum()} of {good.size} samples have no result")
+    values = found.reshape(blocks, -1, len(quantities))[kept].reshape(-1, len(quantities))
+    first, total = np.zeros((2, 2, len(quantities), len(names)))
+    for k in range(len(quantities)):
+        column = values[:, k]
+        if np.ptp(column) <= 1e-12 * np.abs(column).max():
+            continue
+        indices = analysis.analyze(
+            problem, column, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
+        )
+        first[:, k] = indices["S1"], indices["S1_conf"]
+        total[:, k] = indices["ST"], indices["ST_conf"]
+    return _put_together(case, spreads, joint, list(quantities), found, names, first, total)
+
+
+@dataclass(frozen=True)
+class _Joint:
+    """Parameters with a covariance."""
+
+    addresses: list[str]
+    values: Floats
+    #: Root of the covariance of their logarithms
+    root: Floats
+
+    @classmethod
+    def read(cls, case: Case, source: Any) -> _Joint:
+        if source is None:
+            return cls([], np.empty(0), np.empty((0, 0)))
+        if not isinstance(source, Mapping):
+            try:
+                source = json.loads(Path(source).read_text(encoding="utf-8"))
+            except OSError as error:
+                raise FileError(f"{source}: {error.strerror}") from None
+            except ValueError as error:
+                raise InputError(f"{source}: {error}") from None
+        try:
+            prefix = f"{source['name']}." if "name" in source else ""
+            rows = source["parameters"]
+            addresses = [
+                row["name"] if "." in row["name"] else prefix + row["name"] for row in rows
+            ]
+            values = np.array([float(row["value"]) for row in rows])
+            covariance = np.array(source["covariance"], dtype=float)
+        except (KeyError, TypeError, ValueError):
+            raise InputError("--covariance: found no JSON of vcor fit or identify") from None
+        free = np.diag(covariance) > 0
+        if not (values[free] > 0).all() or not free.any():
+            raise InputError("--covariance: found no parameter > 0 with a standard error")
+        kept = np.flatnonzero(free)
+        scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
+        weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+        if weights.min() < -1e-8 * weights.max():
+            raise InputError("--covariance: the matrix is not positive")
+        for i in kept:
+            case[addresses[i]] = float(values[i])
+        return cls([addresses[i] for i in kept], values[kept], vectors * np.sqrt(weights.clip(0)))
+
+    def sample(self, share: Floats) -> Floats:
+        """Values at shares of independent normal numbers."""
+        found: Floats = self.values * np.exp(ndtri(share) @ self.root.T)
+        return found
+
+    @property
+    def deviations(self) -> Floats:
+        """Standard deviations of the logarithms."""
+        found: Floats = np.sqrt(np.sum(self.root**2, axis=1))
+        return found
+
+
+def _put_together(
+    case: Case,
+    spreads: list[Spread],
+    joint: _Joint,
+    quantities: list[str],
+    found: Floats,
+    names: list[str],
+    first: Floats,
+    total: Floats,
+) -> Uncertainty:
+    """The table of results."""
+    parameters = [spread.address for spread in spreads] + joint.addresses
+    value = np.array(list(case.solve(quantities=quantities).values()), dtype=float)
+    accurate = np.array(list(_accurate(case).solve(quantities=quantities).values()), dtype=float)
+    shown = found[np.isfinite(found).all(axis=1)]
+    exact = _exact(case, quantities)
+    deviations = np.array([spread.deviation for spread in spreads] + [
+        *(joint.values * joint.deviations)])  # fmt: skip
+    middle = np.array([_number(case, address, zero=True) for address in parameters])
+    ends = np.tile(middle, (2 * len(parameters), 1))
+    for i, deviation in enumerate(deviations):
+        ends[2 * i : 2 * i + 2, i] += [-deviation, deviation]
+    swing = _solve(case, parameters, ends, quantities).reshape(len(parameters), 2, -1)
+    elastic = np.full((len(quantities), len(parameters)), np.nan)
+    apart = [i for i, number in enumerate(middle) if number != 0]
+    if apart:
+        elastic[:, apart] = sensitivities(case, [parameters[i] for i in apart], quantities)
+    columns = _library.columns(0)
+    over, both = ("quantity",), ("quantity", "parameter")
+    table = xr.Dataset(
+        {
+            "value": (over, value),
+            "numerical": (over, np.abs(value - accurate)),
+            "material": (over, shown.std(axis=0, ddof=1)),
+            "model": (over, np.abs(exact - value)),
+            "mean": (over, shown.mean(axis=0)),
+            "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
+            "elasticity": (both, elastic),
+            "swing": (("quantity", "parameter", "side"), swing.transpose(2, 0, 1)),
+            "first": (("quantity", "source"), first[0]),
+            "first_error": (("quantity", "source"), first[1]),
+            "total": (("quantity", "source"), total[0]),
+            "total_error": (("quantity", "source"), total[1]),
+        },
+        coords={
+            "quantity": quantities,
+            "units": ("quantity", [columns[name].unit for name in quantities]),
+            "parameter": parameters,
+            "source": names,
+            "percent": list(PERCENTILES),
+            "side": ["below", "above"],
+        },
+    )
+    row = table.isel(quantity=0)
+    errors = {key: float(row[key]) for key in ("numerical", "material", "model")}
+    errors = {key: error for key, error in errors.items() if math.isfinite(error)}
+    dominant = max(errors, key=errors.__getitem__)
+    return Uncertainty(table, len(found), len(found) - len(shown), dominant)
+
+
+def _exact(case: Case, quantities: list[str]) -> Floats:
+    """Results of the exact linear theory; nan if they cannot be had."""
+    exact, found = case, np.full(len(quantities), np.nan)
+    for address, value in EXACT.items():
+        if address == "plate.waves" and case[address] == "none":
+            continue
+        trial = exact.copy()
+        try:
+            trial[address] = value
+            found = np.array(list(trial.solve(quantities=quantities).values()), dtype=float)
+        except InputError:
+            # what has no part in this impact, such as the pair of a rigid sphere
+            continue
+        except NumericalError:
+            found = np.full(len(quantities), np.nan)
+        exact = trial
+    return found
+
+
+def _accurate(case: Case | str | os.PathLike[str]) -> Case:
+    """A copy of the case that is solved to ACCURACY."""
+    case = (case if isinstance(case, Case) else read(case)).copy()
+    case["solver.accuracy"] = ACCURACY
+    return case
+
+
+def _solve(case: Case, addresses: list[str], table: Floats, quantities: Sequence[str]) -> Floats:
+    return case._handle.solve(addresses, table, list(quantities), 1)[0]
+
+
+def _number(case: Case, address: str, *, zero: bool = False) -> float:
+    value = case[address]
+    if not isinstance(value, (int, float)) or (value == 0 and not zero):
+        raise UsageError(f"{address}: found {value}, expected a number other than 0")
+    return float(value)
+
+
+def _plain(values: xr.DataArray) -> Any:
+    """Numbers for JSON, by the names of the last coordinate."""
+    if values.ndim == 0:
+        number = float(values)
+        return number if math.isfinite(number) else None
+    names = values[values.dims[0]].values
+    return {str(name): _plain(values[i]) for i, name in enumerate(names)}
+
+
+def _report(found: Uncertainty) -> str:
+    table = found.table
+    lines = [f"{'':26s}{'value':>13s}{'numerical':>11s}{'material':>11s}{'model':>11s}"
+             f"  {'95 % of the samples':26s}"]  # fmt: skip
+    for name in table.quantity.values:
+        row = table.sel(quantity=name)
+        if float(row["value"]) == 0 and float(row.material) == 0:
+            continue
+        unit = str(row.units.item())
+        text = f"{name} [{unit}]" if unit != "1" else str(name)
+        low, *_, high = row.percentiles.values
+        errors = "".join(f"{float(row[key]):11.2g}" for key in ("numerical", "material", "model"))
+        number = float(row["value"])
+        lines.append(f"{text:26s}{number:13.6g}{errors}  {low:.5g} to {high:.5g}")
+    name = str(table.quantity.values[0])
+    lines += ["", f"{name}: the {found.dominant} error is the largest", ""]
+    lines.append(f"{name + ' by parameter':34s}{'elasticity':>11s}")
+    lines += [
+        f"{str(one):34s}{float(table.elasticity.sel(quantity=name, parameter=one)):11.4f}"
+        for one in table.parameter.values
+    ]
+    lines += ["", f"{'share of the variance':34s}{'first':>8s}{'+-':>7s}{'total':>8s}{'+-':>7s}"]
+    for one in table.source.values:
+        row = table.sel(quantity=name, source=one)
+        lines.append(f"{str(one):34s}{float(row['first']):8.3f}{float(row.first_error):7.3f}"
+                     f"{float(row.total):8.3f}{float(row.total_error):7.3f}")  # fmt: skip
+    lines += ["", f"{found.samples} samples, {found.lost} of them without a result"]
+    return "\n".join(lines) + "\n"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor uncertainty`; exits with the codes of the program."""
+    parser = _command.Parser(
+        "uncertainty",
+        description="How uncertain the results of an impact are, and by what: errors of the "
+        "numbers, of the material and of the model, elasticities and Sobol' indices. Writes JSON "
+        "and a figure.",
+    )
+    parser.add_outputs()
+    add = parser.add_argument
+    add("case", metavar="CASE.nml")
+    spreads = "5%% (of its value), 0.1 (in its unit) or 1:2 (uniform)"
+    add("--vary", metavar="ADDRESS=SPREAD", action="append", default=[], help=spreads)
+    add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
+    add("--samples", metavar="N", type=int, default=4096, help="impacts that are solved, about")
+    add("--quantity", metavar="NAME,NAME", help="columns of the summary, the first is drawn")
+    add("--seed", type=int, default=1)
+    add("--threads", metavar="N", type=int)
+    with _command.one_line():
+        _work(parser.options(arguments))
+
+
+def _work(options: argparse.Namespace) -> None:
+    """Propagate and write the files."""
+    vary: dict[str, str | float] = {}
+    for word in options.vary:
+        address, _, vary[address] = word.partition("=")
+    found = propagate(
+        options.case,
+        vary,
+        covariance=options.covariance,
+        samples=options.samples,
+        quantities=options.quantity.split(",") if options.quantity else USUAL,
+        seed=options.seed,
+        threads=options.threads,
+    )
+    texts = {".json": json.dumps(found.as_dict(), indent=1) + "\n"}
+    figure = found.figure(str(found.table.quantity.values[0]))
+    stem = f"{Path(options.case).stem}_uncertainty"
+    _command.finish(options, str(found), stem, texts, figure)
+
+
+if __name__ == "__main__":
+    main()

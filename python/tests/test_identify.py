@@ -1,0 +1,225 @@
+"""Identification: parameters come back from data of an independent solver, and what is not said."""
+
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+import vcor
+from vcor import identification
+from vcor.data import Data
+
+DATA = ROOT / "python" / "tests" / "data"
+CASE = """&impact velocity = 1.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate half_thickness = 0.02, material = 'rubber', waves = 'none' /
+&contact law = 'receding' /
+&material name = 'steel', model = 'rigid', density = 7800 /
+&material name = 'rubber', density = 1100, poisson_ratio = 0.45, {} /
+"""
+TRUTH = {
+    "sls": {"glassy_modulus": 1.5e7, "alpha": 300, "beta": 1200},
+    "prony": {
+        "equilibrium_modulus": 3e6,
+        "moduli(1)": 6e6,
+        "moduli(2)": 4e6,
+        "times(1)": 2e-4,
+        "times(2)": 2e-3,
+    },
+    "power_law": {"equilibrium_modulus": 2e6, "coefficient": 1e5, "exponent": 0.5},
+    "mittag_leffler": {
+        "equilibrium_modulus": 2e6,
+        "relaxing_modulus": 1e7,
+        "exponent": 0.6,
+        "time": 1e-3,
+    },
+}
+
+
+def guess(model):
+    """A case whose parameters are off by 30 to 60 %."""
+    keys = {}
+    for i, (key, value) in enumerate(TRUTH[model].items()):
+        keys[key] = value * (0.9 if key == "exponent" else (1.5, 0.7, 1.3)[i % 3])
+    if model == "prony":
+        keys["moduli"] = f"{keys.pop('moduli(1)')}, {keys.pop('moduli(2)')}"
+        keys["times"] = f"{keys.pop('times(1)')}, {keys.pop('times(2)')}"
+    lines = ", ".join(f"{key} = {value}" for key, value in keys.items())
+    case = vcor.Case(CASE.format(f"model = '{model}', {lines}"))
+    case["contact.law"] = "boltzmann" if model == "mittag_leffler" else "receding"
+    return case
+
+
+@pytest.mark.parametrize("model", TRUTH)
+def test_noise_free_data_give_the_parameters(model):
+    free = [f"rubber.{key}" for key in TRUTH[model]]
+    found = vcor.identify(guess(model), DATA / f"impacts_of_{model}.csv", free)
+    for one, value in zip(found.estimates, TRUTH[model].values(), strict=True):
+        assert one.value == pytest.approx(value, rel=1e-5)
+        assert one.interval_95[0] <= one.interval_68[0] <= one.value
+        assert one.value <= one.interval_68[1] <= one.interval_95[1]
+    assert found.relative_error < 1e-6
+
+
+def columns():
+    return dict(Data(DATA / "impacts_of_sls.csv").columns)
+
+
+def test_coefficients_alone_do_not_fix_a_modulus():
+    data = columns()
+    del data["contact_time"]
+    free = [f"rubber.{key}" for key in TRUTH["sls"]]
+    with pytest.raises(vcor.NumericalError) as caught:
+        vcor.identify(guess("sls"), data, free, errors={"cor": 0.01})
+    # k to c k and t to c^(-2/5) t changes no coefficient of restitution
+    text = str(caught.value)
+    assert "rubber.glassy_modulus^-0.4*rubber.alpha" in text
+    assert "rubber.glassy_modulus^-0.4*rubber.beta" in text
+    assert "contact_time" in text
+    assert "cor_sphere" not in text.split("give a")[1]
+    found = vcor.identify(
+        guess("sls"), data, free, fix={"rubber.glassy_modulus": 1.5e7}, errors={"cor": 0.01}
+    )
+    assert [one.address for one in found.estimates] == ["rubber.alpha", "rubber.beta"]
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
+
+
+def test_errors_of_contact_times_give_those_of_the_parameters():
+    # linear algebra on elasticities of another function
+    data = columns()
+    free = [f"rubber.{key}" for key in TRUTH["sls"]]
+    errors = {"cor": 0.01, "contact_time": 0.01}
+    found = vcor.identify(guess("sls"), data, free, errors=errors)
+    rows = []
+    for velocity in data["velocity"]:
+        found.case["impact.velocity"] = float(velocity)
+        rows += list(vcor.sensitivities(found.case, free, ["cor", "contact_time"]).values)
+    slopes = np.array(rows) / 0.01
+    covariance = np.linalg.inv(slopes.T @ slopes)
+    assert np.allclose(found.covariance, covariance, rtol=1e-3)
+
+
+def test_record_of_force_with_unknown_start():
+    case = guess("sls")
+    truth = case.copy()
+    for key, value in TRUTH["sls"].items():
+        truth[f"rubber.{key}"] = float(value)
+    history = truth.history()
+    times = np.linspace(-0.0003, 1.2 * float(history.time[-1]), 80)
+    forces = np.interp(times, history.time, history.force, left=0, right=0)
+    data = {"time": times + 0.7, "force": forces}
+    found = vcor.identify(case, data, [f"rubber.{key}" for key in TRUTH["sls"]])
+    for one, value in zip(found.estimates, TRUTH["sls"].values(), strict=True):
+        assert one.value == pytest.approx(value, rel=2e-2)
+    assert found.relative_error < 2e-3
+
+
+def test_impacts_and_moduli_together():
+    case = guess("sls")
+    times = np.geomspace(1e-4, 1e-2, 12)
+    moduli = 1.5e7 * (0.25 + 0.75 * np.exp(-1200 * times))
+    impacts = columns()
+    del impacts["contact_time"]
+    data = [impacts, {"time": times, "relaxation_modulus": moduli}]
+    errors = {"cor": 0.01, "relaxation_modulus": 0.02}
+    found = vcor.identify(case, data, [f"rubber.{key}" for key in TRUTH["sls"]], errors=errors)
+    assert found["rubber.glassy_modulus"] == pytest.approx(1.5e7, rel=1e-5)
+    alone = vcor.identify(
+        case,
+        data[1],
+        [f"rubber.{key}" for key in TRUTH["sls"]],
+        errors={"relaxation_modulus": 0.02},
+    )
+    assert (np.diag(found.covariance) < np.diag(alone.covariance)).all()
+
+
+def test_drops_and_bounces():
+    case = guess("sls")
+    case["rubber.alpha"], case["rubber.beta"] = 300.0, 1200.0
+    data, g = columns(), 9.80665
+    velocity, cor = data["velocity"], data["cor"]
+    free = ["rubber.beta"]
+    errors = {"cor_sphere": 0.01}
+    heights = {"drop_height": velocity**2 / 2 / g, "rebound_height": (cor * velocity) ** 2 / 2 / g}
+    case["rubber.glassy_modulus"] = 1.5e7
+    found = vcor.identify(case, heights, free, errors=errors)
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
+    times = [2 * 5.0 / g]
+    for _ in range(4):
+        truth = case.copy()
+        truth["rubber.beta"] = 1200.0
+        speed = g * times[-1] / 2
+        times.append(times[-1] * truth.solve({"impact.velocity": speed})["cor_sphere"])
+    found = vcor.identify(case, {"bounce_time": times}, free, errors=errors)
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-6)
+    assert len(found.data) == 4
+
+
+def test_models_are_compared():
+    free = [f"rubber.{key}" for key in TRUTH["sls"]]
+    data = columns()
+    rng = np.random.default_rng(1)
+    data["cor"] = data["cor"] * (1 + 0.01 * rng.normal(size=10))
+    data["contact_time"] = data["contact_time"] * (1 + 0.01 * rng.normal(size=10))
+    errors = {"cor": 0.01, "contact_time": 0.01}
+    found = {
+        name: vcor.identify(guess("sls"), data, free, errors=errors, model=name)
+        for name in ("sls", "power_law")
+    }
+    assert found["sls"].aic + 10 < found["power_law"].aic
+    assert found["sls"].bic - found["sls"].aic == pytest.approx(3 * (math.log(20) - 2))
+
+
+def test_command_writes_case_numbers_and_figure(tmp_path, capsys):
+    (tmp_path / "rubber.nml").write_text(guess("sls").text())
+    words = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv", "--free"]
+    words += ["rubber.alpha,rubber.beta,rubber.glassy_modulus", "--error", "cor=1%"]
+    words += ["--error", "contact_time=2%", "--output", tmp_path / "out"]
+    identification.main([str(word) for word in words])
+    said = capsys.readouterr().out
+    assert "rubber.alpha [1/s]" in said
+    assert "what would help most" in said
+    written = json.loads((tmp_path / "out" / "rubber_identified.json").read_text())
+    values = {one["name"]: one["value"] for one in written["parameters"]}
+    assert values["rubber.beta"] == pytest.approx(1200, rel=1e-5)
+    assert len(written["data"]) == 20
+    case = vcor.read(tmp_path / "out" / "rubber_identified.nml")
+    assert case["rubber.alpha"] == pytest.approx(300, rel=1e-5)
+    assert (tmp_path / "out" / "rubber_identified.svg").read_text().startswith("<?xml")
+
+
+@pytest.mark.parametrize(
+    ("data", "free", "said"),
+    [
+        ({"velocity": [1.0], "cur": [0.5]}, ["rubber.beta"], "cur"),
+        ({"velocity": [1.0, 2.0], "cor": [0.5]}, ["rubber.beta"], "different lengths"),
+        ({"velocity": [1.0, 2.0], "cor": [0.5, 0.4]}, ["rubber.bet"], "beta"),
+        ({"velocity": [1.0, 2.0], "cor": [0.5, 0.4]}, [], "free parameter"),
+        ({"velocity": [1.0], "cor": [0.5]}, ["rubber.beta"], "expected more"),
+        ({"velocity": [1.0, 2.0], "cor": [0.5, -0.4]}, ["rubber.beta"], "> 0"),
+        ("none.csv", ["rubber.beta"], "none.csv"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(data, free, said):
+    with pytest.raises(vcor.Error) as caught:
+        vcor.identify(guess("sls"), data, free)
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_table_of_rebound():
+    rows = re.findall(
+        r"^\| (0\.\d+) \| [\d.]+ \| ([\d.]+) \| ([\d.]+) \|",
+        (ROOT / "docs" / "rebound.md").read_text("utf-8"),
+        re.M,
+    )
+    assert len(rows) == 8
+    case = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
+    for exponent, exact, boltzmann in rows:
+        case["rubber.exponent"] = float(exponent)
+        for law, wanted in (("receding", exact), ("boltzmann", boltzmann)):
+            case["contact.law"] = law
+            assert case.solve()["cor"] == pytest.approx(float(wanted), abs=6e-6)

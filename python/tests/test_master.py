@@ -1,0 +1,120 @@
+"""Master curves: shift factors of moduli that were made with known ones."""
+
+import json
+
+import numpy as np
+import pytest
+
+import vcor
+from vcor import master_curve
+
+C1, C2, REFERENCE = 12.0, 80.0, 293.15
+
+
+def moduli(at, temperature, dynamic):
+    """Moduli of a fractional solid whose times follow WLF."""
+    shift = 10 ** (-C1 * (temperature - REFERENCE) / (C2 + temperature - REFERENCE))
+    if not dynamic:
+        return 1e6 + 1e9 / (1 + (at / shift) ** 0.4)
+    p = (1j * at * shift) ** 0.4
+    found = 1e6 + 1e9 * p / (1 + p)
+    return found.real, found.imag
+
+
+def file_of(path, temperatures, dynamic=True, noise=0.0):
+    """A file of moduli in the raw format of pyvisco."""
+    rng = np.random.default_rng(5)
+    at = np.geomspace(0.1, 100, 10)
+    lines = ["f,E_stor,E_loss,T,Set", "Hz,MPa,MPa,C,-"] if dynamic else [
+        "t,E_relax,T,Set", "s,MPa,°C,-"]  # fmt: skip
+    for i, t in enumerate(temperatures):
+        for one in at if dynamic else at[::-1]:
+            row = moduli(2 * np.pi * one if dynamic else one, t + 273.15, dynamic)
+            row = np.atleast_1d(row) * (1 + noise * rng.normal(size=np.size(row))) / 1e6
+            lines.append(",".join(map(str, [one, *row, t, i])))
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8-sig")
+    return path
+
+
+@pytest.mark.parametrize("dynamic", [True, False])
+def test_shift_factors_and_constants_come_back(tmp_path, dynamic):
+    temperatures = np.arange(0, 60, 5)
+    path = file_of(tmp_path / "raw.csv", temperatures, dynamic)
+    found = vcor.master(path, reference_temperature=REFERENCE)
+    wanted = -C1 * (temperatures - 20) / (C2 + temperatures - 20)
+    assert np.allclose(found.temperatures, temperatures + 273.15)
+    assert np.allclose(found.log_shift, wanted, atol=0.01)
+    wlf = found.laws[0]
+    assert wlf.values["wlf_c1"] == pytest.approx(C1, rel=0.02)
+    assert wlf.values["wlf_c2"] == pytest.approx(C2, rel=0.02)
+    at, *rest = found.curve()
+    assert (np.diff(at) >= 0).all()
+    wanted = moduli(at, REFERENCE, dynamic)
+    assert np.allclose(rest[0], wanted[0] if dynamic else wanted, rtol=0.01)
+
+
+def test_errors_are_those_of_the_noise(tmp_path):
+    temperatures = np.arange(0, 60, 5)
+    path = file_of(tmp_path / "raw.csv", temperatures, noise=0.01)
+    found = vcor.master(path, reference_temperature=REFERENCE)
+    wanted = -C1 * (temperatures - 20) / (C2 + temperatures - 20)
+    away = found.log_error > 0
+    ratio = (found.log_shift - wanted)[away] / found.log_error[away]
+    assert np.abs(ratio).max() < 4
+    assert found.log_error[away].max() < 0.5
+
+
+def test_one_file_per_temperature(tmp_path):
+    names = []
+    for t in (10, 20, 30):
+        at = np.geomspace(1, 1000, 12)
+        storage, loss = moduli(at, t + 273.15, True)
+        path = tmp_path / f"at{t}.csv"
+        rows = "".join(f"{a},{s},{b}\n" for a, s, b in zip(at, storage, loss, strict=True))
+        path.write_text("omega [rad/s],E_stor [Pa],E_loss [Pa]\n" + rows)
+        names.append(f"{path}@{t}C")
+    found = vcor.master(names)
+    assert found.reference_temperature == pytest.approx(293.15)
+    assert found.log_shift[0] == pytest.approx(C1 * 10 / (C2 - 10), abs=0.02)
+
+
+def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
+    path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5))
+    master_curve.main([str(path), "--reference", "20C", "--output", str(tmp_path)])
+    assert "wlf_c1" in capsys.readouterr().out
+    written = json.loads((tmp_path / "raw_master.json").read_text())
+    assert written["laws"][0]["law"] == "WLF"
+    assert vcor.fit(tmp_path / "raw_master.csv", model="prony", name="rubber").rms < 0.02
+    case = vcor.Case(
+        "&impact velocity = 2, temperature = 303.15 /\n"
+        "&sphere radius = 0.01, material = 'steel' /\n"
+        "&plate material = 'rubber', waves = 'none' /\n"
+        "&material name = 'steel', model = 'rigid', density = 7800 /\n"
+        "&material name = 'rubber', model = 'power_law', poisson_ratio = 0.5,"
+        " coefficient = 1e6, exponent = 0.3,"
+        " equilibrium_modulus = 1e6, reference_temperature = 293.15,"
+        " shift = 'table',"
+        " shift_file = 'raw_master_shift.csv' /\n",
+        name=str(tmp_path / "case.nml"),
+    )
+    by_table = case.solve()["cor"]
+    text = str(case).replace("shift = 'table'", f"shift = 'wlf'\n wlf_c1 = {C1}\n wlf_c2 = {C2}")
+    lines = [line for line in text.splitlines() if "shift_file" not in line]
+    by_law = vcor.Case("\n".join(lines) + "\n").solve()["cor"]
+    assert by_table == pytest.approx(by_law, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("f,E_stor,E_loss\n1,2,3\n2,3,4\n", "no column of temperatures"),
+        ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,2,3,20\n2,3,4,20\n3,4,5,20\n", "two or more"),
+        ("f,E_stor,E_loss,T\nHz,MPa,MPa,F\n1,2,3,20\n2,3,4,20\n", "unit of the temperatures"),
+    ],
+)
+def test_bad_files_are_refused_in_one_line(tmp_path, text, said):
+    path = tmp_path / "raw.csv"
+    path.write_text(text)
+    with pytest.raises(vcor.InputError) as caught:
+        vcor.master(path)
+    assert said in str(caught.value)

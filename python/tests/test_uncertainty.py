@@ -1,0 +1,123 @@
+"""Uncertainty: elasticities against independent differences, Sobol' indices against known ones."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import PAPER
+
+import vcor
+from vcor import uncertainty
+
+MATERIAL = ["rubber.glassy_modulus", "rubber.alpha", "rubber.beta"]
+
+
+@pytest.fixture
+def half_space(sls):
+    """The SLS of the paper without waves: its scaling laws are known."""
+    sls["plate.waves"] = "none"
+    return sls
+
+
+def test_elasticities_obey_the_scaling_of_a_half_space(half_space):
+    # cor depends on alpha/beta and on beta T alone, T^5 proportional to m^2/(R E^2 v)
+    found = vcor.sensitivities(half_space, [*MATERIAL, "impact.velocity"], ["cor", "contact_time"])
+    modulus, alpha, beta, velocity = found.sel(quantity="cor").values
+    assert modulus == pytest.approx(-0.4 * (alpha + beta), rel=1e-7)
+    assert velocity == pytest.approx(-0.2 * (alpha + beta), rel=1e-7)
+    modulus, alpha, beta, velocity = found.sel(quantity="contact_time").values
+    assert modulus == pytest.approx(-0.4 * (1 + alpha + beta), rel=1e-7)
+    assert velocity == pytest.approx(-0.2 * (1 + alpha + beta), rel=1e-7)
+
+
+def test_elasticities_at_the_end_of_a_range(half_space):
+    # E' = E/(1 - nu^2): what a modulus does, times 2 nu^2/(1 - nu^2)
+    half_space["rubber.poisson_ratio"] = 0.5
+    found = vcor.sensitivities(
+        half_space, ["rubber.glassy_modulus", "rubber.poisson_ratio"], ["cor"]
+    )
+    modulus, ratio = found.sel(quantity="cor").values
+    assert ratio == pytest.approx(modulus * 2 * 0.25 / 0.75, rel=1e-3)
+
+
+def test_small_spreads_are_linear(sls):
+    vary = {"rubber.alpha": 0.001, "rubber.beta": 0.002}
+    found = vcor.propagate(sls, vary, samples=2048, quantities=["cor"])
+    elastic = found.table.elasticity.sel(quantity="cor").values
+    wanted = (elastic * [0.001, 0.002]) ** 2
+    row = found.table.sel(quantity="cor")
+    assert float(row.material / row["value"]) == pytest.approx(wanted.sum() ** 0.5, rel=0.03)
+    share = wanted / wanted.sum()
+    assert np.allclose(row["first"], share, atol=0.05)
+    assert np.allclose(row["total"], share, atol=0.05)
+    assert float(row.numerical) < 1e-6
+    below, above = row.swing.sel(parameter="rubber.beta").values
+    assert below > float(row["value"]) > above
+    assert (row.percentiles.diff("percent") > 0).all()
+
+
+def test_covariance_counts_as_one_parameter(half_space, tmp_path):
+    # modulus and rates that go together as k to c k, t to c^(-2/5) t change nothing
+    size = 0.05
+    direction = np.array([1.0, 0.4, 0.4])
+    values = np.array([1.5e7, 300.0, 1200.0])
+    covariance = size**2 * np.outer(direction * values, direction * values)
+    source = {
+        "parameters": [{"name": n, "value": v} for n, v in zip(MATERIAL, values, strict=True)],
+        "covariance": covariance.tolist(),
+    }
+    file = tmp_path / "fit.json"
+    file.write_text(json.dumps(source))
+    found = vcor.propagate(
+        half_space, {"sphere.radius": 0.01}, covariance=file, samples=512,
+        quantities=["cor", "max_force"],
+    )  # fmt: skip
+    assert list(found.table.source.values) == ["sphere.radius", "covariance"]
+    total = found.table.total.sel(quantity="cor").values
+    assert total[1] == pytest.approx(0, abs=1e-6)
+    assert float(found.table.total.sel(quantity="max_force", source="covariance")) > 0.3
+
+
+def test_model_error_is_the_distance_to_the_exact_mechanics(half_space):
+    found = vcor.propagate(half_space, {"rubber.beta": 0.01}, samples=64, quantities=["cor"])
+    exact = half_space.copy()
+    exact["contact.law"] = "receding"
+    difference = exact.solve()["cor"] - half_space.solve()["cor"]
+    assert float(found.table.model.sel(quantity="cor")) == pytest.approx(abs(difference), rel=1e-9)
+    assert found.dominant == "model"
+
+
+def test_the_same_seed_gives_the_same_numbers(sls):
+    one, two = (vcor.propagate(sls, {"rubber.beta": "5%"}, samples=64) for _ in range(2))
+    assert one.as_dict() == two.as_dict()
+
+
+def test_command(tmp_path, capsys):
+    words = [PAPER / "sls.nml", "--vary", "rubber.beta=5%", "--vary", "impact.velocity=9:11"]
+    words += ["--samples", "64", "--output", tmp_path]
+    uncertainty.main([str(word) for word in words])
+    said = capsys.readouterr().out
+    assert "numerical   material      model" in said
+    written = json.loads((tmp_path / "sls_uncertainty.json").read_text())
+    assert set(written["quantities"]["cor"]["elasticity"]) == {"rubber.beta", "impact.velocity"}
+    assert (tmp_path / "sls_uncertainty.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("word", "said"),
+    [
+        ("rubber.beta", "expected such as 5%"),
+        ("rubber.beta=-5%", "larger than 0"),
+        ("rubber.beta=2:1", "expected such as"),
+        ("rubber.bta=5%", "bta"),
+        ("rubber.model=5%", "expected a number"),
+    ],
+)
+def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
+    with pytest.raises(SystemExit) as caught:
+        uncertainty.main([str(PAPER / "sls.nml"), "--vary", word, "--output", str(tmp_path)])
+    assert caught.value.code in (2, 3)
+    error = capsys.readouterr().err
+    assert error.startswith("vcor: error: ")
+    assert error.count("\n") == 1
+    assert said in error
