@@ -44,6 +44,7 @@ NAMES = [
     "weight_ratio",
     "mean_pressure",
     "half_space_loss",
+    "footprint_effect",
     "peak_loss_tangent",
     "validity",
     "validity_cause",

@@ -56,6 +56,15 @@ def test_default_footprint_is_continuous(vcor):
     assert abs(found[2] - 2.0 * found[1] + found[0]) <= 3e-8
 
 
+def test_footprint_effect(vcor):
+    """It is what the screen of two runs shows."""
+    vcor.write(text("pmma"))
+    radius = 1.25 * IMPACTS["pmma"][3]
+    effect, cor = (float(x) for x in vcor.succeeds("run", "case.nml", "--print", "footprint_effect,cor").split())
+    other = float(vcor.succeeds("run", "case.nml", "--print", "cor", "--set", f"plate.footprint={radius!r}"))
+    assert effect == pytest.approx(other - cor, abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("setting", "reason"),
     [

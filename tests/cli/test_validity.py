@@ -74,7 +74,7 @@ def test_numbers_that_there_are_not(vcor):
     """Of two spheres, of a rigid plate, without waves."""
     row = numbers(vcor, BEADS)
     plates = ["thickness_ratio", "plate_wave_number", "needed_extent", "deflection_ratio"]
-    for name in [*plates, "half_space_loss", "rebound_height"]:
+    for name in [*plates, "half_space_loss", "rebound_height", "footprint_effect"]:
         assert math.isnan(row[name]), name
     assert row["validity"] == "good"
     row = numbers(vcor, BEADS.replace("surface_radius = 2.995e-3", "surface_radius = 0"))

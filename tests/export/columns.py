@@ -28,6 +28,7 @@ SUMMARY = {
     "weight_ratio": "1",
     "mean_pressure": "Pa",
     "half_space_loss": "1",
+    "footprint_effect": "1",
     "peak_loss_tangent": "1",
     "validity": "",
     "validity_cause": "",

@@ -373,7 +373,28 @@ contains
       if (allocated(error) .or. outcome%status /= contact_separated) return
       call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
          self%plate%material)
+      if (self%impact%plate%layered()) &
+         outcome%footprint_effect = cor_with_larger_footprint(self) - outcome%cor
    end subroutine solve
+
+   !> Coefficient of restitution with a 1.25 times larger disc on the layer
+   function cor_with_larger_footprint(self) result(cor)
+      !> The problem, of a layer
+      type(problem_t), intent(in) :: self
+      !> Coefficient [-], NaN where there is none
+      real(wp) :: cor
+
+      real(wp), parameter :: larger = 1.25_wp
+      type(impact_t) :: impact
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      impact = self%impact
+      impact%plate%footprint = larger*impact%plate%footprint
+      call solve_impact(self%solver, impact, trajectory, outcome, error)
+      cor = outcome%cor
+   end function cor_with_larger_footprint
 
    !> Follow what the measures of validity know beside the impact
    subroutine look_around(self, case)

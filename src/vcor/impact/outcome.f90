@@ -91,6 +91,8 @@ module vcor_impact_outcome
       real(wp) :: mean_pressure = none
       !> Energy radiated into a half space in place of the plate, over `initial_energy` [-]
       real(wp) :: half_space_loss = none
+      !> Change of `cor` where the disc that loads a layer is 1.25 times larger [-]
+      real(wp) :: footprint_effect = none
       !> Loss tangent of the contact modulus at pi/t0 [-]
       real(wp) :: peak_loss_tangent = none
       !> One of the `level_*` constants of `vcor_impact_validity`
