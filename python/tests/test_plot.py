@@ -449,6 +449,7 @@ def bad(results):
         (["sweep.h5", "radius.h5"], 3, "over 'sphere.radius', that of the first file"),
         (["sweep.h5", "--quantity", "force"], 2, "no quantity 'force', expected one of cor,"),
         (["sweep.h5", "--quantity", "status"], 2, "no quantity 'status'"),
+        (["sls_ghost.h5", "--quantity", "cor"], 2, "--quantity.*history"),
         (["sweep.h5", "--kind", "loop"], 3, "no time history"),
         (["sls_ghost.h5", "--kind", "moduli"], 3, "no moduli"),
         (["sls_ghost.h5", "--kind", "sweep"], 3, "found 0 swept parameters"),

@@ -6,11 +6,9 @@ Lengths, times and the like are shown in units that suit them; files are in SI u
 
 from __future__ import annotations
 
-import contextlib
 import io
 import math
 import os
-import re
 import sys
 import textwrap
 import warnings
@@ -19,7 +17,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import h5netcdf
 import matplotlib as mpl
 import matplotlib.style
 import numpy as np
@@ -32,10 +29,9 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from . import _command
 from ._command import printable
-from ._library import Error, FileError, Floats, Handle, InputError, UsageError
-from .case import Case
+from ._library import Floats, InputError, UsageError
 from .data import PREFIXES, Data
-from .results import open as open_results
+from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
 KINDS = ("history", "loop", "moduli", "sweep", "map")
@@ -47,107 +43,7 @@ MOST = 8
 _SCALED = ("m", "s", "N", "Pa", "J", "kg", "W")
 _WORDS = {"cor": "coefficient of restitution", "min_frequency": "lowest frequency of interest"}
 _OUTSIDE = "outside of the model's validity"
-#: What completes a file of &material groups to a case that has their moduli
-_AROUND = "&impact velocity = 1.0 /\n&sphere radius = 1.0, mass = 1.0, material = '{name}' /\n" + (
-    "&plate waves = 'none', material = '{name}' /\n"
-)
 _Range = tuple[float | None, float | None]
-_Source = str | os.PathLike[str] | xr.Dataset
-
-
-class Result:
-    """Results of a file, materials of a file, or a sweep: its summary, and what else it holds."""
-
-    def __init__(self, source: _Source) -> None:
-        self.path = "sweep" if isinstance(source, xr.Dataset) else os.fspath(source)
-        self._moduli: dict[str, xr.Dataset] = {}
-        self.groups: set[str] = set()
-        if isinstance(source, xr.Dataset):
-            self.summary = source
-        elif self.path.endswith(".nml"):
-            self.summary, self._moduli = xr.Dataset(), _moduli_of(self.path)
-            self.groups |= set(self._moduli)
-        else:
-            self.summary = open_results(source)
-            with h5netcdf.File(self.path, "r") as file:
-                self.groups |= set(file.groups)
-        self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
-        self.case = str(self.summary.attrs.get("case", ""))
-        self.title = printable(str(self.summary.attrs.get("title", "")))
-
-    def group(self, name: str, what: str, *columns: str) -> xr.Dataset:
-        """A group of the file with some columns; refused if there is none."""
-        if name not in self.groups:
-            raise InputError(f"{self.path}: there is no {what} in this file")
-        found = self._moduli[name] if self._moduli else open_results(self.path, name)
-        for column in columns:
-            if column not in found:
-                raise InputError(f"{self.path}: there is no '{column}' in '{name}' of this file")
-        return found
-
-    def kind(self) -> str:
-        """Kind of figure that the file is for."""
-        for group, kind in (("relaxation", "moduli"), ("history", "history")):
-            if group in self.groups:
-                return kind
-        if self.axes:
-            return "map" if len(self.axes) == 2 else "sweep"
-        raise InputError(
-            f"{self.path}: there is a single impact without a time history in this file, of which "
-            "no figure is made; run it with output.history = .true."
-        )
-
-    def number(self, name: str) -> float:
-        """A number of the summary of a single impact, nan if it is not there."""
-        return float(self.summary[name]) if name in self.summary else math.nan
-
-    def column(self, name: str) -> xr.DataArray:
-        """A quantity of a sweep."""
-        numeric = [str(n) for n, v in self.summary.data_vars.items() if v.dtype.kind in "fi"]
-        if name not in numeric:
-            raise UsageError(
-                f"{self.path}: found no quantity '{name}', expected one of {', '.join(numeric)}"
-            )
-        if not np.isfinite(self.summary[name]).any():
-            raise InputError(f"{self.path}: '{name}' has no value at any point of this sweep")
-        return self.summary[name]
-
-
-def _moduli_of(path: str) -> dict[str, xr.Dataset]:
-    """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from None
-    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
-    if not names:
-        raise InputError(f"{path}: there is no material with a name in this file")
-    alone = not re.search(r"^\s*&impact\b", text, re.MULTILINE | re.IGNORECASE)
-    case = Case(text + (_AROUND.format(name=names[0]) if alone else ""), name=path)
-    parts: list[xr.Dataset] = []
-    for name in names:
-        address = name.replace(" ", "_")
-        first, last = (case[f"{address}.valid_{end}"] for end in ("from", "to"))
-        if not (isinstance(first, float) and isinstance(last, float)):
-            continue
-        time = np.geomspace(first, last, 200)
-        material, frequency = case.material(name), 1.0 / time[::-1]
-        modulus = material.complex_modulus(frequency)
-        dynamic = {"storage_modulus": modulus.real, "loss_modulus": modulus.imag}
-        dynamic["loss_tangent"] = modulus.imag / modulus.real
-        for at, over, columns in (
-            ("time", time, {"relaxation_modulus": material.relaxation(time)}),
-            ("frequency", frequency, dynamic),
-        ):
-            data = {key: (at, column) for key, column in columns.items()}
-            parts.append(xr.Dataset(data, {at: over, "material": name}))
-    if not parts:
-        raise InputError(
-            f"{path}: no material has valid_from and valid_to, between which its moduli are drawn; "
-            "draw the file that vcor material makes"
-        )
-    both = {"relaxation": parts[::2], "dynamic": parts[1::2]}
-    return {key: xr.concat(some, "material", join="outer") for key, some in both.items()}
 
 
 @dataclass
@@ -168,10 +64,10 @@ class _Wishes:
 
 
 def figure(
-    files: Sequence[_Source],
+    files: Sequence[Source],
     *,
     kind: str | None = None,
-    quantities: Sequence[str] = ("cor",),
+    quantities: Sequence[str] | None = None,
     legends: Sequence[str] = (),
     log: str | None = None,
     ranges: dict[str, _Range] | None = None,
@@ -189,7 +85,7 @@ def figure(
     kind
         One of `KINDS`; None: what the first file is for.
     quantities
-        Columns of the summary for sweeps and maps, a panel each.
+        Columns of the summary for sweeps and maps, a panel each; None: cor.
     legends
         A text for each file of results; none: titles, or what differs in the cases.
     log
@@ -209,8 +105,8 @@ def figure(
     matplotlib.figure.Figure
         The figure, to be changed or saved.
     """
-    results = [Result(source) for source in files if _is_result(source)]
-    data = [Data(name) for name in files if not (isinstance(name, xr.Dataset) or _is_result(name))]
+    results = [Result(source) for source in files if is_result(source)]
+    data = [Data(name) for name in files if not (isinstance(name, xr.Dataset) or is_result(name))]
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
@@ -223,6 +119,8 @@ def figure(
     kind = kind or results[0].kind()
     if kind not in KINDS:
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
+    if quantities and kind not in ("sweep", "map"):
+        raise UsageError(f"found --quantity, which a figure of kind {kind} does not show")
     if width is not None and not COLUMN / 2 <= width <= 10 * PAGE:
         raise UsageError(f"found a width of {width:g} cm, expected 4.25 to 170")
     for result in results[1:]:
@@ -231,9 +129,10 @@ def figure(
                 f"{result.path}: this file is for a figure of kind {result.kind()}, "
                 f"{results[0].path} for one of kind {results[0].kind()}"
             )
-    texts = list(map(printable, legends)) or _legends(results)
+    texts = list(map(printable, legends)) or legends_of(results)
+    names = quantities or ("cor",)
     wishes = _Wishes(
-        results, texts, bool(legends), data, quantities, log, ranges or {}, levels, hatch, width
+        results, texts, bool(legends), data, names, log, ranges or {}, levels, hatch, width
     )
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
@@ -247,10 +146,6 @@ def figure(
                 "shows; expected those of its axes"
             )
     return made
-
-
-def _is_result(source: _Source) -> bool:
-    return isinstance(source, xr.Dataset) or os.fspath(source).endswith((".h5", ".nml"))
 
 
 # ------------------------------------------------------------------------------- kinds
@@ -723,47 +618,6 @@ def _label_short_decades(which: Any) -> None:
         which.set_minor_formatter(lambda *_: "")
 
 
-def _legends(results: list[Result]) -> list[str]:
-    """Texts of the legend: titles, or up to three values in which the cases differ, or names."""
-    titles = [result.title for result in results]
-    if all(titles) and len(set(titles)) == len(titles):
-        return titles
-    values = [_values(result.case) for result in results]
-    keys = [key for key in values[0] if len({one.get(key) for one in values}) > 1]
-    keys = [key for key in keys if not key.startswith(("case.", "output."))]
-    if 0 < len(keys) <= 3:
-        units = {}
-        for key in keys:
-            with contextlib.suppress(Error):
-                units[key] = Handle(results[0].case, results[0].path).describe(key).unit
-        words = [
-            ", ".join(
-                f"{key.rpartition('.')[2].replace('_', ' ')} = "
-                f"{one.get(key, '').removesuffix('.0')} {units.get(key, '')}".strip()
-                for key in keys
-            )
-            for one in values
-        ]
-        if len(set(words)) == len(words):
-            return words
-    return [printable(Path(result.path).stem) for result in results]
-
-
-def _values(case: str) -> dict[str, str]:
-    """Addresses and values of a case as it is printed."""
-    found: dict[str, str] = {}
-    group = ""
-    for line in map(printable, case.splitlines()):
-        if line.startswith("&"):
-            group = line[1:].strip()
-        key, mark, value = (part.strip() for part in line.partition(" = "))
-        if mark and group == "material" and key == "name":
-            group = value.strip("'").replace(" ", "_")
-        if mark:
-            found[f"{group}.{key}"] = value
-    return found
-
-
 # ----------------------------------------------------------------------------- command
 
 
@@ -845,7 +699,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         options = _parser().options(arguments)
         settings = _settings(options)
         made = figure(options.files, **settings)
-        first = next(name for name in options.files if _is_result(name))
+        first = next(name for name in options.files if is_result(name))
         usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
         path = _command.place(options.output, usual, FORMATS, options.format, options.files)
         save(made, path)

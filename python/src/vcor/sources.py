@@ -1,0 +1,165 @@
+"""What figures are made from: files of results, materials, and sweeps in memory."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import os
+import re
+from pathlib import Path
+
+import h5netcdf
+import numpy as np
+import xarray as xr
+
+from ._command import printable
+from ._library import Error, FileError, Handle, InputError, UsageError
+from .case import Case
+from .results import open as open_results
+
+Source = str | os.PathLike[str] | xr.Dataset
+#: What completes a file of &material groups to a case that has their moduli
+_AROUND = "&impact velocity = 1.0 /\n&sphere radius = 1.0, mass = 1.0, material = '{name}' /\n" + (
+    "&plate waves = 'none', material = '{name}' /\n"
+)
+
+
+class Result:
+    """Results of a file, materials of a file, or a sweep: its summary, and what else it holds."""
+
+    def __init__(self, source: Source) -> None:
+        self.path = "sweep" if isinstance(source, xr.Dataset) else os.fspath(source)
+        self._moduli: dict[str, xr.Dataset] = {}
+        self.groups: set[str] = set()
+        if isinstance(source, xr.Dataset):
+            self.summary = source
+        elif self.path.endswith(".nml"):
+            self.summary, self._moduli = xr.Dataset(), _moduli_of(self.path)
+            self.groups |= set(self._moduli)
+        else:
+            self.summary = open_results(source)
+            with h5netcdf.File(self.path, "r") as file:
+                self.groups |= set(file.groups)
+        self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
+        self.case = str(self.summary.attrs.get("case", ""))
+        self.title = printable(str(self.summary.attrs.get("title", "")))
+
+    def group(self, name: str, what: str, *columns: str) -> xr.Dataset:
+        """A group of the file with some columns; refused if there is none."""
+        if name not in self.groups:
+            raise InputError(f"{self.path}: there is no {what} in this file")
+        found = self._moduli[name] if self._moduli else open_results(self.path, name)
+        for column in columns:
+            if column not in found:
+                raise InputError(f"{self.path}: there is no '{column}' in '{name}' of this file")
+        return found
+
+    def kind(self) -> str:
+        """Kind of figure that the file is for."""
+        for group, kind in (("relaxation", "moduli"), ("history", "history")):
+            if group in self.groups:
+                return kind
+        if self.axes:
+            return "map" if len(self.axes) == 2 else "sweep"
+        raise InputError(
+            f"{self.path}: there is a single impact without a time history in this file, of which "
+            "no figure is made; run it with output.history = .true."
+        )
+
+    def number(self, name: str) -> float:
+        """A number of the summary of a single impact, nan if it is not there."""
+        return float(self.summary[name]) if name in self.summary else math.nan
+
+    def column(self, name: str) -> xr.DataArray:
+        """A quantity of a sweep."""
+        numeric = [str(n) for n, v in self.summary.data_vars.items() if v.dtype.kind in "fi"]
+        if name not in numeric:
+            raise UsageError(
+                f"{self.path}: found no quantity '{name}', expected one of {', '.join(numeric)}"
+            )
+        if not np.isfinite(self.summary[name]).any():
+            raise InputError(f"{self.path}: '{name}' has no value at any point of this sweep")
+        return self.summary[name]
+
+
+def _moduli_of(path: str) -> dict[str, xr.Dataset]:
+    """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
+    try:
+        text = Path(path).read_text(encoding="utf-8")
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}") from None
+    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
+    if not names:
+        raise InputError(f"{path}: there is no material with a name in this file")
+    alone = not re.search(r"^\s*&impact\b", text, re.MULTILINE | re.IGNORECASE)
+    case = Case(text + (_AROUND.format(name=names[0]) if alone else ""), name=path)
+    parts: list[xr.Dataset] = []
+    for name in names:
+        address = name.replace(" ", "_")
+        first, last = (case[f"{address}.valid_{end}"] for end in ("from", "to"))
+        if not (isinstance(first, float) and isinstance(last, float)):
+            continue
+        time = np.geomspace(first, last, 200)
+        material, frequency = case.material(name), 1.0 / time[::-1]
+        modulus = material.complex_modulus(frequency)
+        dynamic = {"storage_modulus": modulus.real, "loss_modulus": modulus.imag}
+        dynamic["loss_tangent"] = modulus.imag / modulus.real
+        for at, over, columns in (
+            ("time", time, {"relaxation_modulus": material.relaxation(time)}),
+            ("frequency", frequency, dynamic),
+        ):
+            data = {key: (at, column) for key, column in columns.items()}
+            parts.append(xr.Dataset(data, {at: over, "material": name}))
+    if not parts:
+        raise InputError(
+            f"{path}: no material has valid_from and valid_to, between which its moduli are drawn; "
+            "draw the file that vcor material makes"
+        )
+    both = {"relaxation": parts[::2], "dynamic": parts[1::2]}
+    return {key: xr.concat(some, "material", join="outer") for key, some in both.items()}
+
+
+def is_result(source: Source) -> bool:
+    """Whether a source is results or materials, and no file of measured points."""
+    return isinstance(source, xr.Dataset) or os.fspath(source).endswith((".h5", ".nml"))
+
+
+def legends_of(results: list[Result]) -> list[str]:
+    """Texts of the legend: titles, or up to three values in which the cases differ, or names."""
+    titles = [result.title for result in results]
+    if all(titles) and len(set(titles)) == len(titles):
+        return titles
+    values = [_values(result.case) for result in results]
+    keys = [key for key in values[0] if len({one.get(key) for one in values}) > 1]
+    keys = [key for key in keys if not key.startswith(("case.", "output."))]
+    if 0 < len(keys) <= 3:
+        units = {}
+        for key in keys:
+            with contextlib.suppress(Error):
+                units[key] = Handle(results[0].case, results[0].path).describe(key).unit
+        words = [
+            ", ".join(
+                f"{key.rpartition('.')[2].replace('_', ' ')} = "
+                f"{one.get(key, '').removesuffix('.0')} {units.get(key, '')}".strip()
+                for key in keys
+            )
+            for one in values
+        ]
+        if len(set(words)) == len(words):
+            return words
+    return [printable(Path(result.path).stem) for result in results]
+
+
+def _values(case: str) -> dict[str, str]:
+    """Addresses and values of a case as it is printed."""
+    found: dict[str, str] = {}
+    group = ""
+    for line in map(printable, case.splitlines()):
+        if line.startswith("&"):
+            group = line[1:].strip()
+        key, mark, value = (part.strip() for part in line.partition(" = "))
+        if mark and group == "material" and key == "name":
+            group = value.strip("'").replace(" ", "_")
+        if mark:
+            found[f"{group}.{key}"] = value
+    return found
