@@ -145,8 +145,10 @@ contains
       type(outcome_t), intent(in) :: outcome
       character(len=:), allocatable :: text
 
-      text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '') &
-         //line('    lost in the contact (hysteresis)', 50, 'W_h', &
+      text = line('  energy before the impact', 50, 'KE_0', outcome%initial_energy, 'J', '')
+      if (abs(outcome%weight_work) > 0.0_wp) text = text//line('    gained by the weight', 50, &
+         'm g z', outcome%weight_work, 'J', share(outcome%weight_work))
+      text = text//line('    lost in the contact (hysteresis)', 50, 'W_h', &
          visible(outcome%hysteresis_energy, outcome%initial_energy), 'J', &
          share(outcome%hysteresis_energy)) &
          //line('    radiated into the plate', 50, 'W_wave', &

@@ -85,7 +85,9 @@ def test_the_catalogue_is_read():
 
 
 def addresses(text, group, key, models):
-    """Where a case may have the key: in a material of such a model, by its name."""
+    """Where a case may have the key: in a material of such a model, by its name; all have spheres."""
+    if group == "sphere" and models and "sphere" not in models:
+        return []
     if group != "material":
         return [f"{group}.{key}"]
     materials = re.findall(r"name\s*=\s*'(\w+)',?\s+model\s*=\s*'(\w+)'", text)

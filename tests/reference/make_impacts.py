@@ -351,6 +351,36 @@ def weighed():
         impact((SOFT, LEFFLER), "none", "receding", "series", velocity=0.02), gravity=1.62)
 
 
+CONE = dict(shape="cone", half_angle=65.0, mass=0.05)
+PUNCH = dict(shape="punch", punch_radius=0.004, mass=0.05)
+QUARTIC = dict(shape="power", profile_coefficient=2e5, profile_power=4.0, mass=0.05)
+BLUNT = dict(shape="power", profile_coefficient=20.0, profile_power=1.5, mass=0.05)
+
+
+def shaped():
+    """Remark and case of each impact of another shape than a sphere."""
+    number = 0
+    for body in (CONE, PUNCH, QUARTIC, BLUNT):
+        for plate in (SLS, VOIGT, POWER, LEFFLER):
+            law = "boltzmann" if body is PUNCH else LAWS[(number + number // 4) % 2]
+            waves = ("none", "relaxing", "hereditary", "constant", "frozen")[number % 5]
+            if plate is VOIGT and waves == "frozen":
+                waves = "constant"
+            case = impact((RIGID, plate), waves, law, velocity=3.0, half_thickness=0.02)
+            case["sphere"] = dict(body, material="ball")
+            yield f"{body['shape']}, {plate['model']}, {waves}, {law}", case
+            number += 1
+    for body in (CONE, QUARTIC):
+        case = impact((SOFT, CERF), "hereditary", "receding", "series", velocity=2.0)
+        case["sphere"] = dict(body, material="ball")
+        yield f"{body['shape']}, two bodies in series, hereditary, receding", case
+    gel = dict(SLS, glassy_modulus=1e5, alpha=20.0, beta=60.0)
+    for body in (CONE, PUNCH, BLUNT):
+        case = impact((RIGID, gel), "none", "boltzmann", velocity=1.0)
+        case["sphere"] = dict(body, material="ball")
+        yield f"{body['shape']}, a gel, gravity", dict(case, gravity=9.81)
+
+
 def designed_set(path, title, cases, only=""):
     """Solve designed impacts and write them."""
     out = head(title, "Expected: " + ", ".join(EXPECT))
@@ -510,7 +540,7 @@ def main():
     if options.shapes:
         designed_set(options.output / "shapes.txt",
                      "Other shapes than spheres, and gravity: made by make_impacts.py --shapes.",
-                     weighed())
+                     [*weighed(), *shaped()])
     if options.body:
         body_set(options.output / "body.txt", options.body)
 

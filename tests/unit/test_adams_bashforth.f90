@@ -280,7 +280,7 @@ contains
       real(wp) :: w(n), u, firmness, single, double
       integer :: i, j
 
-      firmness = impact%hertz_factor*glassy
+      firmness = impact%factor*glassy
       associate (s => trajectory%state(col_indentation, 1:n), &
                  v => trajectory%state(col_velocity, 1:n))
          u = s(n)**1.5_wp

@@ -513,12 +513,12 @@ contains
       do i = 1, 3
          call new_impact(impact, 5.0_wp, 0.03_wp, r, surface(i), modulus, plate, error)
          call success(error, "an impact is built")
-         call check_relative(impact%hertz_factor, 4.0_wp/3.0_wp*sqrt(hertz(i)), rounding, &
+         call check_relative(impact%factor, 4.0_wp/3.0_wp*sqrt(hertz(i)), rounding, &
             "flat, convex, concave: the radius of Hertz")
-         call check_relative(impact%kernel(t), impact%hertz_factor*modulus%relaxation(t), &
+         call check_relative(impact%kernel(t), impact%factor*modulus%relaxation(t), &
             rounding, "kernel of Eq. (5)")
          whole = impact%kernel_step_integrals(t, 1)
-         call check_relative(whole(1), impact%hertz_factor*sls%integral(t)/0.75_wp, rounding, &
+         call check_relative(whole(1), impact%factor*sls%integral(t)/0.75_wp, rounding, &
             "and its integral")
       end do
       call check_relative(impact%initial_energy(), 0.375_wp, rounding, "energy m v^2/2")

@@ -84,7 +84,8 @@ module vcor_case_catalogue
    type(group_t), parameter :: groups(*) = [ &
       group_t("case", "Title of the case"), &
       group_t("impact", "How the sphere strikes the plate", required=.true.), &
-      group_t("sphere", "The sphere", required=.true.), &
+      group_t("sphere", "The sphere, or another body that strikes", required=.true., &
+         selector="shape"), &
       group_t("plate", "The plate", required=.true.), &
       group_t("contact", "Law of the contact force"), &
       group_t("material", "A material used by the sphere or the plate", required=.true., &
@@ -109,10 +110,23 @@ module vcor_case_catalogue
          "Gravity g that acts during the contact; drop_height has 9.80665 without it", "m/s2", &
          not_negative, default="0.0"), &
       !
-      key_t("sphere", "radius", real_key, "Radius", "m", positive, required=.true.), &
+      key_t("sphere", "shape", text_key, "Shape of the body", &
+         choices="sphere cone punch power", default="sphere"), &
+      key_t("sphere", "radius", real_key, "Radius", "m", positive, models="sphere", &
+         required=.true.), &
       key_t("sphere", "material", text_key, "Name of its material", required=.true.), &
       key_t("sphere", "mass", real_key, "Mass; default: from radius and density", "kg", &
-         positive), &
+         positive, models="sphere"), &
+      key_t("sphere", "mass", real_key, "Mass", "kg", positive, models="cone punch power", &
+         required=.true.), &
+      key_t("sphere", "half_angle", real_key, "Angle between the axis of a cone and its side", &
+         "deg", interval_t(0.0_wp, 90.0_wp, .true., .true.), models="cone", required=.true.), &
+      key_t("sphere", "punch_radius", real_key, "Radius of a flat punch", "m", positive, &
+         models="punch", required=.true.), &
+      key_t("sphere", "profile_coefficient", real_key, "C of a profile z = C r^p", "m^(1-p)", &
+         positive, models="power", required=.true.), &
+      key_t("sphere", "profile_power", real_key, "p of a profile z = C r^p", &
+         range=interval_t(lower=1.0_wp, lower_open=.true.), models="power", required=.true.), &
       !
       key_t("plate", "half_thickness", real_key, &
          "Half the thickness; not needed without waves, with 'body' a half space if not given", &
@@ -199,8 +213,8 @@ module vcor_case_catalogue
          choices="rectangle trapezoid", default="trapezoid"), &
       key_t("solver", "volterra_order", integer_key, "Terms of the Volterra series", &
          range=order_range, default="1"), &
-      key_t("solver", "volterra_coefficient", real_key, "Coefficient of the second term", &
-         "m^-1.5", default="1.0"), &
+      key_t("solver", "volterra_coefficient", real_key, &
+         "Coefficient of the second term; n = 1.5 for a sphere", "m^-n", default="1.0"), &
       key_t("solver", "continue_after_separation", logical_key, &
          "Continue to end_time as if the sphere were glued to the plate", default=".false."), &
       !

@@ -5,7 +5,7 @@ module vcor_case_checks
    use vcor_case_address, only : material_names, swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
-      last_row, wanted
+      last_row, row_for_model, wanted
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : material_of_case
    use vcor_case_unread, only : why_no_shift, why_unread
@@ -196,12 +196,16 @@ contains
       !> Such as `one with velocity`
       character(len=:), allocatable :: text
 
-      integer :: row
+      integer :: row, selector
 
       text = ''
+      selector = find_key(groups(group)%name, groups(group)%selector)
       do row = first_row(group), last_row(group)
-         if (catalogue(row)%required .and. catalogue(row)%models == '') &
-            text = trim(text//' '//catalogue(row)%name)
+         if (catalogue(row)%models /= '') then
+            if (catalogue(selector)%default == '') cycle
+            if (row_for_model(row, trim(catalogue(selector)%default)) /= row) cycle
+         end if
+         if (catalogue(row)%required) text = trim(text//' '//catalogue(row)%name)
       end do
       text = 'one with '//join_words(trim(adjustl(text)))
    end function described
@@ -251,7 +255,8 @@ contains
       message = ''
       associate (group => groups(address%group))
          if (row == 0) then
-            if (entry%given) message = "key '"//key//"' does not belong to model '"//model &
+            if (entry%given) message = "key '"//key//"' does not belong to "//trim(group%selector) &
+               //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
          else if (is_there(key) .and. is_there(other)) then
             call fail(self, group%name, other, address%item, 'found both '//key//' and '//other &
@@ -265,7 +270,8 @@ contains
                call self%get(group%name, group%label, label, address%item)
                message = message//' '//quoted(shortened(label))
             end if
-            if (catalogue(row)%models /= '') message = message//" of model '"//model//"'"
+            if (catalogue(row)%models /= '') message = message//" of "//trim(group%selector) &
+               //" '"//model//"'"
             message = message//', expected '//wanted(catalogue(row))
             if (other /= '') message = message//', or '//other
          end if

@@ -16,6 +16,8 @@ module vcor_case_problem
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_law, only : cone_factor, contact_law_t, new_contact_law, profile_factor, &
+      punch_factor, sphere_factor
    use vcor_impact_plate, only : new_plate, waves_body, waves_constant, waves_frozen, &
       waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t
@@ -54,7 +56,8 @@ module vcor_case_problem
    !> Addresses of the numbers that an impact is made from
    type :: numbers_t
       type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
-      type(address_t) :: half_thickness, footprint
+      type(address_t) :: half_thickness, footprint, half_angle, punch_radius
+      type(address_t) :: profile_coefficient, profile_power
       type(address_t) :: extent, yield_strength(2)
       type(address_t) :: time_step, end_time, accuracy, second_coefficient
    end type numbers_t
@@ -77,6 +80,8 @@ module vcor_case_problem
       type(numbers_t), private :: at
       !> Half thickness of the plate that was built [m]; 0: not known
       real(wp), private :: half_thickness = 0.0_wp
+      !> Shape of the body that strikes, as the case names it
+      character(len=6), private :: shape = 'sphere'
       !> One of the `waves_*` constants
       integer, private :: waves = waves_relaxing
       !> One of the `pair_*` constants
@@ -115,6 +120,10 @@ contains
       self%at%gravity = case%address('impact', 'gravity')
       self%at%radius = case%address('sphere', 'radius')
       self%at%mass = case%address('sphere', 'mass')
+      self%at%half_angle = case%address('sphere', 'half_angle')
+      self%at%punch_radius = case%address('sphere', 'punch_radius')
+      self%at%profile_coefficient = case%address('sphere', 'profile_coefficient')
+      self%at%profile_power = case%address('sphere', 'profile_power')
       self%at%surface_radius = case%address('plate', 'surface_radius')
       self%at%half_thickness = case%address('plate', 'half_thickness')
       self%at%extent = case%address('plate', 'extent')
@@ -139,6 +148,8 @@ contains
       case default
          self%waves = waves_relaxing
       end select
+      call case%get('sphere', 'shape', text)
+      self%shape = text
       call case%get('contact', 'law', text)
       self%impact%law%receding = text == 'receding'
       call case%get('contact', 'pair', text)
@@ -444,7 +455,7 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: velocity, gravity, mass, radius
+      real(wp) :: velocity, gravity, mass, radius, factor
 
       gravity = case%number(self%at%gravity)
       velocity = case%number(self%at%velocity)
@@ -461,9 +472,49 @@ contains
             return
          end if
       end if
-      call self%impact%launch(velocity, mass, radius, case%number(self%at%surface_radius), error, &
-         gravity, number_or_zero(case, self%at%footprint))
+      call set_shape(self, case, factor, error)
+      if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
+         number_or_zero(case, self%at%footprint))
    end subroutine launch
+
+   !> Set the law that goes with the shape of the body that strikes
+   subroutine set_shape(self, case, factor, error)
+      type(problem_t), intent(inout) :: self
+      type(case_t), intent(in) :: case
+      !> Factor K of the shape [m^(2-n)]
+      real(wp), intent(out) :: factor
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(contact_law_t) :: law
+      real(wp) :: exponent, surface_radius
+
+      surface_radius = case%number(self%at%surface_radius)
+      factor = 0.0_wp
+      exponent = law%exponent
+      if (self%shape /= 'sphere' .and. abs(surface_radius) > 0.0_wp) then
+         call raise(error, error_input, 'only a sphere meets a curved surface', &
+            about='surface_radius shape')
+         return
+      end if
+      select case (self%shape)
+      case ('cone')
+         exponent = 2.0_wp
+         factor = cone_factor(case%number(self%at%half_angle))
+      case ('punch')
+         exponent = 1.0_wp
+         factor = punch_factor(case%number(self%at%punch_radius))
+      case ('power')
+         exponent = 1.0_wp + 1.0_wp/case%number(self%at%profile_power)
+         factor = profile_factor(case%number(self%at%profile_coefficient), &
+            case%number(self%at%profile_power))
+      case default
+         call sphere_factor(case%number(self%at%radius), surface_radius, factor, error)
+      end select
+      if (.not. allocated(error)) &
+         call new_contact_law(law, exponent, self%impact%law%receding, error)
+      if (.not. allocated(error)) self%impact%law = law
+   end subroutine set_shape
 
    !> Follow the numbers of the solver
    subroutine update_solver(self, case, error)

@@ -108,8 +108,9 @@ contains
          reason = ''
          select case (group_and_key(address))
          case ('case.title', 'impact.velocity', 'impact.drop_height', &
-            'sphere.radius', 'sphere.material', 'sphere.mass', &
-            'plate.material', 'plate.surface_radius', 'contact.law', 'solver.method', &
+            'sphere.shape', 'sphere.radius', 'sphere.material', 'sphere.mass', &
+            'sphere.half_angle', 'sphere.punch_radius', 'sphere.profile_coefficient', &
+            'sphere.profile_power', 'plate.material', 'plate.surface_radius', 'solver.method', &
             'solver.scheme', 'solver.end_time', 'solver.accuracy', 'solver.volterra_order', &
             'solver.continue_after_separation')
             continue
@@ -131,6 +132,9 @@ contains
             call case%get('plate', 'waves', method)
             reason = why_plate_rests(case)
             if (reason == '' .and. method /= 'body') reason = "it is for plate.waves = 'body'"
+         case ('contact.law')
+            if (case%model(find_group('sphere'), 1) == 'punch') &
+               reason = 'the contact of a flat punch does not recede'
          case ('contact.pair')
             reason = why_no_pair(case)
          case ('solver.time_step')

@@ -2,10 +2,16 @@
 !>
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    k(t) = K E'(t)
 !>
-!> All that depends on the exponent n is asked of this object. A sphere has n = 3/2 (Hertz) and
-!> K = (4/3) sqrt(R); a body of revolution z = C r^p has n = 1 + 1/p: I. N. Sneddon, Int. J. Eng.
-!> Sci. 3 (1965) 47, doi:10.1016/0020-7225(65)90019-4. Units are written out for n = 3/2, such as
-!> [m^1.5] for u and [N/m^1.5] for k.
+!> All that depends on the exponent n is asked of this object. A sphere has n = 3/2 (Hertz), a body
+!> of revolution z = C r^p has n = 1 + 1/p and with kappa = sqrt(pi) Gamma(p/2 + 1)/Gamma((p + 1)/2)
+!> (L. A. Galin 1946; I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47,
+!> doi:10.1016/0020-7225(65)90019-4)
+!>
+!>     s = C kappa a^p,   F = 2 p/(p + 1) E' a s,   K = 2 p/(p + 1) (C kappa)^(-1/p)
+!>
+!> at the contact radius a: p = 1 is a cone, a flat punch has n = 1. With a = K u'(s)/2 a step of s
+!> is one of a flat punch of the radius a, whatever the shape. Units are written out for n = 3/2,
+!> such as [m^1.5] for u and [N/m^1.5] for k.
 !>
 !> Past the end of an elastic contact s is negative and the force with it, so u is odd:
 !> u(s) = s |s|^(n-1).
@@ -17,7 +23,8 @@ module vcor_impact_law
    implicit none
    private
 
-   public :: contact_law_t, new_contact_law
+   public :: contact_law_t, new_contact_law, sphere_factor, cone_factor, punch_factor, &
+      profile_factor
 
    !> Exponent of Hertz's contact of curved surfaces [-]
    real(wp), parameter :: hertz = 1.5_wp
@@ -65,6 +72,9 @@ contains
          call raise(error, error_input, 'the exponent of a contact law must be a number')
       else if (exponent < 1.0_wp) then
          call raise(error, error_input, 'the exponent of a contact law must be at least 1')
+      else if (receding .and. .not. exponent > 1.0_wp) then
+         call raise(error, error_input, 'the contact of a flat punch has one radius and does not ' &
+            //"recede: law = 'boltzmann' is exact for it", about='law shape')
       end if
       if (allocated(error)) return
       self%receding = receding
@@ -75,6 +85,67 @@ contains
       self%contact_time = 2.0_wp*(0.5_wp/part)**part &
          *sqrt(pi)*gamma(1.0_wp + part)/gamma(0.5_wp + part)
    end subroutine new_contact_law
+
+   !> Factor K of a sphere, (4/3) sqrt(R) with 1/R = 1/r + 1/r_surface, footnote 2 of Green's paper
+   pure subroutine sphere_factor(radius, surface_radius, factor, error)
+      !> Radius of the sphere r [m], > 0
+      real(wp), intent(in) :: radius
+      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
+      real(wp), intent(in) :: surface_radius
+      !> K [m^0.5]
+      real(wp), intent(out) :: factor
+      type(error_t), allocatable, intent(out) :: error
+
+      factor = 0.0_wp
+      if (.not. radius > 0.0_wp) then
+         call raise(error, error_input, 'the radius of the sphere must be positive', &
+            about='radius')
+      else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
+         call raise(error, error_input, &
+            'a concave surface must have a larger radius than the sphere, or Hertz does not ' &
+            //'apply', about='surface_radius radius')
+      else if (abs(surface_radius) > 0.0_wp) then
+         factor = 4.0_wp/3.0_wp*sqrt(radius/(1.0_wp + radius/surface_radius))
+      else
+         factor = 4.0_wp/3.0_wp*sqrt(radius)
+      end if
+   end subroutine sphere_factor
+
+   !> Factor K of a cone, n = 2
+   pure function cone_factor(half_angle) result(factor)
+      !> Angle between its axis and its side [deg], in (0, 90)
+      real(wp), intent(in) :: half_angle
+      !> K [-]
+      real(wp) :: factor
+
+      factor = 2.0_wp/pi*tan(half_angle*(pi/180.0_wp))
+   end function cone_factor
+
+   !> Factor K of a flat punch, n = 1
+   pure function punch_factor(radius) result(factor)
+      !> Radius [m], > 0
+      real(wp), intent(in) :: radius
+      !> K [m]
+      real(wp) :: factor
+
+      factor = 2.0_wp*radius
+   end function punch_factor
+
+   !> Factor K of a profile z = C r^p, n = 1 + 1/p
+   pure function profile_factor(coefficient, power) result(factor)
+      !> C [m^(1-p)], > 0
+      real(wp), intent(in) :: coefficient
+      !> p [-], >= 1
+      real(wp), intent(in) :: power
+      !> K [m^(2-n)]
+      real(wp) :: factor
+
+      real(wp) :: log_kappa
+
+      log_kappa = 0.5_wp*log(pi) + log_gamma(0.5_wp*power + 1.0_wp) &
+         - log_gamma(0.5_wp*(power + 1.0_wp))
+      factor = 2.0_wp*power/(power + 1.0_wp)*exp(-(log(coefficient) + log_kappa)/power)
+   end function profile_factor
 
    !> u(s) = s |s|^(n-1)
    elemental function u(self, s)

@@ -51,6 +51,8 @@ module vcor_impact_outcome
       real(wp) :: initial_energy = none
       !> Kinetic energy of the sphere after the impact m z'(t0)^2/2 [J]
       real(wp) :: final_energy = none
+      !> Work of the weight m g z(t0) [J]
+      real(wp) :: weight_work = none
       !> What the budget misses: initial - final energy + work of the weight m g z(t0) - hysteresis
       !> - wave energy [J]
       real(wp) :: energy_imbalance = none
@@ -143,11 +145,11 @@ contains
       outcome%wave_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
       outcome%final_energy = outcome%initial_energy*outcome%cor_sphere**2
+      outcome%weight_work = impact%mass*impact%gravity*trajectory%state(col_sphere, n)
       ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse, and that of
       ! its weight
       outcome%energy_imbalance = impulse*(impact%velocity - 0.5_wp*impulse/impact%mass) &
-         + impact%mass*impact%gravity*trajectory%state(col_sphere, n) &
-         - outcome%hysteresis_energy - outcome%wave_energy
+         + outcome%weight_work - outcome%hysteresis_energy - outcome%wave_energy
 
       outcome%min_frequency = 2.0_wp*pi/outcome%contact_time
       outcome%inelasticity = impact%inelasticity()

@@ -4,7 +4,7 @@
 !> of Green's paper integrated twice from s(0) = 0, s'(0) = v0 is
 !>
 !>     s(t) = v0 t + g t^2/2 - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
-!>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^(3/2),    k(t) = (4/3) sqrt(R) E'(t)
+!>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^n,    k(t) = K E'(t)
 !>
 !> and with the receding law, once the contact shrinks, the integral ends at t1(t), when it was as
 !> large as now and growing,
@@ -13,7 +13,7 @@
 module vcor_impact_problem
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : contact_modulus_t
-   use vcor_impact_law, only : contact_law_t
+   use vcor_impact_law, only : contact_law_t, sphere_factor
    use vcor_impact_plate, only : plate_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -30,8 +30,9 @@ module vcor_impact_problem
       real(wp) :: mass = 0.0_wp
       !> Gravity g, which presses the sphere on the plate [m/s2], >= 0
       real(wp) :: gravity = 0.0_wp
-      !> Firmness of a contact of unit modulus, (4/3) sqrt(R), R the Hertz radius [m^0.5]
-      real(wp) :: hertz_factor = 0.0_wp
+      !> Factor K of the shape, the firmness of a contact of unit modulus; (4/3) sqrt(R) of a sphere
+      !> [m^0.5]
+      real(wp) :: factor = 0.0_wp
       !> Contact modulus E'(t)
       type(contact_modulus_t) :: modulus
       !> The plate
@@ -66,6 +67,10 @@ module vcor_impact_problem
       procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
       procedure :: patience
+      !> Force at first contact
+      procedure :: first_force
+      !> Radius of the contact
+      procedure :: contact_radius
       !> Whether it has an equilibrium modulus to push the bodies apart
       procedure :: springs_back
       !> Zener's parameter lambda
@@ -98,23 +103,24 @@ contains
       !> Gravity [m/s2], >= 0; absent: none
       real(wp), intent(in), optional :: gravity
 
+      real(wp) :: factor
+
       self%modulus = modulus
       self%plate = plate
       if (present(law)) self%law = law
-      call self%launch(velocity, mass, radius, surface_radius, error, gravity)
+      call sphere_factor(radius, surface_radius, factor, error)
+      if (.not. allocated(error)) call self%launch(velocity, mass, factor, error, gravity)
    end subroutine new_impact
 
-   !> Give the sphere another motion or size; modulus, plate and law stay
-   pure subroutine launch(self, velocity, mass, radius, surface_radius, error, gravity, footprint)
+   !> Give the body another motion, mass or size; modulus, plate and law stay
+   pure subroutine launch(self, velocity, mass, factor, error, gravity, footprint)
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
-      !> Mass of the sphere [kg], > 0
+      !> Mass [kg], > 0
       real(wp), intent(in) :: mass
-      !> Radius of the sphere [m], > 0
-      real(wp), intent(in) :: radius
-      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
-      real(wp), intent(in) :: surface_radius
+      !> Factor K of its shape [m^(2-n)], > 0
+      real(wp), intent(in) :: factor
       type(error_t), allocatable, intent(out) :: error
       !> Gravity [m/s2], >= 0; absent: none
       real(wp), intent(in), optional :: gravity
@@ -125,32 +131,24 @@ contains
 
       ! energies and their products stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
-      real(wp) :: hertz_radius, time_scale
+      real(wp) :: time_scale
 
       ! the mass of a tiny sphere may be nothing
-      if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. radius > 0.0_wp)) then
+      if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. factor > 0.0_wp)) then
          call raise(error, error_input, 'velocity, mass and radius of the sphere must be ' &
             //'positive', about='velocity mass radius')
-      else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
-         call raise(error, error_input, &
-            'a concave surface must have a larger radius than the sphere, or Hertz does not ' &
-            //'apply', about='surface_radius radius')
-      else if (max(velocity, mass, radius) > largest &
-               .or. min(velocity, mass, radius) < 1.0_wp/largest) then
+      else if (max(velocity, mass, factor**2) > largest &
+               .or. min(velocity, mass, factor**2) < 1.0_wp/largest) then
          call raise(error, error_input, &
             'velocity, mass or radius of the sphere are beyond all that can be computed', &
             about='velocity mass radius')
       end if
       if (allocated(error)) return
-
-      ! footnote 2 of the paper: 1/R = 1/r + 1/r_surface
-      hertz_radius = radius
-      if (abs(surface_radius) > 0.0_wp) hertz_radius = radius/(1.0_wp + radius/surface_radius)
       self%velocity = velocity
       self%mass = mass
       self%gravity = 0.0_wp
       if (present(gravity)) self%gravity = gravity
-      self%hertz_factor = 4.0_wp/3.0_wp*sqrt(hertz_radius)
+      self%factor = factor
       if (.not. self%plate%layered()) return
       self%plate%footprint = 0.0_wp
       if (present(footprint)) self%plate%footprint = footprint
@@ -158,7 +156,7 @@ contains
       if (.not. self%plate%footprint > 0.0_wp) then
          time_scale = self%time_scale(1.0e-14_wp)
          self%plate%footprint = 1.6_wp &
-            *sqrt(hertz_radius*1.0936_wp*self%speed_scale(time_scale)*time_scale)
+            *self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
       end if
       if (self%plate%is_sheet()) call raise(error, error_input, 'the plate is less than a ' &
          //"hundredth of the disc that loads it: use waves = 'hereditary'", &
@@ -199,7 +197,31 @@ contains
       speed = self%velocity + self%gravity*time_scale
    end function speed_scale
 
-   !> Kernel k(t) = (4/3) sqrt(R) E'(t), Eq. (5)
+   !> Force at first contact: a dashpot presses at once under a flat punch, n = 1, and a plate that
+   !> gives way at once makes it less
+   pure function first_force(self) result(force)
+      class(impact_t), intent(in) :: self
+      !> Force [N]
+      real(wp) :: force
+
+      real(wp) :: drag
+
+      drag = self%kernel_viscosity()*self%law%slope(0.0_wp)
+      force = drag*self%velocity/(1.0_wp + self%plate%alpha(0.0_wp)*drag)
+   end function first_force
+
+   !> Radius of the contact circle, a = K u'(s)/2: the next step of s is one of a flat punch
+   elemental function contact_radius(self, indentation) result(radius)
+      class(impact_t), intent(in) :: self
+      !> Indentation [m]
+      real(wp), intent(in) :: indentation
+      !> Radius [m]
+      real(wp) :: radius
+
+      radius = 0.5_wp*self%factor*self%law%slope(indentation)
+   end function contact_radius
+
+   !> Kernel k(t) = K E'(t), Eq. (5)
    elemental function kernel(self, t) result(k)
       class(impact_t), intent(in) :: self
       !> Time [s], t >= 0
@@ -207,7 +229,7 @@ contains
       !> Kernel [N/m^1.5]
       real(wp) :: k
 
-      k = self%hertz_factor*self%modulus%relaxation(t)
+      k = self%factor*self%modulus%relaxation(t)
    end function kernel
 
    !> Integral of the kernel from 0 to t, the dashpot left out
@@ -218,7 +240,7 @@ contains
       !> Integral [N s/m^1.5]
       real(wp) :: value
 
-      value = self%hertz_factor*self%modulus%integral(t)
+      value = self%factor*self%modulus%integral(t)
    end function kernel_integral
 
    !> Mean over 0 .. t of the integral of the kernel
@@ -229,7 +251,7 @@ contains
       !> Mean [N s/m^1.5]
       real(wp) :: value
 
-      value = self%hertz_factor*self%modulus%mean_integral(t)
+      value = self%factor*self%modulus%mean_integral(t)
    end function kernel_mean_integral
 
    !> Integrals of the kernel over the steps from i dt to (i + 1) dt, i = 0 .. n - 1
@@ -242,7 +264,7 @@ contains
       !> Integrals [N s/m^1.5], shape (0:n-1)
       real(wp) :: value(0:n - 1)
 
-      value = self%hertz_factor*self%modulus%step_integrals(dt, n)
+      value = self%factor*self%modulus%step_integrals(dt, n)
    end function kernel_step_integrals
 
    !> The kernel as a sum of exponentials, Eq. (17): itself where it is one, else an approximation
@@ -256,7 +278,7 @@ contains
       type(exponential_sum_t), intent(out) :: terms
 
       call self%modulus%exponentials(window, accuracy, terms)
-      call terms%scale(self%hertz_factor)
+      call terms%scale(self%factor)
    end subroutine kernel_exponentials
 
    !> Viscosity of the kernel's dashpot
@@ -265,7 +287,7 @@ contains
       !> Viscosity [N s/m^1.5]
       real(wp) :: viscosity
 
-      viscosity = self%hertz_factor*self%modulus%viscosity()
+      viscosity = self%factor*self%modulus%viscosity()
    end function kernel_viscosity
 
    !> Time scale of the contact: that of an elastic impact with the mean kernel over it
@@ -284,7 +306,7 @@ contains
       ! start from the time scale of the glassy contact, or 1 s, and iterate; with a kernel t^-a the
       ! map contracts by a/(n + 1)
       scale = 1.0_wp
-      firmness = self%hertz_factor*self%modulus%glassy()
+      firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) scale = self%elastic_time(firmness)
       viscosity = self%kernel_viscosity()
       do iteration = 1, 60
@@ -329,7 +351,7 @@ contains
       real(wp) :: firmness
 
       scale = self%time_scale()
-      firmness = self%hertz_factor*self%modulus%glassy()
+      firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
          scale = min(scale, self%elastic_time(firmness))
    end function fast_time_scale
@@ -346,7 +368,7 @@ contains
       real(wp) :: firmness
 
       time = time_scale
-      firmness = self%hertz_factor*self%modulus%rubbery()
+      firmness = self%factor*self%modulus%rubbery()
       if (firmness > 0.0_wp) time = max(time, self%elastic_time(firmness))
       time = 1000.0_wp*time
    end function patience
@@ -362,7 +384,7 @@ contains
       real(wp) :: time
 
       time = self%time_scale()
-      springs_back = self%hertz_factor*self%modulus%rubbery()*time &
+      springs_back = self%factor*self%modulus%rubbery()*time &
          > rounding*(self%kernel_integral(time) + self%kernel_viscosity())
    end function springs_back
 
@@ -376,7 +398,7 @@ contains
       real(wp) :: firmness
 
       lambda = 0.0_wp
-      firmness = self%hertz_factor*self%modulus%glassy()
+      firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) &
          lambda = self%plate%alpha(0.0_wp)*self%mass &
          /self%law%time_scale(self%mass, firmness, self%velocity)

@@ -215,7 +215,7 @@ contains
       rests = .false.
       associate (now => self%state(:, self%last))
          weight = impact%mass*impact%gravity
-         spring = impact%hertz_factor*impact%modulus%rubbery()
+         spring = impact%factor*impact%modulus%rubbery()
          excess = ((now(col_force) - weight)/weight)**2
          if (.not. (is_last .or. excess <= negligible .and. &
              (spring*impact%law%u(now(col_indentation))/weight - 1.0_wp)**2 <= negligible)) return

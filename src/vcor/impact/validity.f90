@@ -136,23 +136,26 @@ contains
       real(wp) :: hertz_radius, frequency, share
 
       frequency = pi/outcome%contact_time
-      hertz_radius = (0.75_wp*impact%hertz_factor)**2
       outcome%resilience = outcome%cor_sphere**2
       if (around%drops) outcome%rebound_height = &
          outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
-      outcome%contact_radius = sqrt(hertz_radius*outcome%max_indentation)
-      outcome%contact_ratio = outcome%contact_radius/min(hertz_radius, around%radius)
+      outcome%contact_radius = impact%contact_radius(outcome%max_indentation)
       outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force
-      outcome%mean_pressure = outcome%max_force/(pi*hertz_radius &
-         *trajectory%indentation_at(outcome%time_of_max_force))
+      outcome%mean_pressure = outcome%max_force/(pi*impact%contact_radius( &
+         trajectory%indentation_at(outcome%time_of_max_force))**2)
       modulus = impact%modulus%dynamic_modulus(frequency)
       outcome%peak_loss_tangent = aimag(modulus)/real(modulus, wp)
       plate_modulus = 0.0_wp
       if (.not. plate%rigid) plate_modulus = plate%complex_modulus(cmplx(0.0_wp, frequency, wp))
       share = plate_share(sphere, plate, plate_modulus, frequency)
       outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
-      outcome%sphere_ratio = outcome%contact_radius*((1.0_wp - share)/around%radius &
-         + share*max(1.0_wp/hertz_radius - 1.0_wp/around%radius, 0.0_wp))
+      ! shapes without a radius are no spheres
+      if (.not. ieee_is_nan(around%radius)) then
+         hertz_radius = (0.75_wp*impact%factor)**2
+         outcome%contact_ratio = outcome%contact_radius/min(hertz_radius, around%radius)
+         outcome%sphere_ratio = outcome%contact_radius*((1.0_wp - share)/around%radius &
+            + share*max(1.0_wp/hertz_radius - 1.0_wp/around%radius, 0.0_wp))
+      end if
       call assess_plate(outcome, impact, trajectory, around, plate, real(plate_modulus, wp), &
          frequency)
       call judge(outcome, around)
@@ -241,7 +244,7 @@ contains
          if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none
       end do
       ! NaN is not to be compared
-      if (.not. ieee_is_nan(values(1)*outcome%sphere_ratio)) &
+      if (.not. (ieee_is_nan(values(1)) .or. ieee_is_nan(outcome%sphere_ratio))) &
          values(1) = max(values(1), sphere_weight*outcome%sphere_ratio)
    end function judged
 

@@ -9,6 +9,7 @@ module vcor_verify_comparison
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_unread, only : why_unread
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
@@ -186,7 +187,7 @@ contains
       do k = 1, 2
          half = n
          do i = 1, size(plates)
-            do j = 1, size(laws)
+            do j = 1, merge(size(laws), 1, has_laws(case))
                associate (model => all(n + 1))
                   model = model_t(plates(i), laws(j), pair, &
                      plates(i) == waves .and. laws(j) == law .and. k == 1)
@@ -203,6 +204,14 @@ contains
       if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
       allocate (models, source=all(:n))
    end subroutine solve_models
+
+   !> Whether the law of the contact makes a difference
+   pure function has_laws(case)
+      type(case_t), intent(in) :: case
+      logical :: has_laws
+
+      has_laws = why_unread(case, case%address('contact', 'law')) == ''
+   end function has_laws
 
    !> Whether two outcomes have another restitution, or only one of them has any
    elemental function differ(a, b)
@@ -231,7 +240,8 @@ contains
 
       other = case
       call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
-      call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
+      if (has_laws(case)) &
+         call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
       call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)

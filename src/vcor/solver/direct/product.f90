@@ -197,8 +197,9 @@ contains
       call make_room(run, impact, dt, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
-      ! a dashpot presses at once under a flat punch, n = 1
-      trajectory%state(col_force, 0) = run%viscosity*impact%law%slope(0.0_wp)*impact%velocity
+      trajectory%state(col_force, 0) = impact%first_force()
+      trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
+      trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
       n = 0
       do
          n = n + 1

@@ -143,8 +143,9 @@ contains
             self%accuracy = max(self%accuracy, layer_accuracy, self%problem%modes%plate%error)
          finer = self%accuracy/usual_accuracy
          self%recedes = impact%law%receding
-         self%velocity = impact%velocity
          self%start%alpha = impact%plate%alpha(0.0_wp)
+         self%start%force = impact%first_force()
+         self%velocity = impact%velocity - self%start%alpha*self%start%force
          allocate (self%start%lag(size(contact%rates)), source=0.0_wp)
          if (impact%plate%hereditary()) &
             allocate (self%start%p(self%problem%modes%plate%variables()), source=0.0_wp)

@@ -41,8 +41,10 @@ contains
 
       call trajectory%reserve(usual_panels*rule%stages)
       trajectory%state(:, 0) = 0.0_wp
-      trajectory%state(col_velocity, 0) = impact%velocity
       trajectory%state(col_sphere_velocity, 0) = impact%velocity
+      trajectory%state(col_force, 0) = impact%first_force()
+      trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
+      trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
       trajectory%weight(0) = 0.0_wp
       trajectory%stages = rule%stages
       allocate (trajectory%point(0:rule%stages), source=rule%point(0:rule%stages))

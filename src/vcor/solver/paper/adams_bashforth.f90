@@ -269,9 +269,9 @@ contains
          holds = damping <= stable_damping(self%settings, impact, trial)
          if (.not. holds .or. self%settings%form == 'a') return
          left = impact%kernel(0.0_wp) &
-            + share_of_newest(self%settings)*trial*impact%hertz_factor*impact%modulus%rate(0.0_wp)
+            + share_of_newest(self%settings)*trial*impact%factor*impact%modulus%rate(0.0_wp)
          do j = 1, min(int(impact%law%contact_time*impact%time_scale()/trial), most_terms)
-            left = left + trial*impact%hertz_factor*impact%modulus%rate(trial*real(j, wp))
+            left = left + trial*impact%factor*impact%modulus%rate(trial*real(j, wp))
             holds = left > 0.5_wp*impact%kernel(trial*real(j, wp))
             if (.not. holds) return
          end do

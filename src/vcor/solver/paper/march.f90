@@ -249,7 +249,7 @@ contains
          kernel(:values - 1) = kernel_values(impact, run%dt, values)
          if (two_terms) call run%second%prepare(kernel)
       else
-         kernel(:room - 1) = impact%hertz_factor &
+         kernel(:room - 1) = impact%factor &
             *impact%modulus%rate([(run%dt*real(i, wp), i = 0, room - 1)])
       end if
       call run%kernel%set(kernel(:room - 1))
