@@ -161,6 +161,8 @@ contains
       real(wp), parameter :: finer = 1.25_wp, below = 5.0_wp, above = 1.0_wp
       ! what comes to that with each refinement
       real(wp), parameter :: much_finer = 1.3_wp, farther = 2.0_wp
+      ! over the rate of the window
+      real(wp), parameter :: slowest = 1.0e-14_wp
       type(exponential_sum_t) :: now
       integer :: refinement
 
@@ -180,6 +182,11 @@ contains
          if (now%error < terms%error) terms = now
          if (terms%error <= max(accuracy, rounding)) exit
       end do
+      ! what is too slow for a rate of its own is a mode, too: the motion remembers nothing else
+      if (.not. terms%equilibrium > 0.0_wp) return
+      terms%moduli = [terms%moduli, terms%equilibrium]
+      terms%rates = [terms%rates, slowest/window]
+      terms%equilibrium = 0.0_wp
    end subroutine exponentials
 
    !> Error of the velocity under a constant force, over that velocity

@@ -75,9 +75,13 @@ contains
    pure subroutine set_nodes(self)
       type(signed_fit_t), intent(inout) :: self
 
-      ! slowest and fastest rate; ratio of two, logarithmic
-      real(wp), parameter :: slowest = 0.2_wp, fastest = 1.0e7_wp, spacing = 0.15_wp
-      integer, parameter :: rates = 2 + int(log(fastest/slowest)/spacing)
+      ! slowest rate, and the fastest that counts one by one; ratio of two, logarithmic
+      real(wp), parameter :: slowest = 0.2_wp, fast = 1.0e7_wp, spacing = 0.15_wp
+      integer, parameter :: usual = 2 + int(log(fast/slowest)/spacing)
+      ! beyond, a modulus such as t^-a takes rates up to 1e10: what is lumped above rate l leaves an
+      ! error of l^(a - 2)
+      real(wp), parameter :: fastest = 1.0e10_wp, wide_spacing = 0.3_wp
+      integer, parameter :: more = nint(log(fastest/fast)/wide_spacing)
       ! samples per rate; the first one over the time of the fastest rate
       integer, parameter :: per_rate = 3
       real(wp), parameter :: earliest = 0.3_wp
@@ -87,13 +91,13 @@ contains
       real(wp), allocatable :: time(:), node(:)
       integer :: i, n
 
-      self%rate = [0.0_wp, slowest*exp(spacing*[(real(i, wp), i=0, rates - 2)])]
-      n = per_rate*rates
-      self%samples = n
-      allocate (time(n))
-      do i = 1, n
-         time(i) = (earliest/self%rate(rates))**(real(n - i, wp)/real(n - 1, wp))
-      end do
+      self%rate = [0.0_wp, slowest*exp(spacing*[(real(i, wp), i=0, usual - 2)])]
+      self%rate = [self%rate, self%rate(usual)*exp(wide_spacing*[(real(i, wp), i=1, more)])]
+      n = per_rate*usual
+      time = [(exp(log(earliest/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
+      n = per_rate*more
+      time = [time(1)*exp(-wide_spacing/real(per_rate, wp)*[(real(n + 1 - i, wp), i=1, n)]), time]
+      self%samples = size(time)
       self%weight = min(1.0_wp, time/full_weight)**power
 
       call graded_rule(ends, node, self%share, self%last)

@@ -28,9 +28,8 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_ive_tuning, only : cut_at_end, early_yield, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
-      first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
-      force_share, frozen_first, &
-      grown_alpha, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
+      first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
+      force_share, grown_alpha, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, &
       most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
@@ -165,9 +164,6 @@ contains
          self%step%reach = reach*sqrt(impact%law%contact_time*self%time_scale)
          self%step%length = self%step%reach
          if (continuous) self%step%length = self%step%reach*0.5_wp**levels(self%accuracy)
-         ! alpha' of a frozen plate is infinite at first contact, and enters by a quadrature
-         if (continuous .and. impact%plate%frozen()) &
-            self%step%length = frozen_first*self%step%length
       end associate
       do while (yields_early(self))
          self%step%length = 0.5_wp*self%step%length
@@ -273,6 +269,10 @@ contains
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
+         ! alpha' of a frozen plate is infinite at first contact: the quadrature of the solution is
+         ! no better than that of the companion, and its error stays for the rest of the contact
+         if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) &
+            self%excess = self%growth/(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          force_error = max(0.0_wp, min(self%growth_of(panel%force, coarse%force), self%doubt) &
             - rounding_of_force*self%largest_force)

@@ -11,8 +11,7 @@ module vcor_solver_ive_recording
    use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_ive_tuning, only : flat_end, force_better, force_better_inside, next_to_start, &
-      peak_position
+   use vcor_solver_ive_tuning, only : flat_end, force_better, next_to_start, peak_position
    implicit none
    private
 
@@ -201,7 +200,7 @@ contains
             root = sqrt(start%time/time)
             branch = 0.0_wp
             if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
-            if (max(doubt/(force_better_inside*peak), branch) <= accuracy) return
+            if (max(doubt/(force_better*peak), branch) <= accuracy) return
             now = start
             last = panel
             call solve_halves(problem, time, now, last)

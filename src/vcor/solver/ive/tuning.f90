@@ -88,8 +88,6 @@ module vcor_solver_ive_tuning
    !> Power of the accuracy where the contact recedes: the rebound feels the solution between the
    !> ends of the panels, too
    real(wp), parameter :: first_receding_growth = 0.1_wp ! tested
-   !> Share of it where alpha' of a frozen plate is infinite at first contact
-   real(wp), parameter :: frozen_first = 0.5_wp ! tested
    !> Share of its way that a sphere may lose to the plate in the first step, at most, where alpha
    !> grows by more than this factor from first contact to its end
    real(wp), parameter :: early_yield = 0.3_wp ! tested
@@ -107,6 +105,8 @@ module vcor_solver_ive_tuning
 
    !> Share of the accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 1.2_wp ! tested
+   !> The same for the first panel on a frozen plate
+   real(wp), parameter :: first_drift = 0.1_wp ! tested
    !> Error over what it may be that can be put up with if it is inherited
    real(wp), parameter :: tolerable = 4.0_wp ! tested
    !> A panel is longer than the one before by this factor at most
@@ -171,10 +171,8 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: flat_end = 1.0e-6_wp ! time
    !> Error of the position of a maximum: its square is what the maximum feels
    real(wp), parameter :: peak_position = 1.0e-6_wp ! tested
-   !> The force is better than that of the companion by these factors, measured over 180 impacts: at
-   !> the start of a panel it is that of a whole panel, at the maximum that of a part
+   !> The force is better than that of the companion by this factor at least
    real(wp), parameter :: force_better = 3.0_wp ! tested
-   real(wp), parameter :: force_better_inside = 12.0_wp ! tested
    !> Share of a panel in which the force may be that of the panel before
    real(wp), parameter :: next_to_start = 0.1_wp ! tested
 
