@@ -113,6 +113,9 @@ contains
             text = text//item("       vcor "//found(i), words)
          end do
          if (size(found) > 0) text = text//nl
+         if (all(found /= package_commands(1)%term)) text = text//"More commands come with the " &
+            //"Python package, such as vcor "//trim(package_commands(1)%term) &
+            //", which says how to install it."//nl//nl
       end associate
       text = text &
          //"TOPIC: a command, input, output, or a word of the input or the output."//nl &

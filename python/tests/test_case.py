@@ -243,8 +243,10 @@ def test_points_without_a_result(sls):
     assert np.isnan(found.cor[0]) and found.cor[1] == sls.run().cor
     with pytest.raises(vcor.InputError, match="out of range"):
         sls.solve({"impact.velocity": -1.0})
-    with pytest.raises(vcor.InputError, match=r"did you mean 'velocity'"):
+    with pytest.raises(vcor.UsageError, match=r"^impact\.velocty: .*did you mean 'velocity'"):
         sls.points({"impact.velocty": [1.0]})
+    assert sls.solve(quantities="cor") == sls.solve(quantities=["cor"])
+    assert repr(vcor.UsageError) == "<class 'vcor.UsageError'>"
     with pytest.raises(vcor.InputError, match="does not belong to model"):
         sls.points({"rubber.exponent": [1.0]})
     with pytest.raises(vcor.UsageError, match="did you mean 'cor'"):

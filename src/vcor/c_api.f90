@@ -541,7 +541,7 @@ contains
       type(address_t), allocatable :: own(:)
       type(address_t) :: address
       type(entry_t) :: entry
-      character(len=:), allocatable :: list, message
+      character(len=:), allocatable :: list
       integer :: i, item
 
       list = ''
@@ -555,18 +555,17 @@ contains
       case = handle%case
       allocate (own, source=swept_addresses(case))
       do i = 1, size(addresses)
-         call resolve(case, fortran(addresses(i)), address, message)
-         if (.not. allocated(message)) then
-            if (any(own == address)) cycle
-            ! a value that was set, or a list of them, has no say in a point that brings its own
-            address%element = 0
-            entry = case%entry(address)
-            if (allocated(entry%origin)) then
-               deallocate (entry%origin)
-               call case%set(address, entry)
-            end if
-            entry = entry_t()
+         call find_place(case, fortran(addresses(i)), address, error)
+         if (allocated(error)) return
+         if (any(own == address)) cycle
+         ! a value that was set, or a list of them, has no say in a point that brings its own
+         address%element = 0
+         entry = case%entry(address)
+         if (allocated(entry%origin)) then
+            deallocate (entry%origin)
+            call case%set(address, entry)
          end if
+         entry = entry_t()
          ! the &sweep group that a file would have; its values come later
          call case%add(find_group('sweep'), 0, item)
          entry%given = .true.

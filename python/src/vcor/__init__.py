@@ -39,6 +39,10 @@ __all__ = [
     "sensitivities",
 ]
 
+# Messages of the interpreter name an error as users import it
+for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, UsageError):
+    _kind.__module__ = "vcor"
+
 #: What needs scipy, by its module; imported when it is used
 _LATER = {
     "identify": "identification",

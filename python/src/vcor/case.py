@@ -185,7 +185,7 @@ class Case:
             The values make no impact.
         """
         columns = _library.columns(0)
-        names = list(columns if quantities is None else quantities)
+        names = _names(quantities)
         # numbers that were set go in as those of a point: nothing is checked and built anew then
         point = self._numbers if values is None else values
         remark = ""
@@ -234,7 +234,7 @@ class Case:
         if not arrays or arrays[0].ndim > 1:
             raise InputError("expected at least one address, with values of one dimension")
         columns = [np.atleast_1d(array) for array in arrays]
-        names = list(_library.columns(0) if quantities is None else quantities)
+        names = _names(quantities)
         table = np.stack(columns, axis=1)
         results = self._solve_all(list(values), table, names, threads, progress)
         coords = {
@@ -271,7 +271,7 @@ class Case:
             raise InputError("expected at least one address, with values of one dimension")
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
-        names = list(_library.columns(0) if quantities is None else quantities)
+        names = _names(quantities)
         results = self._solve_all(list(axes), table, names, threads, progress)
         coords = {address: (address, axis) for address, axis in axes.items()}
         return self._dataset(names, results, tuple(axes), coords, grid[0].shape)
@@ -474,6 +474,13 @@ def _value(text: str) -> Value:
     if len(numbers) != 1:
         return numbers
     return int(text) if text.lstrip("+-").isdigit() else numbers[0]
+
+
+def _names(quantities: Sequence[str] | None) -> list[str]:
+    """Names of columns; None: all, a text: one."""
+    if isinstance(quantities, str):
+        return [quantities]
+    return list(_library.columns(0) if quantities is None else quantities)
 
 
 def _reason(remark: str) -> str:
