@@ -2,6 +2,8 @@
 
 import pytest
 
+from program import NUMERICAL
+
 CASE = """
 &impact velocity = {velocity} /
 &sphere radius = {radius}, material = 'ball' /
@@ -77,3 +79,20 @@ def test_footprint_effect(vcor):
 def test_refused(vcor, setting, reason):
     vcor.write(text("layer of glass"))
     vcor.refuses("run", "case.nml", "--set", setting, code=3, says=reason)
+
+
+def test_an_end_before_the_sum_holds_is_refused(vcor):
+    """A thin soft layer flees a heavy bead within a ten-thousandth of the window of its sum."""
+    vcor.write(
+        "&impact velocity = 0.0263 /\n"
+        "&sphere radius = 0.00134845, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'body', footprint = 0.000150827, half_thickness = 2.15263e-4 /\n"
+        "&contact law = 'boltzmann', pair = 'eq1' /\n"
+        "&material name = 'ball', density = 2500.0, model = 'elastic', modulus = 7e10, poisson_ratio = 0.22 /\n"
+        "&material name = 'plate', density = 1045.37, poisson_ratio = 0.4, model = 'power_law', "
+        "equilibrium_modulus = 1.21849e6, coefficient = 48568.9, exponent = 0.65963 /\n"
+    )
+    done = vcor("run", "case.nml", "--print", "cor_sphere")
+    assert done.code == NUMERICAL
+    assert "the contact ends at once" in done.err
+    assert done.err.count("\n") == 1

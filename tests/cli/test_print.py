@@ -74,8 +74,8 @@ def test_full_precision(vcor, model):
                 assert values[name] == row[name] == stored.decode()
             else:
                 numbers = [float(values[name]), stored, float(row[name])]
-                # a sphere that is not dropped has no height of rebound
-                if name == "rebound_height":
+                # a sphere that is not dropped has no height of rebound, a thin plate no footprint
+                if name in ("rebound_height", "footprint_effect"):
                     assert all(map(math.isnan, numbers))
                 else:
                     assert numbers[0] == numbers[1] == numbers[2] and math.isfinite(stored), name

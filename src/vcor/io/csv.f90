@@ -52,7 +52,7 @@ contains
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Threads that turn numbers into text, absent: 1
+      !> Threads that turn numbers into text; one where this is absent
       integer, intent(in), optional :: threads
 
       type(output_file_t) :: file
@@ -89,9 +89,9 @@ contains
       character, intent(in) :: separator
       !> Set if they could not be written; the file is discarded then
       type(error_t), allocatable, intent(out) :: error
-      !> Open file; absent: the standard output
+      !> Open file; the standard output where this is absent
       type(output_file_t), intent(inout), optional :: file
-      !> Absent: 1
+      !> Threads that turn numbers into text; one where this is absent
       integer, intent(in), optional :: threads
 
       ! a few milliseconds: long against what threads wait for each other

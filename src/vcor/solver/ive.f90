@@ -15,8 +15,8 @@ module vcor_solver_ive
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_ladder, layer_margin, layer_reach, loosest_accuracy, &
-      no_sum, plate_share, window_growth, window_margin
+      layer_growth, layer_ladder, layer_margin, layer_reach, layer_start, &
+      loosest_accuracy, no_sum, plate_share, window_growth, window_margin
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -100,6 +100,14 @@ contains
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
+      if (impact%plate%layered() .and. .not. allocated(error)) then
+         if (trajectory%time_of_max_force < layer_start*window) then
+            call raise(error, error_numerical, 'the contact ends at once, before the sum of ' &
+               //'exponentials of the plate begins to hold: the plate is too soft or too thin ' &
+               //'for this sphere')
+            return
+         end if
+      end if
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel &
             *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)

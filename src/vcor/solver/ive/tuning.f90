@@ -40,6 +40,9 @@ module vcor_solver_ive_tuning
    real(wp), parameter :: layer_margin = 1.25_wp
    real(wp), parameter :: layer_growth = 2.0_wp
    real(wp), parameter :: layer_ladder = 2.0_wp**0.25_wp
+   !> Time of the largest force over the window before which it is none: the sum of a layer has no
+   !> rates for so short a time
+   real(wp), parameter :: layer_start = 1.0e-3_wp ! guard
    !> Time of the largest force over that of the window from which on the error of the kernel is
    !> what it is in the whole window
    real(wp), parameter :: early_force = 0.05_wp ! guard
