@@ -94,7 +94,10 @@ contains
       character(len=:), allocatable :: waves
       logical :: is_valid
 
+      is_shown = .false.
       call job%case%get('plate', 'waves', waves)
+      ! body waves are not solved for a receding contact, and their thin limit is no better
+      if (waves == 'body') return
       exact = model_t(merge('none      ', 'hereditary', waves == 'none'), 'receding', 'series')
       call solve_model(job%case, exact, is_valid)
       is_shown = allocated(exact%failure)
@@ -152,7 +155,7 @@ contains
                   //percent(value)//' too low; take a thicker plate'
             case ('plate_wave_number')
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
-                  //" thicknesses long, too short for a thin plate; compare waves = 'none'"
+                  //" thicknesses long, too short for a thin plate; compare waves = 'body'"
             case ('needed_extent')
                words = 'plate.extent is '//brief(around%extent) &
                   //' m, the wave returns during the contact; take a larger plate'

@@ -1,5 +1,7 @@
 """Plates by elastodynamics, waves = 'body': a layer or a half space."""
 
+import re
+
 import pytest
 
 from program import NUMERICAL
@@ -96,3 +98,12 @@ def test_an_end_before_the_sum_holds_is_refused(vcor):
     assert done.code == NUMERICAL
     assert "the contact ends at once" in done.err
     assert done.err.count("\n") == 1
+
+
+def test_screen(vcor):
+    """Thin plates are no better mechanics than a layer, and a layer is what a short wave asks for."""
+    vcor.write(text("layer of glass"))
+    assert "exact" not in vcor.succeeds("run", "case.nml")
+    thin = re.sub("'body', footprint = [^ ]*", "'hereditary'", text("layer of glass"))
+    vcor.write(thin.replace("half_thickness = 0.002", "half_thickness = 0.01"))
+    assert "compare waves = 'body'" in vcor.succeeds("run", "case.nml")
