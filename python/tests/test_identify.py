@@ -158,6 +158,19 @@ def test_drops_and_bounces():
     assert len(found.data) == 4
 
 
+def test_drops_of_a_case_with_a_height_and_another_gravity():
+    text = guess("sls").text().replace("velocity = 1.0", "drop_height = 0.5\n   gravity = 1.62")
+    case = vcor.Case(text)
+    heights = np.array([0.1, 0.4, 1.6])
+    truth = case.copy()
+    truth["rubber.beta"] = 1200.0
+    cor = truth.points({"impact.drop_height": heights}, ["cor_sphere"]).cor_sphere.values
+    data = {"drop_height": heights, "rebound_height": cor**2 * heights}
+    found = vcor.identify(case, data, ["rubber.beta"])
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-6)
+    assert found.data[0]["at"] == pytest.approx(np.sqrt(2 * 1.62 * 0.1))
+
+
 def test_models_are_compared():
     free = [f"rubber.{key}" for key in TRUTH["sls"]]
     data = columns()

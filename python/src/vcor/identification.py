@@ -23,7 +23,7 @@ from . import _command, _library
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, read
 from .fit import fit
-from .observations import Block, Impacts, Record, Source, number, observations
+from .observations import Block, Impacts, Record, Source, number, observations, velocity_of
 
 #: Accuracy of the impacts; derivatives are differences of them
 ACCURACY = 1e-9
@@ -530,8 +530,7 @@ def _end(
 def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
     """The measurement that would bring the worst combination down most."""
     block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
-    speeds = block.settings["impact.velocity"] if block else np.array(
-        [number(problem.case, "impact.velocity")])  # fmt: skip
+    speeds = block.velocity if block else np.array([velocity_of(problem.case)])
     grid = np.geomspace(speeds.min() / 10, speeds.max() * 10, 13)
     case, free = problem.case, problem.free
     probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
@@ -561,8 +560,7 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
 def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
     """Prediction of cor over velocity with its 95 % band, of the case otherwise."""
     block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
-    speeds = block.settings["impact.velocity"] if block else np.array(
-        [number(problem.case, "impact.velocity")])  # fmt: skip
+    speeds = block.velocity if block else np.array([velocity_of(problem.case)])
     grid = np.geomspace(speeds.min() / 2, speeds.max() * 2, 41)
     probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, problem.case)
 

@@ -86,9 +86,13 @@ class Impacts:
         self._columns = np.array([self.names.index(name) for name in self.quantity])
         self.value, self.sigma = np.array(values), np.array(sigmas)
         n = max((len(column) for column in self.settings.values()), default=max(rows) + 1)
-        if "impact.velocity" not in self.settings:
-            self.settings["impact.velocity"] = np.full(n, number(case, "impact.velocity"))
-        self.at = self.settings["impact.velocity"][self._rows]
+        #: Velocity of each impact [m/s]
+        self.velocity = self.settings.pop("impact.velocity", np.full(n, velocity_of(case)))
+        if case["impact.drop_height"] is None:
+            self.settings["impact.velocity"] = self.velocity
+        else:
+            self.settings["impact.drop_height"] = self.velocity**2 / (2 * gravity_of(case))
+        self.at = self.velocity[self._rows]
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values."""
@@ -212,8 +216,7 @@ class Moduli:
 
 def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[str, Floats]:
     """Heights and times in flight as velocities and coefficients of restitution."""
-    given = case["impact.gravity"] if "impact.gravity" in str(case) else None
-    gravity = float(given) if isinstance(given, float) and given > 0 else GRAVITY
+    gravity = gravity_of(case)
 
     def put(name: str, value: Floats, sigma: Floats) -> None:
         columns[name] = value
@@ -238,7 +241,7 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
         put("cor_sphere", ratio, ratio * np.hypot(sigma[1:] / times[1:], sigma[:-1] / times[:-1]))
     if "rebound_height" in columns:
         height, sigma = take("rebound_height")
-        speed = columns.get("velocity", number(case, "impact.velocity"))
+        speed = columns.get("velocity", velocity_of(case))
         ratio = np.sqrt(2 * gravity * height) / speed
         put("cor_sphere", ratio, ratio * sigma / height / 2)
     return columns
@@ -284,3 +287,16 @@ def number(case: Case, address: str) -> float:
     """Number at an address, nan if there is none."""
     value = case[address]
     return float(value) if isinstance(value, (int, float)) else math.nan
+
+
+def gravity_of(case: Case) -> float:
+    """Gravity that a drop of the case has [m/s2]."""
+    given = number(case, "impact.gravity")
+    return given if given > 0 else GRAVITY
+
+
+def velocity_of(case: Case) -> float:
+    """Velocity of the impact of a case [m/s], given or by its drop height."""
+    if case["impact.drop_height"] is None:
+        return number(case, "impact.velocity")
+    return math.sqrt(2 * gravity_of(case) * number(case, "impact.drop_height"))
