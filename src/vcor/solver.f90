@@ -87,8 +87,6 @@ contains
             'waves scheme')
       else if (impact%plate%layered() .and. settings%method == 'direct') then
          call refuse("waves = 'body' is solved by method = 'ive'", 'waves method')
-      else if (impact%plate%layered() .and. impact%law%receding) then
-         call refuse("waves = 'body' is solved for law = 'boltzmann'", 'waves law')
       end if
 
    contains

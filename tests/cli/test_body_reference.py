@@ -9,21 +9,18 @@ from program import ROOT
 RESTITUTION, ENERGY = 1e-7, 1e-7
 # An error is stated too small when the true one is more than so many times larger
 HONEST = 3.0
-# Laws of contact that the program solves with this plate
-LAWS = ("boltzmann",)
 
 
 def impacts():
-    """Number, case, expected columns and accuracies of each impact whose law is solved."""
+    """Number, case, expected columns and accuracies of each impact."""
     head, *blocks = (ROOT / "tests" / "reference" / "body.txt").read_text("utf-8").split("! impact ")
     names = re.search(r"Expected: (.*)", head)[1].split(", ")
     for block in blocks:
         remark, numbers, text = block.split("\n", 2)
-        if any(f"law = '{law}'" in text for law in LAWS):
-            values = map(float, numbers.removeprefix("! expect ").split())
-            sphere, relative, rest = map(float, remark.split("accuracy ")[1].split())
-            yield pytest.param(text, dict(zip(names, values, strict=True)), sphere, relative, rest,
-                               id=remark.split(";")[0].replace(" ", "_"))
+        values = map(float, numbers.removeprefix("! expect ").split())
+        sphere, relative, rest = map(float, remark.split("accuracy ")[1].split())
+        yield pytest.param(text, dict(zip(names, values, strict=True)), sphere, relative, rest,
+                           id=remark.split(";")[0].replace(" ", "_"))
 
 
 @pytest.mark.parametrize("text, expected, sphere, relative, rest", list(impacts()))

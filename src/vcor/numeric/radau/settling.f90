@@ -40,6 +40,9 @@ module vcor_numeric_radau_settling
    contains
       !> Sum over many exponentials
       procedure :: total
+      !> The same over pairs of conjugate ones
+      procedure :: total_of_pairs
+      procedure, private :: slope_powers
    end type settling_t
 
 contains
@@ -112,9 +115,59 @@ contains
       !> Sum
       real(wp) :: total
 
-      real(wp), dimension(0:highest) :: coefficient, g, moment
+      real(wp), dimension(0:highest) :: g, moment
       real(wp) :: decay
-      integer :: i, k, n
+      integer :: k
+
+      g = self%slope_powers(x)
+      total = 0.0_wp
+      do k = 1, size(moduli)
+         call find_moments(rates(k)*scale, moment, decay)
+         total = total + moduli(k)*(decay*start(k) &
+            + ((g(1)*moment(1) + (g(2)*moment(2) + g(3)*moment(3))) &
+            + ((g(4)*moment(4) + g(5)*moment(5)) + (g(6)*moment(6) + g(7)*moment(7)))))
+      end do
+   end function total
+
+   !> Sum of Re(G_k w_k) at the end
+   pure function total_of_pairs(self, moduli, rates, scale, start, x) result(total)
+      class(settling_t), intent(in) :: self
+      !> One modulus G_k of each pair, shape (pairs)
+      complex(wp), intent(in) :: moduli(:)
+      !> Its rate l_k [1/s], real part > 0, shape (pairs)
+      complex(wp), intent(in) :: rates(:)
+      !> Duration D of the panel [s]
+      real(wp), intent(in) :: scale
+      !> w_k at the start, real and imaginary part, shape (2*pairs)
+      real(wp), intent(in) :: start(:)
+      !> x at the points, dx/dy = 0 at the last one, shape (0:n)
+      real(wp), intent(in) :: x(0:)
+      !> Sum
+      real(wp) :: total
+
+      real(wp) :: g(0:highest)
+      complex(wp) :: moment(0:highest), decay
+      integer :: k
+
+      g = self%slope_powers(x)
+      total = 0.0_wp
+      do k = 1, size(moduli)
+         call find_complex_moments(rates(k)*scale, moment, decay)
+         total = total + real(moduli(k)*(decay*cmplx(start(2*k - 1), start(2*k), wp) &
+            + sum(g(1:)*moment(1:))), wp)
+      end do
+   end function total_of_pairs
+
+   !> Coefficients of -dx/dy in powers of y
+   pure function slope_powers(self, x) result(g)
+      class(settling_t), intent(in) :: self
+      !> x at the points, shape (0:n)
+      real(wp), intent(in) :: x(0:)
+      !> Coefficients
+      real(wp) :: g(0:highest)
+
+      real(wp) :: coefficient(0:highest)
+      integer :: i, n
 
       n = ubound(x, 1)
       coefficient = 0.0_wp
@@ -125,14 +178,7 @@ contains
       do i = 0, highest
          g = g + self%power(:, i)*coefficient(i)
       end do
-      total = 0.0_wp
-      do k = 1, size(moduli)
-         call find_moments(rates(k)*scale, moment, decay)
-         total = total + moduli(k)*(decay*start(k) &
-            + ((g(1)*moment(1) + (g(2)*moment(2) + g(3)*moment(3))) &
-            + ((g(4)*moment(4) + g(5)*moment(5)) + (g(6)*moment(6) + g(7)*moment(7)))))
-      end do
-   end function total
+   end function slope_powers
 
    !> Moments m_k = int_0^1 exp(-a y^2) y^k dy
    pure subroutine find_moments(a, moment, decay)
@@ -182,5 +228,44 @@ contains
          end do
       end if
    end subroutine find_moments
+
+   !> The same moments for a complex a: from series where it is small, else upwards from m_0 with
+   !> Laplace's continued fraction of erfc
+   pure subroutine find_complex_moments(a, moment, decay)
+      !> a, real part >= 0
+      complex(wp), intent(in) :: a
+      complex(wp), intent(out) :: moment(0:highest)
+      !> exp(-a)
+      complex(wp), intent(out) :: decay
+
+      ! where the fraction takes over, and as many terms of both as give 12 digits
+      real(wp), parameter :: smallest = 6.0_wp
+      integer, parameter :: terms = 50
+      complex(wp) :: series(2), fraction, root
+      integer :: i, k
+
+      decay = exp(-a)
+      if (abs(a) < smallest) then
+         series = 1.0_wp
+         do i = terms, 1, -1
+            series = 1.0_wp + 2.0_wp*a/real([highest + 2*i, highest + 1 + 2*i], wp)*series
+         end do
+         moment(highest - 1:) = decay*series/real([highest, highest + 1], wp)
+         do k = highest - 2, 0, -1
+            moment(k) = (decay + 2.0_wp*a*moment(k + 2))/real(k + 1, wp)
+         end do
+      else
+         root = sqrt(a)
+         fraction = root
+         do i = terms, 1, -1
+            fraction = root + 0.5_wp*real(i, wp)/fraction
+         end do
+         moment(0) = 0.5_wp*(sqrt(pi) - decay/fraction)/root
+         moment(1) = 0.5_wp*(1.0_wp - decay)/a
+         do k = 0, highest - 2
+            moment(k + 2) = 0.5_wp*(real(k + 1, wp)*moment(k) - decay)/a
+         end do
+      end if
+   end subroutine find_complex_moments
 
 end module vcor_numeric_radau_settling

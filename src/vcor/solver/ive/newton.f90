@@ -76,7 +76,7 @@ contains
       end do
       panel%converged = newton%converged
       if (.not. panel%converged) return
-      call problem%integrate(equations, panel)
+      call problem%integrate(rule, equations, panel)
       if (equations%closes) call problem%settle(rule, equations, start, panel)
    end subroutine solve
 
@@ -188,7 +188,7 @@ contains
          last = max(size, tiny(1.0_wp))
       end do
       if (.not. panel%converged) return
-      call problem%integrate(equations, panel)
+      call problem%integrate(rule, equations, panel)
       if (equations%closes) then
          call problem%settle(rule, equations, start, panel)
       else if (.not. equations%rebounds) then
@@ -302,7 +302,7 @@ contains
             panel%t1(n) = 0.0_wp
             call correct(newton, problem, equations, inverse, panel)
             if (newton%failed) return
-            call problem%integrate(equations, panel)
+            call problem%integrate(rule, equations, panel)
             call problem%settle(rule, equations, start, panel)
             ! N is linear in (1 - theta)^2 at the end
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))

@@ -296,8 +296,6 @@ contains
          impulse = times(map%square, e%lambda, numbers)
          lost = e%alpha*force + e%inverse_mass*apply(map%right, impulse)
          if (e%remembers) lost = lost + apply_product(map%right, map%square, e%plate, impulse)
-         if (abs(e%instant) > 0.0_wp) &
-            lost = lost + e%instant*apply(map%right, ratio(map%square, numbers, e%lambda))
          if (e%frozen) then
             lost = lost - integral(e, e%alpha_rate*force)
          else if (e%varies) then
@@ -433,8 +431,9 @@ contains
 
    !> Forces of a solution and their integrals I = I_n + H F, J = J_n + H I_n + H^2 F, and the
    !> motion that they make where it is not the solution itself
-   pure subroutine integrate(self, e, panel)
+   pure subroutine integrate(self, rule, e, panel)
       class(panel_problem_t), intent(in) :: self
+      type(collocation_t), intent(in) :: rule
       type(equations_t), intent(inout) :: e
       type(panel_t), intent(inout) :: panel
 
@@ -457,42 +456,45 @@ contains
             panel%drift(1:) = -apply(map%right, rate)
             panel%deflection(1:) = panel%deflection(0) &
                + apply_product(map%right, map%square, e%lambda, rate)
-            if (abs(e%instant) > 0.0_wp) call self%follow_force(e, numbers, panel)
+            if (abs(e%instant) > 0.0_wp) call self%follow_force(rule, e, panel)
          end if
       end associate
    end subroutine integrate
 
    !> What a plate that follows the force at once adds to the deflection, and its recoil. With
    !> F = kappa u(s) - M, kappa about dF/du, M is smooth in time where s goes to zero and F is not:
-   !> F' = kappa u' s' - M' with s' = w - instant F'
-   pure subroutine follow_force(self, e, numbers, panel)
+   !> F' = kappa u' s' - M' with s' = w - instant F'. While the contact recedes F is smooth itself,
+   !> and F' zero at its end
+   pure subroutine follow_force(self, rule, e, panel)
       class(panel_problem_t), intent(in) :: self
+      type(collocation_t), intent(in) :: rule
       type(equations_t), intent(in) :: e
-      !> Numbers of the forces [N]
-      real(wp), intent(in) :: numbers(width)
       type(panel_t), intent(inout) :: panel
 
-      real(wp), dimension(width) :: memory_rate, stiffness, velocity
-      real(wp) :: kappa
+      real(wp), dimension(width) :: stiffness, velocity
+      real(wp) :: kappa, memory_rate(0:width)
       integer :: n
 
       n = panel%stages
-      associate (map => e%map, contact => self%modes%contact)
-         panel%deflection(1:) = panel%deflection(1:) &
-            + e%instant*(panel%force(1:) - panel%force(0))
-         kappa = 0.0_wp
-         if (.not. (e%rebounds .or. contact%viscosity > 0.0_wp)) kappa = contact%equilibrium &
-            + sum(contact%moduli/(1.0_wp + contact%rates*e%elapsed(n)))
-         memory_rate = panel%force(0)*map%left_one - numbers
-         if (kappa > 0.0_wp) memory_rate = memory_rate + kappa*apply(map%left, e%f)
-         memory_rate = apply(map%right, ratio(map%square, memory_rate, e%lambda))
-         stiffness = 0.0_wp
-         if (kappa > 0.0_wp) stiffness = kappa*e%slope
-         velocity = self%impact%free_velocity(panel%time(1:)) - panel%impulse(1:)*e%inverse_mass &
-            - e%alpha*panel%force(1:) + panel%drift(1:)
-         panel%recoil(1:) = e%instant*(stiffness*velocity - memory_rate) &
-            /(1.0_wp + e%instant*stiffness)
-      end associate
+      panel%deflection(1:) = panel%deflection(1:) + e%instant*(panel%force(1:) - panel%force(0))
+      memory_rate = -panel%force
+      stiffness = 0.0_wp
+      if (.not. e%rebounds) then
+         associate (contact => self%modes%contact)
+            kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*e%elapsed(n)))
+         end associate
+         memory_rate(1:) = memory_rate(1:) + kappa*e%f
+         stiffness = kappa*e%slope
+      end if
+      memory_rate(n + 1:) = 0.0_wp
+      memory_rate = rule%slopes(memory_rate)
+      if (e%closes) n = n - 1
+      memory_rate(1:n) = memory_rate(1:n)/(panel%map(1) + 2.0_wp*panel%map(2)*rule%node(1:n))
+      velocity = self%impact%free_velocity(panel%time(1:)) - panel%impulse(1:)*e%inverse_mass &
+         - e%alpha*panel%force(1:) + panel%drift(1:)
+      panel%recoil(1:) = e%instant*(stiffness*velocity - memory_rate(1:)) &
+         /(1.0_wp + e%instant*stiffness)
+      panel%recoil(n + 1:) = 0.0_wp
    end subroutine follow_force
 
    !> Where time stands still at the end of the panel, collocation there says nothing about internal
@@ -511,6 +513,9 @@ contains
                  impact => self%impact)
          if (e%remembers) panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, &
             e%scale, start%p, panel%impulse(:n))
+         if (allocated(plate%pair_rates)) panel%drift(n) = panel%drift(n) &
+            - rule%settling%total_of_pairs(plate%pair_moduli, plate%pair_rates, e%scale, &
+            start%p(size(plate%rates) + 1:), panel%impulse(:n))
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
             + rule%settling%total(contact%moduli, contact%rates, e%scale, start%lag, &
