@@ -94,7 +94,7 @@ def test_a_loop(results):
     (line,) = curves(made.axes[0])
     x, y = 1e-3 * line.get_xdata(), line.get_ydata()
     lost = float(vcor.open(path).hysteresis_energy)
-    assert np.trapezoid(y, x) == pytest.approx(lost, rel=1e-3)
+    assert np.diff(x) @ (y[1:] + y[:-1]) / 2 == pytest.approx(lost, rel=1e-3)
     assert texts(made) == [f"energy loss {1e3 * lost:.4g} mJ"]
     assert y[-1] == pytest.approx(0.0, abs=1.0)
 
@@ -132,7 +132,7 @@ def test_a_map(results):
     assert axis.get_yscale() == "log" and axis.get_xscale() == "linear"
     assert bar.get_ylabel() == "coefficient of restitution"
     narrow = figure([results / "cube.h5"], ranges={"z": (0.4, 0.8), "x": (5.0, None)})
-    assert narrow.axes[0].collections[0].get_clim() == (0.4, 0.8)
+    assert narrow.axes[1].get_ylim() == (0.4, 0.8)
     assert narrow.axes[0].get_xlim()[0] == 5.0
 
 
@@ -143,7 +143,7 @@ def test_where_the_model_does_not_hold(results):
     hatched = any(data.validity == "outside")
     assert bool(spans) == hatched == ("outside of the model's validity" in texts(made))
     for patch in spans:
-        low, high = patch.get_x(), patch.get_x() + patch.get_width()
+        low, high = patch.get_extents().transformed(made.axes[0].transData.inverted()).intervalx
         v = data["impact.velocity"]
         inside = data.validity.values[(v > low) & (v < high)]
         assert (inside == "outside").all()
@@ -491,7 +491,7 @@ def test_errors(bad, monkeypatch, capsys, words, code, line):
     with pytest.raises(SystemExit) as caught:
         main(words)
     out, err = capsys.readouterr()
-    assert (caught.value.code, out) == (code, "")
+    assert (caught.value.code, out) == (code, ""), err
     assert re.fullmatch(rf"vcor: error: .*{line}.*\n", err), err
     assert sorted(bad.iterdir()) == before
 
@@ -516,20 +516,25 @@ def test_no_damage_is_missed(results, tmp_path):
 NAMES = ["$(touch X)", "x'; touch X; '", 'x".system("touch X")."', "-e {x}", "#x \\", "Stoß_α"]
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_names_are_names(results, tmp_path, monkeypatch, name):
+def test_names_are_names(results, tmp_path, monkeypatch):
     """As the name of a figure, of its folder and of the file of results; the script works too."""
     monkeypatch.chdir(tmp_path)
-    shutil.copy(results / "sweep.h5", f"{name}.h5")
     (tmp_path / "points ' \".csv").write_text("velocity,cor\n5,0.4\n")
-    main(["--quiet", "--output", f"{name}/", "--", f"./{name}.h5"])
-    assert (tmp_path / name / f"{name}_sweep.svg").exists()
-    words = ["--quiet", "--script", f"--output=out/{name}.svg"]
-    main([*words, "--", f"{name}.h5", "points ' \".csv"])
-    first = Path("out", f"{name}.svg").read_bytes()
-    Path("out", f"{name}.svg").unlink()
-    subprocess.run([sys.executable, f"./{name}.py"], cwd="out", check=True)
-    assert Path("out", f"{name}.svg").read_bytes() == first
+    drawn = {}
+    for name in NAMES:
+        shutil.copy(results / "sweep.h5", f"{name}.h5")
+        main(["--quiet", "--output", f"{name}/", "--", f"./{name}.h5"])
+        assert (tmp_path / name / f"{name}_sweep.svg").exists()
+        words = ["--quiet", "--script", f"--output=out/{name}.svg"]
+        main([*words, "--", f"{name}.h5", "points ' \".csv"])
+        drawn[name] = Path("out", f"{name}.svg").read_bytes()
+        Path("out", f"{name}.svg").unlink()
+    # one interpreter for all scripts, as most of the time goes into its imports
+    runner = "import runpy, sys\nfor name in sys.argv[1:]: runpy.run_path(name, {}, '__main__')"
+    scripts = [f"./{name}.py" for name in NAMES]
+    subprocess.run([sys.executable, "-c", runner, *scripts], cwd="out", check=True)
+    for name, first in drawn.items():
+        assert Path("out", f"{name}.svg").read_bytes() == first, name
     assert not list(tmp_path.rglob("X"))
 
 

@@ -7,6 +7,7 @@ import os
 import struct
 import zlib
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -43,9 +44,11 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
     path = os.fspath(path)
     _check(path)
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as root:
+        # A file without dimension scales, which is none of vcor's, is for its readers to refuse
+        options: dict[str, Any] = {"engine": "h5netcdf", "phony_dims": "access"}
+        with xr.open_dataset(path, **options) as root:
             attrs = dict(root.attrs)
-        with xr.open_dataset(path, engine="h5netcdf", group=group) as data:
+        with xr.open_dataset(path, group=group, **options) as data:
             result = data.load()
     except (KeyError, OSError) as error:
         if isinstance(error, KeyError) or "group not found" in str(error):
