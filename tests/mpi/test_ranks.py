@@ -22,7 +22,9 @@ ENVIRONMENT = {
     "OMPI_ALLOW_RUN_AS_ROOT": "1",
     "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
 }
-MPIRUN = [os.environ.get("VCOR_MPIRUN", "mpirun"), "--oversubscribe", "--bind-to", "none"]
+# Ranks that wait give their core to those that work: there may be more ranks than cores
+WAITING = ["--mca", "mpi_yield_when_idle", "1"]
+MPIRUN = [os.environ.get("VCOR_MPIRUN", "mpirun"), "--oversubscribe", "--bind-to", "none", *WAITING]
 
 
 @pytest.fixture
