@@ -67,6 +67,13 @@ def test_the_readme_has_the_index_of_the_manual():
         assert re.sub(r"\]\((\w+\.md)\)", r"](docs/\1)", row) in text_of("README.md")
 
 
+def test_one_version():
+    version = re.search(r'^version = "(.*)"$', (ROOT / "fpm.toml").read_text(), re.MULTILINE)[1]
+    assert f"\nversion: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    changes = (ROOT / "CHANGELOG.md").read_text()
+    assert re.search(r"^## (\S+) \(\d{4}-\d\d-\d\d\)$", changes, re.MULTILINE)[1] == version
+
+
 def test_the_index_names_every_page():
     index = text_of("docs/README.md")
     for page in (ROOT / "docs").glob("*.md"):
