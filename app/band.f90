@@ -27,13 +27,10 @@ contains
       type(job_t), intent(in) :: job
       type(summary_t), intent(in) :: summary
 
-      character(len=:), allocatable :: name
       integer :: sphere, plate
 
-      call job%case%get('sphere', 'material', name)
-      sphere = job%case%find_material(name)
-      call job%case%get('plate', 'material', name)
-      plate = job%case%find_material(name)
+      sphere = job%case%material_of('sphere')
+      plate = job%case%material_of('plate')
       call warn_of_band(job, summary, sphere)
       call warn_of_temperatures(job, sphere)
       if (plate == sphere) return

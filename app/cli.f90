@@ -107,7 +107,7 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: name
+      character(len=:), allocatable :: name, value
       integer :: i, mark
       logical :: plain, flag
 
@@ -135,6 +135,7 @@ contains
       end if
 
       plain = .false.
+      value = ''
       i = 1
       do while (i < size(words))
          i = i + 1
@@ -163,8 +164,7 @@ contains
             return
          end if
          if (name == '--help') then
-            deallocate (request%files)
-            allocate (request%files(0))
+            request%files = request%files(:0)
             if (request%command /= 'help') call append(request%files, request%command)
             request%command = 'help'
             return
@@ -182,30 +182,20 @@ contains
             end if
             if (i > size(words)) call raise(error, error_usage, 'option '//name//' needs a value')
          end if
-         if (.not. allocated(error) .and. flag) call apply(request, name, '', error)
-         if (.not. (allocated(error) .or. flag)) &
-            call take_value(request, name, words(i)%text(mark + 1:), error)
+         if (allocated(error)) return
+         value = words(i)%text(merge(len(words(i)%text), mark, flag) + 1:)
+         if (.not. flag .and. len_trim(value) == 0) then
+            call raise(error, error_usage, 'option '//name//' needs a value')
+         else if (all(name /= ['--set  ', '--fix  ', '--units']) .and. control_in(value) /= '') then
+            call raise(error, error_usage, name//": found "//control_in(value)//" in '" &
+               //printable(value)//"', expected a text that can be read on one line")
+         else
+            call apply(request, name, value, error)
+         end if
          if (allocated(error)) return
       end do
       call check_request(request, error)
    end subroutine parse
-
-   !> Take the value of an option
-   subroutine take_value(request, option, value, error)
-      type(request_t), intent(inout) :: request
-      character(len=*), intent(in) :: option, value
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      if (len_trim(value) == 0) then
-         call raise(error, error_usage, 'option '//option//' needs a value')
-      else if (all(option /= ['--set  ', '--fix  ', '--units']) .and. control_in(value) /= '') then
-         call raise(error, error_usage, option//": found "//control_in(value)//" in '" &
-            //printable(value)//"', expected a text that can be read on one line")
-      else
-         call apply(request, option, value, error)
-      end if
-   end subroutine take_value
 
    !> Set what an option stands for
    subroutine apply(request, option, value, error)

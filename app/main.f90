@@ -7,8 +7,7 @@ program vcor_main
    use vcor_app_cli, only : argument_t, get_arguments, parse, request_t, sum_of_words
    use vcor_app_external, only : run_external
    use vcor_app_fit, only : fit_data
-   use vcor_app_help, only : help_text
-   use vcor_app_help_json, only : help_json
+   use vcor_app_help, only : help_json, help_text
    use vcor_app_job, only : job_t, prepare
    use vcor_app_material, only : show_materials
    use vcor_app_merge, only : merge_shards
@@ -70,12 +69,21 @@ contains
       !> The first error, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=:), allocatable :: text, topic
+
       if (this_rank() > 0 .and. request%command /= 'run') return
       select case (request%command)
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
       case ('help')
-         call help(request, error)
+         topic = ''
+         if (size(request%files) > 0) topic = request%files(1)%text
+         if (request%json) then
+            text = help_json()
+         else
+            call help_text(topic, text, error)
+         end if
+         if (.not. allocated(error)) call write_stdout(text, error)
       case ('merge')
          call merge_shards(request, error)
       case ('fit')
@@ -138,23 +146,6 @@ contains
       if (this_rank() > 0) return
       write (error_unit, '(a)') 'vcor: error: '//error%message
    end subroutine complain
-
-   !> Print a help page
-   subroutine help(request, error)
-      type(request_t), intent(in) :: request
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: text
-
-      if (request%json) then
-         text = help_json()
-      else if (size(request%files) > 0) then
-         call help_text(request%files(1)%text, text, error)
-      else
-         call help_text('', text, error)
-      end if
-      if (.not. allocated(error)) call write_stdout(text, error)
-   end subroutine help
 
    !> What the program chooses where the case says nothing, as comments
    function chosen(job) result(text)

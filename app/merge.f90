@@ -1,9 +1,8 @@
 !> Merging the shards of a sweep: the files of a run that has solved it in one piece
 module vcor_app_merge
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : write_files
+   use vcor_app_files, only : look_back, previous_t, remark, replaced, write_files
    use vcor_app_job, only : job_t, name_files
-   use vcor_app_previous, only : look_back, previous_t, remark, replaced
    use vcor_app_validity, only : points_report
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : new_grid

@@ -2,9 +2,9 @@
 module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_band, only : warn_of_bands
-   use vcor_app_files, only : write_files, write_numbers
+   use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
+      write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : percent, report, short, significant
    use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
       solve_exact
@@ -95,7 +95,7 @@ contains
       !> The report, with what the exact mechanics give
       subroutine write_screen()
          type(model_t) :: exact
-         character(len=:), allocatable :: lines
+         character(len=:), allocatable :: lines, method
          logical :: is_shown
 
          lines = as_line('mechanics: '//mechanics_of(job))
@@ -109,26 +109,20 @@ contains
             lines = lines//measures_report(outcome, worker%problem%around)
          end if
          if (.not. is_shown) exact%outcome = outcome_t()
-         call write_stdout(report(job%case%source, identity%title, &
-            method_of(job, worker%trajectory), outcome, exact%outcome, &
-            worker%trajectory%state(1, worker%trajectory%last), lines &
-            //kernel_of(worker%trajectory)//remarks_on(job, outcome)//files &
-            //as_line(replaced(previous))), trouble)
+         associate (course => worker%trajectory)
+            ! what stood for a kernel that is no finite sum of exponentials
+            if (course%kernel_terms > 0) lines = lines//as_line('kernel as a sum of ' &
+               //integer_text(course%kernel_terms)//' exponentials, to ' &
+               //short(course%kernel_error))
+            method = job%method
+            ! auto hands over where ive fails
+            if (course%stages == 0) method = 'direct'
+            call write_stdout(report(job%case%source, identity%title, method, outcome, &
+               exact%outcome, course%state(1, course%last), lines &
+               //remarks_on(job, outcome)//files//as_line(replaced(previous))), trouble)
+         end associate
       end subroutine write_screen
    end subroutine run_impact
-
-   !> The method that solved an impact
-   function method_of(job, trajectory) result(method)
-      type(job_t), intent(in) :: job
-      !> Course of its impact
-      type(trajectory_t), intent(in) :: trajectory
-      !> ive or direct
-      character(len=:), allocatable :: method
-
-      method = job%method
-      ! auto hands over where ive fails
-      if (trajectory%stages == 0) method = 'direct'
-   end function method_of
 
    !> What there is to say as a line of the report
    pure function as_line(words) result(text)
@@ -140,18 +134,6 @@ contains
       text = ''
       if (len(words) > 0) text = '  '//words//new_line('a')
    end function as_line
-
-   !> What stood for a kernel that is no finite sum of exponentials
-   function kernel_of(trajectory) result(text)
-      type(trajectory_t), intent(in) :: trajectory
-      !> A line, or nothing
-      character(len=:), allocatable :: text
-
-      text = ''
-      if (trajectory%kernel_terms > 0) text = '  kernel as a sum of ' &
-         //integer_text(trajectory%kernel_terms)//' exponentials, to ' &
-         //short(trajectory%kernel_error)//new_line('a')
-   end function kernel_of
 
    !> Remarks on an outcome that is beyond what the model is made for
    function remarks_on(job, outcome) result(text)
@@ -184,8 +166,7 @@ contains
          real(wp), allocatable :: times(:)
          integer :: item
 
-         call job%case%get(body, 'material', name)
-         item = job%case%find_material(name)
+         item = job%case%material_of(body)
          if (data_file(job%case, item) == '') return
          call job%case%get('material', 'times', times, item)
          if (job%case%given('material', 'shift', item)) then

@@ -6,17 +6,19 @@ module vcor_app_sweep
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : threads_of, write_files, write_numbers
+   use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
+      write_numbers
    use vcor_app_job, only : directory_of, job_t, shard_text
-   use vcor_app_previous, only : heed, look_back, previous_t, remark, replaced
    use vcor_app_screen, only : heading, padded, right, shown, significant
-   use vcor_app_signals, only : catch_signals, release_signals, signal_name
+   use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
+      signal_name
    use vcor_app_validity, only : about_numbers, points_remark, points_report
-   use vcor_app_watch, only : watch_t
+   use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
-   use vcor_io_checkpoint, only : create_checkpoint, open_checkpoint, read_points, read_results
-   use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout
-   use vcor_io_identity, only : identity_of, number_of
+   use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points, &
+      read_results
+   use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout, write_terminal
+   use vcor_io_identity, only : identity_of, identity_t, number_of
    use vcor_text, only : integer_text
    use vcor_io_path, only : anything_at, make_directory, quoted_path
    use vcor_io_results, only : summary_table
@@ -24,7 +26,7 @@ module vcor_app_sweep
    use vcor_kinds, only : wp
    use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
-   use vcor_sweep_points, only : clock, solve_points
+   use vcor_sweep_points, only : clock, default_threads, monitor_t, solve_points
    use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities, &
       quantity_place, quantity_t
    use vcor_sweep_summary, only : new_summary, summary_t
@@ -38,6 +40,41 @@ module vcor_app_sweep
    integer, parameter :: signal_base = 128
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
+
+   !> Time after which a sweep gets a file [s]: what is shorter is solved anew as quickly
+   real(wp), parameter :: time_without_file = 0.25_wp
+   !> Time between two lines on the terminal [s]
+   real(wp), parameter :: time_between_lines = 0.2_wp
+   !> Letters of the line
+   integer, parameter :: width = 72
+
+   !> Who watches
+   type, extends(monitor_t) :: watch_t
+      !> Whether what is finished is kept in a file
+      logical :: keeps = .false.
+      !> Whether the terminal shows how far it is
+      logical :: shows = .false.
+      character(len=:), allocatable :: path
+      type(identity_t) :: identity
+      !> Its grid
+      type(grid_t) :: grid
+      type(checkpoint_t) :: file
+      !> Points that are done
+      integer :: done = 0
+      !> Points that were done at the beginning
+      integer :: done_before = 0
+      !> When it began [s]
+      real(wp) :: start = 0.0_wp
+      !> When the terminal was written to [s]
+      real(wp), private :: shown = 0.0_wp
+   contains
+      !> Points are finished
+      procedure :: finished
+      !> Whether the sweep has to stop
+      procedure, nopass :: stop_code => caught_signal
+      !> Take the line off the terminal
+      procedure :: clear
+   end type watch_t
 
 contains
 
@@ -400,5 +437,112 @@ contains
          //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
          //job%coordinates(failures%inexact%first)
    end function inexact
+
+   !> Points are finished
+   subroutine finished(self, first, last, count, summary, error)
+      class(watch_t), intent(inout) :: self
+      !> First place that may have changed
+      integer, intent(in) :: first
+      !> Last place that may have changed
+      integer, intent(in) :: last
+      !> Number of points between them that are new
+      integer, intent(in) :: count
+      type(summary_t), intent(inout) :: summary
+      !> Set if they cannot be kept; unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: now
+
+      now = clock()
+      self%done = self%done + count
+      if (self%file%is_open()) then
+         call self%file%put(first, last, summary, error)
+      else if (self%keeps .and. now - self%start > time_without_file) then
+         call create_checkpoint(self%file, self%path, self%identity, self%grid, summary, &
+            error)
+      end if
+      if (allocated(error)) return
+      if (self%shows .and. now - self%shown > time_between_lines) then
+         call show(self, now - self%start)
+         self%shown = now
+      end if
+   end subroutine finished
+
+   !> Show how far the sweep is
+   subroutine show(self, time)
+      type(watch_t), intent(in) :: self
+      !> Time since it began [s]
+      real(wp), intent(in) :: time
+
+      character(len=:), allocatable :: line
+      real(wp) :: rate
+      integer :: points
+
+      points = self%identity%part%count()
+      rate = real(self%done - self%done_before, wp)/max(time, epsilon(time))
+      line = '  '//integer_text(self%done)//' of '//integer_text(points)//' points, ' &
+         //integer_text(int(100.0_wp*real(self%done, wp)/real(points, wp)))//' %, ' &
+         //rate_text(rate)//', '//time_text(real(points - self%done, wp)/rate)//' left'
+      call write_terminal(achar(13)//line//repeat(' ', max(0, width - len(line))))
+   end subroutine show
+
+   !> A rate in words
+   function rate_text(rate) result(text)
+      !> Points per second
+      real(wp), intent(in) :: rate
+      !> The rate, per minute or hour where it is small
+      character(len=:), allocatable :: text
+
+      if (rate >= 1.0_wp) then
+         text = integer_text(nint(rate))//'/s'
+      else if (rate >= 1.0_wp/60.0_wp) then
+         text = integer_text(nint(60.0_wp*rate))//'/min'
+      else
+         text = integer_text(nint(3600.0_wp*rate))//'/h'
+      end if
+   end function rate_text
+
+   !> A time as a clock has it
+   function time_text(time) result(text)
+      !> Time [s]
+      real(wp), intent(in) :: time
+      !> Hours, minutes and seconds
+      character(len=:), allocatable :: text
+
+      real(wp), parameter :: longest = 1.0e9_wp
+      integer :: left
+
+      left = ceiling(min(time, longest))
+      text = integer_text(left/3600)//':'//two(mod(left, 3600)/60)//':'//two(mod(left, 60))
+
+   contains
+
+      !> Two digits
+      function two(number)
+         !> Number, from 0 to 59
+         integer, intent(in) :: number
+         character(len=2) :: two
+
+         write (two, '(i2.2)') number
+      end function two
+   end function time_text
+
+   !> Take the line off the terminal
+   subroutine clear(self)
+      class(watch_t), intent(inout) :: self
+
+      if (self%shown > 0.0_wp) &
+         call write_terminal(achar(13)//repeat(' ', width)//achar(13))
+      self%shown = 0.0_wp
+   end subroutine clear
+
+   !> Number of threads of each rank
+   function threads_of(request) result(threads)
+      type(request_t), intent(in) :: request
+      integer :: threads
+
+      threads = request%threads
+      if (threads == 0) threads = default_threads()
+   end function threads_of
 
 end module vcor_app_sweep
