@@ -2,8 +2,7 @@
 module vcor_app_fit
    use vcor_app_cli, only : read_number, read_positive, read_whole, request_t
    use vcor_app_fit_screen, only : fit_remarks, fit_report
-   use vcor_app_job, only : job_t, prepare
-   use vcor_app_material, only : find_window, window_t
+   use vcor_app_job, only : find_window, job_t, prepare, window_t
    use vcor_case_address, only : material_names
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : material_text, put_material

@@ -8,11 +8,25 @@ module vcor_text
 
    public :: lower, same_name, canonical_name, integer_text, real_text, logical_text, quoted
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
+   public :: buffer_t
 
    !> Longest part of somebody's text that a message repeats [bytes]
    integer, parameter :: shown_bytes = 60
    !> Largest magnitude whose rounding to fewer digits cannot overflow
    real(wp), parameter :: round_limit = 1.0e300_wp
+
+   !> A growing text
+   type :: buffer_t
+      !> Bytes so far
+      integer :: length = 0
+      !> Room for bytes, the first `length` are in use
+      character(len=:), allocatable, private :: room
+   contains
+      !> Put a text at the end
+      procedure :: add
+      !> The text so far
+      procedure :: text
+   end type buffer_t
 
 contains
 
@@ -324,5 +338,31 @@ contains
          return
       end do
    end function name_flaw
+
+   !> Put a text at the end
+   pure subroutine add(self, part)
+      class(buffer_t), intent(inout) :: self
+      character(len=*), intent(in) :: part
+      character(len=:), allocatable :: larger
+      integer, parameter :: first_room = 256
+
+      if (.not. allocated(self%room)) allocate(character(len=first_room) :: self%room)
+      if (self%length + len(part) > len(self%room)) then
+         allocate(character(len=2*(self%length + len(part))) :: larger)
+         larger(:self%length) = self%room(:self%length)
+         call move_alloc(larger, self%room)
+      end if
+      self%room(self%length+1:self%length+len(part)) = part
+      self%length = self%length + len(part)
+   end subroutine add
+
+   !> The text so far
+   pure function text(self) result(all)
+      class(buffer_t), intent(in) :: self
+      !> Everything that was added
+      character(len=self%length) :: all
+
+      if (self%length > 0) all = self%room(:self%length)
+   end function text
 
 end module vcor_text

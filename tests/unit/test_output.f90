@@ -4,8 +4,8 @@ program test_output
       & ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_error, only : error_file, error_internal, error_t
-   use vcor_io_table, only : add_column, add_dimension, check_table, column_of, coordinate_row, &
+   use vcor_error, only : error_file, error_t
+   use vcor_io_table, only : add_column, add_dimension, column_of, coordinate_row, &
       new_table, row_count, table_t, text_value
    use vcor_io_csv, only : write_csv
    use vcor_io_file, only : commit, create_file, discard, output_file_t, put, write_file, &
@@ -37,7 +37,6 @@ program test_output
    call test_long_paths()
    call test_stdout()
    call test_table()
-   call test_table_faults()
    call test_csv()
    call test_csv_comments()
    call test_csv_grid()
@@ -343,7 +342,6 @@ contains
 
    !> Building tables
    subroutine test_table()
-      type(error_t), allocatable :: error
       type(table_t) :: table
       integer :: i
 
@@ -354,8 +352,6 @@ contains
             & "column"))
       end do
       call add_column(table, column_of("text", ["a   ", "    ", " bc ", "def "], "", "text"))
-      call check_table(table, error)
-      call check(.not. allocated(error), "table is sound")
       call check_text(table%title, "title", "title is trimmed")
       call check(row_count(table) == 4, "number of rows")
       call check(size(table%columns) == 101, "number of columns")
@@ -373,38 +369,6 @@ contains
       call check(all([(coordinate_row(table, 1, i), i = 1, 6)] == [1, 1, 1, 2, 2, 2]), "slow")
       call check(all([(coordinate_row(table, 2, i), i = 1, 6)] == [1, 2, 3, 1, 2, 3]), "fast")
    end subroutine test_table
-
-   !> What cannot be a table
-   subroutine test_table_faults()
-      type(table_t) :: table, unborn
-
-      table = small_table()
-      call add_column(table, column_of("long", [1, 2, 3], "1", "too long"))
-      call check_fault(table, "'long' has another length", "length")
-      table = small_table()
-      call add_column(table, column_of("cor", [1, 2], "1", "twice"))
-      call check_fault(table, "two columns of a table are called 'cor'", "name twice")
-      call add_column(table, column_of("long", [1, 2, 3], "1", "too long"))
-      call check_fault(table, "two columns of a table are called 'cor'", "the first fault counts")
-      table = small_table()
-      call add_column(table, column_of("impact", [1, 2], "1", "a dimension"))
-      call check_fault(table, "'impact'", "name of a dimension")
-      table = small_table()
-      call add_column(table, column_of(" ", [1, 2], "1", "nothing"))
-      call check_fault(table, "no name", "no name")
-      table = small_table()
-      call add_column(table, column_of("a"//lf, [1, 2], "1", "nothing"))
-      call check_fault(table, "not a single line", "name of two lines")
-      table = small_table()
-      call add_dimension(table, "late", 1)
-      call check_fault(table, "'late' comes after the first column", "late dimension")
-      call new_table(table, "summary", "", "")
-      call check_fault(table, "no dimension", "nothing")
-      call add_column(table, column_of("cor", [1, 2], "1", "early"))
-      call check_fault(table, "'cor' comes before the first dimension", "early column")
-      call add_dimension(unborn, "row", 1)
-      call check_fault(unborn, "not begun", "table that was not begun")
-   end subroutine test_table_faults
 
    !> A plain table as CSV
    subroutine test_csv()
@@ -574,30 +538,6 @@ contains
       call check_contains(error%message, part, what//": message")
       call check(index(error%message, lf) == 0, what//": message has one line")
    end subroutine check_failed
-
-   !> Check that a table has a fault and is not written
-   subroutine check_fault(table, part, what)
-      !> Table to check
-      type(table_t), intent(in) :: table
-      !> What the message holds
-      character(len=*), intent(in) :: part
-      !> What was wrong
-      character(len=*), intent(in) :: what
-      type(error_t), allocatable :: error
-      character(len=:), allocatable :: path
-
-      path = join_path(folder, "fault")
-      call check_table(table, error)
-      call check(allocated(error), what//": is an error")
-      if (.not. allocated(error)) return
-      call check(error%code == error_internal, what//": is an internal error")
-      call check_contains(error%message, part, what//": message")
-      call write_csv(path, table, error)
-      call check(allocated(error), what//": no csv")
-      call write_hdf5(path, [table], error)
-      call check(allocated(error), what//": no hdf5")
-      call check(.not. file_exists(path), what//": no file")
-   end subroutine check_fault
 
    !> Check how many private folders there are
    subroutine check_temporaries(expected, what)

@@ -1,11 +1,10 @@
 !> A case as namelists
 module vcor_case_printed
    use vcor_kinds, only : wp
-   use vcor_buffer, only : buffer_t
    use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
       last_row, list_key, logical_key, real_key, row_for_model
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_text, only : integer_text, logical_text, quoted, real_text
+   use vcor_text, only : buffer_t, integer_text, logical_text, quoted, real_text
    implicit none
    private
 

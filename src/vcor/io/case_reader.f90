@@ -5,8 +5,8 @@
 module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
+   use vcor_io_file, only : read_text_file
    use vcor_io_path, only : folder_of, path_from
-   use vcor_io_text_file, only : read_text_file
    use vcor_case_values, only : convert, convert_text, range_message
    use vcor_case_address, only : resolve, unknown_group, unknown_key
    use vcor_case_case, only : address_t, case_t, entry_t

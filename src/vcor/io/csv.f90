@@ -18,13 +18,13 @@
 !> of a dimension are columns too, unless they are just numbers in a row.
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
-   use vcor_buffer, only : buffer_t
    use vcor_error, only : error_t
    use vcor_io_file, only : commit, create_file, output_file_t, put, write_stdout
    use vcor_io_number, only : decimal_t, decimal_text, longest_integer, longest_real, new_decimal, &
       put_integer, put_real
-   use vcor_io_table, only : check_table, column_t, coordinate_row, integer_column, real_column, &
+   use vcor_io_table, only : column_t, coordinate_row, integer_column, real_column, &
       row_count, table_t
+   use vcor_text, only : buffer_t
    implicit none
    private
 
@@ -58,8 +58,7 @@ contains
       type(output_file_t) :: file
       integer :: i
 
-      call check_table(table, error)
-      if (.not. allocated(error)) call create_file(file, filename, error)
+      call create_file(file, filename, error)
       if (.not. allocated(error)) call put(file, head_of(table), error)
       if (.not. allocated(error)) call put_rows(table, pack([(i, i=1, size(table%dimensions) &
          + size(table%columns))], [.not. table%dimensions%is_index, &

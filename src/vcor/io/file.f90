@@ -1,4 +1,4 @@
-!> Files that are there as a whole or not at all, and the standard output
+!> Text files as one text, files that are there as a whole or not at all, and the standard output
 !>
 !> A file is written in a private folder `.vcor-XXXXXX` in its own directory, so that renaming stays
 !> within one file system, under a name that nobody can foresee and for the user alone: what is made
@@ -22,15 +22,17 @@ module vcor_io_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_null_char, &
       c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : output_unit
-   use vcor_error, only : error_file, error_t, raise
-   use vcor_io_path, only : check_name, directory_exists, file_exists, join_path, &
+   use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, join_path, &
       plain_file_exists, quoted_path, raise_system
    use vcor_io_posix, only : c_fallocate, c_fclose, c_fflush, c_fileno, c_fopen, c_fwrite, &
       c_isatty, c_mkdtemp, c_rename, c_rmdir, c_text, c_unlink, c_write, errno_interrupted, &
       last_errno, standard_error, standard_output
+   use vcor_text, only : buffer_t, printable, shortened
    implicit none
    private
 
+   public :: read_text_file
    public :: output_file_t, create_file, put, reserve, commit, discard, write_file
    public :: move_file, remove_file
    public :: make_scratch, remember, remove_scratch, remove_all_scratch
@@ -61,7 +63,52 @@ module vcor_io_file
    !> Private folders and what is in them now
    type(place_t), volatile :: places(most)
 
+   !> Largest file that is read [bytes]; a case has a few hundred, a long Prony series a few
+   !> thousand, a table of 10,000 points half a million
+   integer, parameter :: largest_file = 4*1024**2
+
 contains
+
+   !> Read a text file, or what has no size beforehand, such as a pipe, as it is
+   subroutine read_text_file(path, text, error, kind)
+      character(len=*), intent(in) :: path
+      character(len=:), allocatable, intent(out) :: text
+      !> Error of code `error_file` when it cannot be read, `error_input` when it is too large
+      type(error_t), allocatable, intent(out) :: error
+      !> What the file is to be, for messages; absent: a case file
+      character(len=*), intent(in), optional :: kind
+
+      type(buffer_t) :: buffer
+      character(len=256) :: message
+      character(len=:), allocatable :: expected, failed
+      character :: byte
+      integer :: unit, status
+
+      expected = 'a case file'
+      if (present(kind)) expected = kind
+      call check_readable(path, expected, error)
+      if (allocated(error)) return
+      failed = 'open'
+      open (newunit=unit, file=trim(path), status='old', action='read', access='stream', &
+         form='unformatted', iostat=status, iomsg=message)
+      if (status == 0) then
+         failed = 'read'
+         do while (status == 0 .and. buffer%length <= largest_file)
+            read (unit, iostat=status, iomsg=message) byte
+            if (status == 0) call buffer%add(byte)
+         end do
+         close (unit)
+      end if
+      text = buffer%text()
+      if (status == 0) then
+         call raise(error, error_input, printable(path)//': the file is larger than 4 MB, ' &
+            //'expected '//expected)
+      else if (.not. is_iostat_end(status)) then
+         ! the system's reason is what stands after the name of the file
+         call raise(error, error_file, printable(path)//': cannot '//failed//' the file: ' &
+            //shortened(trim(adjustl(message(index(message, ': ', back=.true.) + 1:)))))
+      end if
+   end subroutine read_text_file
 
    !> Begin a file: nothing is seen under its real name before `commit`
    subroutine create_file(file, path, error)

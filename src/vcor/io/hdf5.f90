@@ -17,14 +17,15 @@
 !> `vcor_io_file`. A seal (`vcor_io_seal`) ends it. Objects hold no times: the same tables give the
 !> same bytes.
 module vcor_io_hdf5
-   use, intrinsic :: iso_c_binding, only : c_char, c_loc, c_null_char, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_loc, c_null_char, c_ptr
    use, intrinsic :: iso_fortran_env, only : int64
    use h5ds, only : h5dsattach_scale_f, h5dsset_scale_f
    use hdf5, only : h5aclose_f, h5acreate_f, h5awrite_f, h5d_alloc_time_early_f, h5dclose_f, &
-      h5dcreate_f, h5dwrite_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
+      h5dcreate_f, h5dwrite_f, h5eset_auto_f, h5f_acc_rdwr_f, h5f_acc_trunc_f, h5f_close_strong_f, &
       h5f_libver_v18_f, h5fclose_f, h5fcreate_f, h5fopen_f, h5gclose_f, h5gcreate_f, &
-      h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, h5p_dataset_create_f, h5p_file_access_f, &
-      h5p_file_create_f, h5p_group_create_f, h5pclose_f, h5pcopy_f, h5pcreate_f, &
+      h5iis_valid_f, h5open_f, h5p_crt_order_indexed_f, h5p_crt_order_tracked_f, &
+      h5p_dataset_create_f, h5p_file_access_f, h5p_file_create_f, h5p_group_create_f, &
+      h5pclose_f, h5pcopy_f, h5pcreate_f, &
       h5pset_alloc_time_f, h5pset_fclose_degree_f, h5pset_fill_value_f, h5pset_libver_bounds_f, &
       h5pset_link_creation_order_f, h5pset_obj_track_times_f, h5s_scalar_f, h5sclose_f, &
       h5screate_f, h5screate_simple_f, h5t_cset_utf8_f, h5t_ieee_f64le, h5t_native_double, &
@@ -32,16 +33,15 @@ module vcor_io_hdf5
       hsize_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : commit, create_file, discard, output_file_t, put, reserve
-   use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
    use vcor_io_path, only : quoted_path
    use vcor_io_seal, only : seal_of
-   use vcor_io_table, only : check_table, column_t, integer_column, real_column, table_t, &
+   use vcor_io_table, only : column_t, integer_column, real_column, table_t, &
       text_column, text_value
    use vcor_kinds, only : wp
    implicit none
    private
 
-   public :: write_hdf5, remark_t
+   public :: write_hdf5, remark_t, begin_hdf5, end_hdf5, c_get_offset
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -65,7 +65,40 @@ module vcor_io_hdf5
       character(len=:), allocatable :: fault
    end type writer_t
 
+   interface
+      !> Where in the file the numbers of a dataset begin that is stored in one piece
+      function c_get_offset(dataset) result(offset) bind(c, name='H5Dget_offset')
+         import :: c_int64_t
+         integer(c_int64_t), intent(in), value :: dataset
+         !> Bytes before it, all bits set if there is none
+         integer(c_int64_t) :: offset
+      end function c_get_offset
+   end interface
+
 contains
+
+   !> Open the library and keep it from printing errors
+   subroutine begin_hdf5(fault)
+      !> What failed; unallocated on success
+      character(len=:), allocatable, intent(out) :: fault
+
+      integer :: status
+      logical :: is_open
+
+      ! the types of HDF5 are there if the library was opened, by whomever; it is never closed here,
+      ! since that would close everything else the program has open in HDF5
+      call h5iis_valid_f(h5t_native_double, is_open, status)
+      if (status < 0 .or. .not. is_open) call h5open_f(status)
+      if (status >= 0) call h5eset_auto_f(0, status)
+      if (status < 0) fault = 'open its library'
+   end subroutine begin_hdf5
+
+   !> Let HDF5 print errors, as it does by itself
+   subroutine end_hdf5()
+      integer :: ignored
+
+      call h5eset_auto_f(1, ignored)
+   end subroutine end_hdf5
 
    !> Write tables to a file. It is there as a whole or, if that fails, as it was before
    subroutine write_hdf5(filename, tables, error, remarks, changing)
@@ -83,16 +116,12 @@ contains
 
       type(output_file_t) :: file
       type(writer_t) :: writer
-      type(handler_t) :: handler
       integer :: i, ignored
 
-      do i = 1, size(tables)
-         if (.not. allocated(error)) call check_table(tables(i), error)
-      end do
-      if (.not. allocated(error)) call create_file(file, filename, error)
+      call create_file(file, filename, error)
       if (allocated(error)) return
 
-      call begin_hdf5(handler, writer%fault)
+      call begin_hdf5(writer%fault)
       if (.not. allocated(writer%fault)) then
          call begin_file(writer, file, bytes_of(tables), error)
          if (.not. allocated(error)) then
@@ -115,7 +144,7 @@ contains
          call h5tclose_f(writer%text_type, ignored)
          call h5pclose_f(writer%group_creation, ignored)
          call h5pclose_f(writer%dataset_creation, ignored)
-         call end_hdf5(handler)
+         call end_hdf5()
       end if
       if (allocated(writer%fault)) then
          call raise(error, error_file, &

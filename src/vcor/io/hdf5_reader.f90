@@ -19,8 +19,8 @@ module vcor_io_hdf5_reader
       h5tget_class_f, h5tget_cset_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, hid_t, &
       hsize_t, size_t
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_io_hdf5_library, only : begin_hdf5, c_get_offset, end_hdf5, handler_t
-   use vcor_io_path, only : directory_exists, file_exists, plain_file_exists
+   use vcor_io_hdf5, only : begin_hdf5, c_get_offset, end_hdf5
+   use vcor_io_path, only : check_readable, plain_file_exists
    use vcor_io_seal, only : check_seal
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_text, only : integer_text, printable, shortened
@@ -36,8 +36,6 @@ module vcor_io_hdf5_reader
       character(len=:), allocatable :: path
       !> The file, as HDF5 numbers it; negative unless it is open
       integer(hid_t), private :: file = -1_hid_t
-      !> Handler of errors before
-      type(handler_t), private :: handler
    end type reader_t
 
 contains
@@ -55,24 +53,16 @@ contains
       logical :: is_hdf5
 
       reader%path = printable(filename)
-      if (filename == '') then
-         call raise(error, error_file, 'the name of the file is empty, expected that of a file ' &
-            //'of results')
-      else if (directory_exists(filename)) then
-         call raise(error, error_file, reader%path//': found a directory, expected a file of ' &
-            //'results')
-      else if (.not. file_exists(filename)) then
-         call raise(error, error_file, reader%path//': there is no such file')
-      else if (.not. plain_file_exists(filename)) then
-         ! a pipe would keep a reader waiting
-         call raise(error, error_file, reader%path//': found a device or a pipe, expected a file ' &
-            //'of results')
-      end if
+      call check_readable(filename, 'a file of results', error)
+      ! a pipe would keep a reader waiting
+      if (allocated(error)) return
+      if (.not. plain_file_exists(filename)) call raise(error, error_file, reader%path &
+         //': found a device or a pipe, expected a file of results')
       ! before HDF5 sees anything of it
       if (.not. allocated(error)) call check_seal(filename, error)
       if (allocated(error)) return
 
-      call begin_hdf5(reader%handler, fault)
+      call begin_hdf5(fault)
       if (allocated(fault)) then
          call raise(error, error_file, reader%path//': HDF5 cannot '//fault)
          return
@@ -88,7 +78,7 @@ contains
          if (status < 0) call raise(error, error_file, reader%path//': HDF5 cannot open it: it ' &
             //'is damaged, or being written')
       end if
-      if (allocated(error)) call end_hdf5(reader%handler)
+      if (allocated(error)) call end_hdf5()
    end subroutine open_hdf5
 
    !> Close a file
@@ -100,7 +90,7 @@ contains
 
       if (reader%file < 0_hid_t) return
       call h5fclose_f(reader%file, ignored)
-      call end_hdf5(reader%handler)
+      call end_hdf5()
       reader%file = -1_hid_t
    end subroutine close_hdf5
 

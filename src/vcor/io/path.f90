@@ -13,7 +13,7 @@ module vcor_io_path
 
    public :: file_exists, plain_file_exists, directory_exists, make_directory
    public :: folder_of, join_path, path_from, same_file, quoted_path
-   public :: anything_at, check_name, check_plain, raise_system
+   public :: anything_at, check_name, check_plain, check_readable, raise_system
 
 contains
 
@@ -62,6 +62,23 @@ contains
          error_file, quoted_path(path)//' is a link, a folder, a pipe or a device, expected a ' &
          //'file or nothing')
    end subroutine check_plain
+
+   !> Check that there is something of that name that may be read
+   subroutine check_readable(path, expected, error)
+      character(len=*), intent(in) :: path
+      !> What it is to be, for messages
+      character(len=*), intent(in) :: expected
+      !> Set if there is nothing, or a directory
+      type(error_t), allocatable, intent(out) :: error
+
+      if (path == '') then
+         call raise(error, error_file, 'the name of the file is empty, expected that of '//expected)
+      else if (directory_exists(path)) then
+         call raise(error, error_file, printable(path)//': found a directory, expected '//expected)
+      else if (.not. file_exists(path)) then
+         call raise(error, error_file, printable(path)//': there is no such file')
+      end if
+   end subroutine check_readable
 
    !> What there is at a path
    function kind_of(path, follows) result(kind)

@@ -1,9 +1,21 @@
-!> Outcomes and trajectories as tables
+!> Outcomes, trajectories and moduli of materials as tables
+!>
+!>     summary       a row per impact; of materials a row for each: glassy and rubbery modulus, the
+!>                   values at t0 and omega_min
+!>     history       a row per time
+!>     relaxation    E(t), a row per material and time
+!>     dynamic       E', E'' and tan(delta), a row per material and angular frequency
+!>
+!> In HDF5 the last two are arrays with the dimensions material and time, or frequency. What does
+!> not deform is in the summary only. The window of the case's own impact, t <= t0 and
+!> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
+!> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
-      move_column, new_table, real_column, table_t, text_column
+   use vcor_io_table, only : add_column, add_dimension, add_fact, column_of, column_t, &
+      integer_column, move_column, new_table, real_column, table_t, text_column
    use vcor_kinds, only : wp
+   use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_case_grid, only : axis_t, grid_t
    use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t
    use vcor_sweep_summary, only : summary_t, values_t
@@ -11,7 +23,13 @@ module vcor_io_results
    implicit none
    private
 
-   public :: summary_table, history_table, axis_column, quantity_column
+   public :: summary_table, history_table, moduli_tables, axis_column, quantity_column
+
+   !> Value of in_window where there is no window
+   integer, parameter :: unknown = -1
+   !> What in_window says
+   character(len=*), parameter :: window_meaning = 'whether the impact of the case depends on ' &
+      //'it: 1 yes, 0 no, -1 not known'
 
 contains
 
@@ -121,5 +139,120 @@ contains
          end associate
       end do
    end subroutine history_table
+
+   !> Moduli as tables
+   subroutine moduli_tables(moduli, title, case_text, tables)
+      type(moduli_t), intent(in) :: moduli
+      character(len=*), intent(in) :: title
+      character(len=*), intent(in) :: case_text
+      !> A row per material; per material and time; per material and frequency
+      type(table_t), intent(out) :: tables(3)
+
+      integer, allocatable :: all(:), soft(:)
+      real(wp), allocatable :: storage(:), loss(:)
+      integer :: i, longest
+
+      all = [(i, i=1, size(moduli%materials))]
+      soft = pack(all, .not. moduli%materials%rigid)
+      longest = maxval([(len(moduli%materials(i)%name), i=1, size(all))])
+
+      call begin(tables(1), 'summary', all)
+      call add_summary(tables(1), moduli%materials)
+
+      call begin(tables(2), 'relaxation', soft)
+      call add_dimension(tables(2), column_of('time', moduli%times, 's', &
+         'time since the strain step'))
+      call add_column(tables(2), column_of('relaxation_modulus', &
+         [(moduli%materials(soft(i))%relaxation, i=1, size(soft))], 'Pa', &
+         'relaxation modulus E(t)'))
+      call add_column(tables(2), column_of('in_window', &
+         spread_out(moduli%times <= moduli%contact_time), &
+         '1', window_meaning))
+
+      storage = [(moduli%materials(soft(i))%storage, i=1, size(soft))]
+      loss = [(moduli%materials(soft(i))%loss, i=1, size(soft))]
+      call begin(tables(3), 'dynamic', soft)
+      call add_dimension(tables(3), column_of('frequency', moduli%frequencies, 'rad/s', &
+         'angular frequency'))
+      call add_column(tables(3), column_of('storage_modulus', storage, 'Pa', "storage modulus E'"))
+      call add_column(tables(3), column_of('loss_modulus', loss, 'Pa', "loss modulus E''"))
+      call add_column(tables(3), column_of('loss_tangent', loss_tangent(storage, loss), '1', &
+         "loss tangent E''/E'"))
+      call add_column(tables(3), column_of('in_window', &
+         spread_out(moduli%frequencies >= moduli%min_frequency), '1', window_meaning))
+
+   contains
+
+      !> Begin a table of some materials
+      subroutine begin(table, name, items)
+         type(table_t), intent(out) :: table
+         character(len=*), intent(in) :: name
+         !> Numbers of the materials
+         integer, intent(in) :: items(:)
+
+         character(len=longest) :: names(size(items))
+         integer :: k
+
+         call new_table(table, name, title, case_text)
+         if (moduli%contact_time > 0.0_wp) then
+            call add_fact(table, 'contact_time', moduli%contact_time, 's', &
+               'contact time t0 of the impact: it depends on t <= t0')
+            call add_fact(table, 'min_frequency', moduli%min_frequency, 'rad/s', &
+               'lowest frequency of interest, 2 pi/t0')
+         end if
+         do k = 1, size(items)
+            names(k) = moduli%materials(items(k))%name
+         end do
+         call add_dimension(table, column_of('material', names, '', 'name of the material'))
+      end subroutine begin
+
+      !> Whether points are in the window, for each of the materials
+      pure function spread_out(inside) result(column)
+         !> Whether a point is, shape (points)
+         logical, intent(in) :: inside(:)
+         !> 1, 0 or -1, shape (points*materials)
+         integer :: column(size(inside)*size(soft))
+
+         integer :: k
+
+         column = [(merge(1, 0, inside), k=1, size(soft))]
+         if (.not. moduli%contact_time > 0.0_wp) column = unknown
+      end function spread_out
+   end subroutine moduli_tables
+
+   !> Columns of the summary
+   pure subroutine add_summary(table, materials)
+      type(table_t), intent(inout) :: table
+      !> The materials, shape (n)
+      type(curves_t), intent(in) :: materials(:)
+
+      character(len=16) :: models(size(materials))
+      real(wp) :: tangent(size(materials))
+      integer :: i
+
+      do i = 1, size(materials)
+         models(i) = materials(i)%model
+      end do
+      tangent = loss_tangent(materials%storage_at_min, materials%loss_at_min)
+      call add_column(table, column_of('model', models, '', 'model of the relaxation modulus'))
+      call add_column(table, column_of('density', materials%density, 'kg/m3', &
+         'density, 0 where not given'))
+      call add_column(table, column_of('poisson_ratio', materials%poisson_ratio, '1', &
+         "Poisson's ratio"))
+      call add_column(table, column_of('glassy_modulus', materials%glassy, 'Pa', &
+         'modulus at t = 0'))
+      call add_column(table, column_of('rubbery_modulus', materials%rubbery, 'Pa', &
+         'modulus after long times'))
+      call add_column(table, column_of('viscosity', materials%viscosity, 'Pa s', &
+         'dashpot in parallel, which the relaxation modulus leaves out'))
+      call add_column(table, column_of('relaxation_modulus', materials%at_contact_time, 'Pa', &
+         'relaxation modulus at contact_time'))
+      call add_column(table, column_of('storage_modulus', materials%storage_at_min, 'Pa', &
+         'storage modulus at min_frequency'))
+      call add_column(table, column_of('loss_modulus', materials%loss_at_min, 'Pa', &
+         'loss modulus at min_frequency'))
+      call add_column(table, column_of('loss_tangent', tangent, '1', &
+         'loss tangent at min_frequency'))
+   end subroutine add_summary
 
 end module vcor_io_results

@@ -10,11 +10,11 @@ module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t, lines_in, most_columns, not_a_text, read_value, &
       row_t
+   use vcor_io_file, only : read_text_file
    use vcor_io_header, only : angular_units, check_unit, header_t, known_roles => roles, &
       longest_word, name_of, names_columns, note_comment, read_names, read_units, &
       role_complex, role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, &
       role_tangent, role_time, time_units, unit_size
-   use vcor_io_text_file, only : read_text_file
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
    use vcor_text, only : has_control, integer_text, printable, real_text, shortened

@@ -10,20 +10,16 @@
 !> A unit is `1` for numbers without dimension, such as ratios and counts, the SI unit otherwise, as
 !> in `m/s` and `N s`, and empty for text.
 !>
-!> Building a table raises no error: the first fault (lengths that do not match, a name twice) is
-!> kept, and `check_table`, which every writer calls, makes an error of it. All components are
-!> public for the writers; only the procedures below set them.
+!> All components are public for the writers; only the procedures below set them.
 module vcor_io_table
-   use vcor_error, only : error_internal, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_text, only : has_control
    use vcor_version, only : version
    implicit none
    private
 
    public :: table_t, column_t, fact_t, real_column, integer_column, text_column
    public :: new_table, add_fact, add_dimension, add_column, move_column, column_of
-   public :: check_table, row_count, coordinate_row, place_in_table, text_value
+   public :: row_count, coordinate_row, place_in_table, text_value
 
    !> What the values of a column are
    integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
@@ -78,8 +74,6 @@ module vcor_io_table
       type(column_t), allocatable :: columns(:)
       !> Numbers that hold for all of it
       type(fact_t), allocatable :: facts(:)
-      !> First fault in building the table; unallocated if there is none
-      character(len=:), allocatable :: fault
    end type table_t
 
    !> A column: its name, values, unit and meaning
@@ -113,19 +107,6 @@ contains
       table%case_text = case_text
       allocate (table%dimensions(0), table%columns(0), table%facts(0))
    end subroutine new_table
-
-   !> Check that a table is complete and sound
-   pure subroutine check_table(table, error)
-      type(table_t), intent(in) :: table
-      !> Error of code `error_internal`: the first fault in building the table
-      type(error_t), allocatable, intent(out) :: error
-
-      if (allocated(table%fault)) then
-         call raise(error, error_internal, table%fault)
-      else if (size(table%dimensions) == 0) then
-         call raise(error, error_internal, 'the table has no dimension, expected at least one')
-      end if
-   end subroutine check_table
 
    !> Number of rows: the product of the lengths of the dimensions
    pure function row_count(table) result(rows)
@@ -270,14 +251,7 @@ contains
       type(table_t), intent(inout) :: table
       type(column_t), intent(in) :: coordinates
 
-      call look_for_fault(table, coordinates)
-      if (allocated(table%fault)) return
-      if (size(table%columns) > 0) then
-         table%fault = "dimension '"//coordinates%name//"' comes after the first column of its " &
-            //'table'
-      else
-         table%dimensions = [table%dimensions, coordinates]
-      end if
+      table%dimensions = [table%dimensions, coordinates]
    end subroutine add_coordinates
 
    !> Add a column
@@ -300,14 +274,6 @@ contains
       type(column_t), allocatable :: columns(:)
       integer :: i
 
-      call look_for_fault(table, column)
-      if (allocated(table%fault)) return
-      if (size(table%dimensions) == 0) then
-         table%fault = "column '"//column%name//"' comes before the first dimension of its table"
-      else if (column%length /= row_count(table)) then
-         table%fault = "column '"//column%name//"' has another length than its table"
-      end if
-      if (allocated(table%fault)) return
       allocate (columns(size(table%columns) + 1))
       do i = 1, size(table%columns)
          call move_values(table%columns(i), columns(i))
@@ -315,25 +281,6 @@ contains
       call move_values(column, columns(i))
       call move_alloc(columns, table%columns)
    end subroutine move_column
-
-   !> Keep a fault if the name of a column is empty, not on one line or taken
-   pure subroutine look_for_fault(table, column)
-      !> Table that it is for
-      type(table_t), intent(inout) :: table
-      !> Column with its values
-      type(column_t), intent(in) :: column
-
-      if (allocated(table%fault)) return
-      if (.not. allocated(table%columns)) then
-         table%fault = "'"//column%name//"' is added to a table that was not begun"
-      else if (column%name == '') then
-         table%fault = 'a column of a table has no name'
-      else if (has_control(column%name)) then
-         table%fault = 'the name of a column of a table is not a single line of text'
-      else if (place_in_table(table, column%name) > 0) then
-         table%fault = "two columns of a table are called '"//column%name//"'"
-      end if
-   end subroutine look_for_fault
 
    !> Move what a column holds
    pure subroutine move_values(from, to)
