@@ -43,8 +43,6 @@ module vcor_app_cli
       type(time_range_t) :: range
       !> Nothing on the screen but numbers that were asked for
       logical :: quiet = .false.
-      !> Whether help is wanted as JSON
-      logical :: json = .false.
       !> Options that the command alone knows, each as --name=value, shape (n)
       type(argument_t), allocatable :: own(:)
    end type request_t
@@ -213,8 +211,6 @@ contains
          request%quiet = .true.
       case ('--resume')
          request%resume = .true.
-      case ('--json')
-         request%json = .true.
       case ('--set')
          call append(request%settings, value)
       case ('--output')
@@ -262,8 +258,9 @@ contains
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
-      if (request%json .and. size(request%files) > 0) call raise(error, error_usage, &
-         "help --json takes no topic, found '"//printable(request%files(1)%text)//"'")
+      if (request%command == 'help' .and. size(request%own) > 0 .and. size(request%files) > 0) &
+         call raise(error, error_usage, "help --json takes no topic, found '" &
+         //printable(request%files(1)%text)//"'")
    end subroutine check_request
 
    !> Read the value of --shard, I/N

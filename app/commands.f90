@@ -143,6 +143,8 @@ module vcor_app_commands
       entry_t("--set GROUP.KEY=VALUE", "with `--from-model`: replace a value of the case"), &
       entry_t("--output PATH", "write the group to PATH if it ends in .nml, otherwise to " &
       //"DATA_fit.nml in the folder PATH, which is created if it does not exist"), &
+      entry_t("--json FILE", "write values, standard errors, covariance, misfit, band of the " &
+      //"data and the group as JSON, such as `vcor uncertainty --covariance` reads"), &
       entry_t("--from T", "with `--from-model`: first time [s]; default: 1e-5 contact times, " &
       //"rounded to a whole decade"), &
       entry_t("--to T", "with `--from-model`: last time [s]; default: 10 contact times, rounded " &

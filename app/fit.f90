@@ -9,6 +9,7 @@ module vcor_app_fit
    use vcor_case_problem, only : material_of_case, solve_case
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_fit, only : check_fixed, estimate_t, fit_material, fit_t, moduli_of, samples_t
+   use vcor_fit_json, only : fit_json
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_data_file, only : data_file
@@ -20,7 +21,7 @@ module vcor_app_fit
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models, material_data_t, material_t
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_text, only : integer_text, printable
+   use vcor_text, only : integer_text, name_flaw, printable
    use vcor_words, only : contains_word, join_words, suggestion
    implicit none
    private
@@ -46,6 +47,8 @@ module vcor_app_fit
       real(wp) :: density = 0.0_wp
       !> Name of the material; unallocated: made from that of the file
       character(len=:), allocatable :: name
+      !> File of the JSON document; unallocated: none
+      character(len=:), allocatable :: json
       !> Case, and perhaps material, to be sampled in place of data
       character(len=:), allocatable :: source
       logical :: dynamic = .false.
@@ -74,7 +77,7 @@ contains
       type(sampled_t) :: sampled
       type(samples_t) :: samples
       type(fit_t) :: fit
-      character(len=:), allocatable :: source, place, note, path, group, tail
+      character(len=:), allocatable :: source, place, note, path, group, remarks, tail
       real(wp) :: density, poisson_ratio
 
       call read_wish(request, wish, error)
@@ -107,13 +110,25 @@ contains
       end if
       if (allocated(wish%name)) fit%data%name = wish%name
       if (wish%reading%poisson_ratio < no_ratio) poisson_ratio = wish%reading%poisson_ratio
-      group = fit_remarks(fit, source, samples)//material_text(fit%data, density, poisson_ratio, &
-         samples%first_time(), samples%last_time())
+      remarks = fit_remarks(fit, source, samples)
+      group = material_text(fit%data, density, poisson_ratio, samples%first_time(), &
+         samples%last_time())
+      path = ''
       if (allocated(request%directory)) then
          call choose_path(request%directory, source, sampled, path, error)
-         if (.not. allocated(error)) call write_file(path, group, error)
+         if (.not. allocated(error)) call write_file(path, remarks//group, error)
          if (allocated(error)) return
          tail = tail//'  written '//path//new_line('a')
+      end if
+      if (allocated(wish%json)) then
+         if (same_file(wish%json, path)) call raise(error, error_usage, &
+            '--json and --output are the same file '//printable(path))
+         if (.not. allocated(error)) call keep_what_was_read(wish%json, source, sampled, error)
+         if (.not. allocated(error)) call make_directory(folder_of(wish%json), error)
+         if (.not. allocated(error)) &
+            call write_file(wish%json, fit_json(fit, samples, group), error)
+         if (allocated(error)) return
+         tail = tail//'  written '//wish%json//new_line('a')
       end if
       if (request%quiet) return
       if (.not. (wish%reading%poisson_ratio < no_ratio .or. allocated(wish%source))) &
@@ -121,7 +136,7 @@ contains
          //new_line('a')
       if (.not. density > 0.0_wp) tail = tail//'  note: the density is not known, --density ' &
          //'gives it'//new_line('a')
-      call write_stdout(fit_report(fit, source, note, samples, tail)//group, error)
+      call write_stdout(fit_report(fit, source, note, samples, tail)//remarks//group, error)
    end subroutine fit_data
 
    !> Read the options of fit, and see whether they go together
@@ -220,6 +235,10 @@ contains
          call read_positive(option, value, wish%density, error)
       case ('--name')
          wish%name = trim(adjustl(value))
+      case ('--json')
+         wish%json = value
+         if (name_flaw(value) /= '') call raise(error, error_usage, "--json: the name '" &
+            //printable(value)//"' "//name_flaw(value)//', expected another name')
       case default
          wish%source = value
       end select
@@ -284,7 +303,7 @@ contains
       integer :: mark
 
       path = trim(output)
-      call keep_what_was_read(path)
+      call keep_what_was_read(path, source, sampled, error)
       if (allocated(error)) return
       name = path(len(folder_of(path)) + 1:)
       mark = index(name, '.', back=.true.)
@@ -298,31 +317,36 @@ contains
          call raise(error, error_usage, "unknown format '"//printable(name(mark + 1:))//"' of '" &
             //printable(path)//"'; expected .nml; the name of a folder ends with a slash")
       end if
-      if (.not. allocated(error)) call keep_what_was_read(path)
-
-   contains
-
-      !> Refuse the name of a file that was read
-      subroutine keep_what_was_read(name)
-         character(len=*), intent(in) :: name
-
-         integer :: i
-         logical :: taken
-
-         if (sampled%item == 0) then
-            taken = same_file(name, source)
-         else
-            taken = same_file(name, sampled%window%case%source)
-            do i = 1, sampled%window%case%count('material')
-               if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i))
-               if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i, &
-                  'shift_file'))
-            end do
-         end if
-         if (taken) call raise(error, error_input, printable(source)//': the material would ' &
-            //'replace '//name//': give another --output')
-      end subroutine keep_what_was_read
+      if (.not. allocated(error)) call keep_what_was_read(path, source, sampled, error)
    end subroutine choose_path
+
+   !> Refuse the name of a file that was read
+   subroutine keep_what_was_read(name, source, sampled, error)
+      !> Name of a file to be written
+      character(len=*), intent(in) :: name
+      !> The data file, or the case
+      character(len=*), intent(in) :: source
+      !> What was sampled, if it was
+      type(sampled_t), intent(in) :: sampled
+      !> Of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i
+      logical :: taken
+
+      if (sampled%item == 0) then
+         taken = same_file(name, source)
+      else
+         taken = same_file(name, sampled%window%case%source)
+         do i = 1, sampled%window%case%count('material')
+            if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i))
+            if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i, &
+               'shift_file'))
+         end do
+      end if
+      if (taken) call raise(error, error_input, printable(source)//': the fit would replace ' &
+         //name//', which is read: give another name')
+   end subroutine keep_what_was_read
 
    !> Name of a file without folder and ending
    pure function stem_of(path) result(stem)

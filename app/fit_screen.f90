@@ -2,6 +2,7 @@
 module vcor_app_fit_screen
    use vcor_app_screen, only : percent, short, significant
    use vcor_fit, only : fit_t, samples_t, state_bound, state_fixed, unseen_earlier, unseen_later
+   use vcor_fit_json, only : parameter_name
    use vcor_text, only : integer_text, printable
    use vcor_kinds, only : wp
    use vcor_version, only : version
@@ -68,7 +69,7 @@ contains
          //short(most_of(fit))//' Pa'//nl
       do i = 1, size(fit%parameters)
          associate (parameter => fit%parameters(i))
-            if (parameter%state == state_bound) text = text//'! '//name_of(fit, i) &
+            if (parameter%state == state_bound) text = text//'! '//parameter_name(fit, i) &
                //' is at its bound: '//short(parameter%value)//' +- '//short(parameter%error) &
                //' '//trim(parameter%unit)//nl
          end associate
@@ -141,16 +142,6 @@ contains
       end select
    end function condition
 
-   !> Name of a parameter, with the number of the term of a series
-   function name_of(fit, i) result(name)
-      type(fit_t), intent(in) :: fit
-      integer, intent(in) :: i
-      character(len=:), allocatable :: name
-
-      name = trim(fit%parameters(i)%name)
-      if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
-   end function name_of
-
    !> Line of a parameter
    function line(fit, i) result(text)
       type(fit_t), intent(in) :: fit
@@ -161,7 +152,7 @@ contains
       character(len=8) :: unit
 
       associate (parameter => fit%parameters(i))
-         name = name_of(fit, i)
+         name = parameter_name(fit, i)
          unit = parameter%unit
          if (unit == '1') unit = ''
          text = '    '//name//significant(parameter%value)//' '//unit

@@ -8,6 +8,7 @@ module vcor_app_help
       logical_key, range_text, real_key, text_key
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
    use vcor_interval, only : interval_text
+   use vcor_json, only : array, member, object, strings, words
    use vcor_words, only : nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
       statuses
@@ -386,41 +387,41 @@ contains
       do i = 1, size(names)
          list = list//command_object(trim(names(i)))
       end do
-      text = text//array("commands", list)
+      text = text//array(list, "commands")
       list = ""
       do i = 1, size(package_commands)
          list = list//object(member("name", package_commands(i)%term) &
             //member("summary", package_commands(i)%text))
       end do
-      text = text//array("package_commands", list)
+      text = text//array(list, "package_commands")
       list = ""
       do i = 1, size(groups)
          associate (group => groups(i))
             list = list//object(member("name", group%name)//member("meaning", group%meaning) &
-               //flag("required", group%required)//flag("repeated", group%repeated) &
+               //member("required", group%required)//member("repeated", group%repeated) &
                //member("label", group%label)//member("selector", group%selector) &
-               //array("keys", keys_of(group%name)))
+               //array(keys_of(group%name), "keys"))
          end associate
       end do
-      text = text//array("groups", list)//array("summary", columns(quantities())) &
-         //array("history", columns(history_quantities))
+      text = text//array(list, "groups")//array(columns(quantities()), "summary") &
+         //array(columns(history_quantities), "history")
       list = ""
       do i = 1, size(statuses)
          list = list//object(member("name", statuses(i)%name) &
             //member("meaning", statuses(i)%meaning)//member("advice", statuses(i)%advice))
       end do
-      text = text//array("statuses", list)
+      text = text//array(list, "statuses")
       list = ""
       do i = 1, size(screen_words)
          list = list//object(words("words", screen_words(i))//member("meaning", screen_meanings(i)))
       end do
-      text = text//array("screen", list)
+      text = text//array(list, "screen")
       list = ""
       do i = lbound(code_names, 1), ubound(code_names, 1)
          list = list//object("""code"": "//integer_text(i)//", "//member("name", code_names(i)) &
             //member("meaning", code_meanings(i)))
       end do
-      text = object(text//array("exit_codes", list))
+      text = object(text//array(list, "exit_codes"))
       text = text(:len(text) - 2)//nl
    end function help_json
 
@@ -449,9 +450,9 @@ contains
       end do
       associate (summaries => texts_of(command, "summary"))
          text = object(member("name", command)//member("summary", summaries(1)) &
-            //array("usage", strings(texts_of(command, "usage"))) &
-            //array("examples", strings(texts_of(command, "example"))) &
-            //words("options", options_of(command))//array("page", entries))
+            //array(strings(texts_of(command, "usage")), "usage") &
+            //array(strings(texts_of(command, "example")), "examples") &
+            //words("options", options_of(command))//array(entries, "page"))
       end associate
    end function command_object
 
@@ -473,7 +474,7 @@ contains
                //member("value", kind_name(key%value_kind))//member("meaning", key%meaning) &
                //member("unit", key%unit)//member("range", interval_text(key%range)) &
                //words("choices", key%choices)//words("models", key%models) &
-               //flag("required", key%required)
+               //member("required", key%required)
             if (key%default == "''") then
                text = text//member("default", "")
             else if (key%default /= "") then
@@ -521,86 +522,5 @@ contains
          end associate
       end do
    end function columns
-
-   !> Texts as strings. Here as below a comma and one character more end every part
-   function strings(texts) result(list)
-      character(len=*), intent(in) :: texts(:)
-      character(len=:), allocatable :: list
-
-      integer :: i
-
-      list = ""
-      do i = 1, size(texts)
-         list = list//quoted(texts(i))//", "
-      end do
-   end function strings
-
-   !> Members as an object
-   pure function object(members) result(text)
-      character(len=*), intent(in) :: members
-      character(len=:), allocatable :: text
-
-      text = "{"//members(:len(members) - 2)//"},"//nl
-   end function object
-
-   !> A member whose value is a list
-   pure function array(name, list) result(text)
-      character(len=*), intent(in) :: name, list
-      character(len=:), allocatable :: text
-
-      text = quoted(name)//": ["//list(:max(0, len(list) - 2))//"],"//nl
-   end function array
-
-   !> A member whose value is a list of words, given with single blanks between them
-   pure function words(name, list) result(text)
-      character(len=*), intent(in) :: name, list
-      character(len=:), allocatable :: text
-
-      integer :: i
-
-      text = ""
-      do i = 1, len_trim(list)
-         if (list(i:i) /= " ") then
-            text = text//list(i:i)
-         else if (text /= "") then
-            text = text//""", """
-         end if
-      end do
-      if (text /= "") text = """"//text//""", "
-      text = array(name, text)
-   end function words
-
-   !> A member whose value is a text
-   pure function member(name, value) result(text)
-      character(len=*), intent(in) :: name, value
-      character(len=:), allocatable :: text
-
-      text = quoted(name)//": "//quoted(value)//", "
-   end function member
-
-   !> A member whose value is true or false
-   pure function flag(name, value) result(text)
-      character(len=*), intent(in) :: name
-      logical, intent(in) :: value
-      character(len=:), allocatable :: text
-
-      text = quoted(name)//": "//trim(merge("true ", "false", value))//", "
-   end function flag
-
-   !> A text as a string of JSON
-   pure function quoted(words) result(text)
-      !> Text without control characters; blanks at its ends do not count
-      character(len=*), intent(in) :: words
-      character(len=:), allocatable :: text
-
-      integer :: i
-
-      text = """"
-      do i = 1, len_trim(words)
-         if (index("""\", words(i:i)) > 0) text = text//"\"
-         if (i > 1 .or. words(i:i) /= " ") text = text//words(i:i)
-      end do
-      text = text//""""
-   end function quoted
 
 end module vcor_app_help

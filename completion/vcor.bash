@@ -23,7 +23,7 @@ _vcor() {
       merge) options='--output --quiet --help' ;;
       check) options='--set --help' ;;
       material) options='--set --output --from --to --points --quiet --help' ;;
-      fit) options='--model --terms --fix --units --shear --poisson-ratio --density --name --from-model --dynamic --set --output --from --to --points --quiet --help' ;;
+      fit) options='--model --terms --fix --units --shear --poisson-ratio --density --name --from-model --dynamic --set --output --json --from --to --points --quiet --help' ;;
       verify) options='--set --quiet --help' ;;
       help) options='--json --help' ;;
       *)

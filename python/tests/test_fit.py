@@ -1,5 +1,6 @@
 """Fits: the same as those of the program."""
 
+import json
 import re
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from conftest import PAPER, ROOT
 
 import vcor
+from vcor import uncertainty
 
 DATA = ROOT / "examples" / "soft_rubber_data.csv"
 
@@ -59,6 +61,65 @@ def test_arrays():
         flags=re.DOTALL | re.MULTILINE,
     )
     assert 0 < vcor.Case(text).solve()["cor"] < 1
+
+
+def test_covariance_of_the_terms_is_that_of_the_linear_problem():
+    t = np.geomspace(1e-5, 1e-1, 60)
+    noise = np.random.default_rng(1).normal(size=t.size)
+    made = 2e6 + 6e6 * np.exp(-t / 2e-4) + 4e6 * np.exp(-t / 5e-3)
+    found = vcor.fit((t, made * np.exp(0.01 * noise)), terms=2)
+    rest, *moduli = (one.value for one in found.parameters if one.unit == "Pa")
+    times = found["times"]
+    terms = [np.exp(-t / time) for time in times]
+    model = rest + sum(g * e for g, e in zip(moduli, terms, strict=True))
+    slopes = [np.ones_like(t)]
+    for g, e, time in zip(moduli, terms, times, strict=True):
+        slopes += [e, g * e * t / time**2]
+    slopes = np.array(slopes).T / model[:, None]
+    misfit = np.log(model / made) - 0.01 * noise
+    covariance = np.linalg.inv(slopes.T @ slopes) * (misfit @ misfit) / (t.size - 5)
+    assert np.allclose(found.covariance, covariance, rtol=1e-4, atol=0)
+
+
+@pytest.mark.parametrize("model", ["prony", "power_law"])
+def test_json_of_the_program(program, tmp_path, model):
+    """The document is that of Python, and `vcor uncertainty` takes it."""
+    words = ["--terms", "3"] if model == "prony" else ["--fix", "exponent=0.4"]
+    program("fit", DATA, "--model", model, *words, "--name", "soft rubber", "--json", "a/fit.json")
+    written = json.loads((tmp_path / "a" / "fit.json").read_text())
+    fix = {} if model == "prony" else {"exponent": 0.4}
+    terms = 3 if model == "prony" else None
+    found = vcor.fit(DATA, model=model, terms=terms, fix=fix, name="soft rubber")
+    assert written == found.as_dict()
+    values, errors = np.array(
+        [(one["value"], one["standard_error"]) for one in written["parameters"]]
+    ).T
+    correlation = np.array(written["correlation"])
+    assert np.array_equal(correlation, correlation.T)
+    assert np.allclose(written["covariance"], correlation * np.outer(errors, errors), rtol=1e-14)
+    assert np.array_equal(np.diag(correlation) == 0, errors == 0)
+    text = vcor.read(PAPER / "sls.nml").text()
+    text = re.sub(r"&material\s+name = 'rubber'.*?^/$", written["group"], text, flags=re.S | re.M)
+    text = text.replace("name = 'soft rubber'", "density = 1100, name = 'soft rubber'")
+    case = vcor.Case(text.replace("'rubber'", "'soft rubber'"))
+    (tmp_path / "case.nml").write_text(case.text())
+    uncertainty.main(
+        [str(tmp_path / "case.nml"), "--covariance", str(tmp_path / "a" / "fit.json")]
+        + ["--samples", "64", "--quantity", "cor", "--output", str(tmp_path), "--quiet"]
+    )
+    spread = json.loads((tmp_path / "case_uncertainty.json").read_text())["quantities"]["cor"]
+    slopes = np.array([spread["elasticity"].get(f"soft rubber.{one['name']}", 0.0) / one["value"]
+                       for one in written["parameters"] if one["value"] > 0])  # fmt: skip
+    kept = values > 0
+    variance = slopes @ np.array(written["covariance"])[np.ix_(kept, kept)] @ slopes
+    assert spread["material"] == pytest.approx(spread["value"] * np.sqrt(variance), rel=0.5)
+
+
+def test_no_file_that_was_read_is_replaced(program, tmp_path):
+    (tmp_path / "data.csv").write_text(DATA.read_text())
+    assert "would replace data.csv" in program("fit", "data.csv", "--json", "data.csv", code=3)
+    words = ["--json", "a.nml", "--output", "a.nml"]
+    assert "the same file" in program("fit", "data.csv", *words, code=2)
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 from collections.abc import Mapping, Sequence
 from ctypes import Structure, c_char_p, c_double, c_int, c_void_p
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +17,6 @@ from numpy.typing import ArrayLike
 from . import _library
 from ._library import InputError
 
-#: States of a parameter, by their number
-_STATES = ("free", "fixed", "bound")
 #: Largest Poisson's ratio; beyond it: not given
 _INCOMPRESSIBLE = 0.5
 
@@ -31,9 +31,7 @@ class _Fit(Structure):
         ("fixed_names", c_char_p),
         ("fixed_values", c_void_p),
         *[(name, c_double) for name in ("poisson_ratio", "density")],
-        *[(name, c_void_p) for name in ("group", "names", "values")],
-        *[(name, c_int) for name in ("count", "structured")],
-        ("rms", c_double),
+        ("json", c_void_p),
     ]
 
 
@@ -62,6 +60,9 @@ class Fit:
     rms: float
     #: Whether the model follows the data: the misfits are noise
     follows: bool
+    #: Covariance of the parameters, in their units; 0 of what is given
+    covariance: _library.Floats = field(repr=False)
+    _document: dict[str, Any] = field(repr=False)
 
     def __getitem__(self, name: str) -> float | list[float]:
         """Value of a parameter, a list for the terms of a series."""
@@ -69,6 +70,10 @@ class Fit:
         if not values:
             raise KeyError(name)
         return values if name in ("moduli", "times") else values[0]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All results, as `vcor fit --json` writes them."""
+        return self._document
 
     def __str__(self) -> str:
         return self.group
@@ -146,14 +151,13 @@ def fit(
         wish.at, wish.modulus, wish.loss = (row.ctypes.data for row in (*arrays, arrays[-1])[:3])
     wish.name = (name or "material").encode()
     _library._call("vcor_fit_data", ctypes.addressof(wish))
-    group = _library._take_text(c_void_p(wish.group)) or ""
-    lines = (_library._take_text(c_void_p(wish.names)) or "").splitlines()
-    numbers = _library._take_numbers(c_void_p(wish.values), 3 * wish.count).reshape(-1, 3)
+    found = json.loads(_library._take_text(c_void_p(wish.json)) or "")
     parameters = tuple(
-        Parameter(*line.partition(" ")[::2], float(value), float(error), _STATES[int(state)])
-        for line, (value, error, state) in zip(lines, numbers, strict=True)
+        Parameter(one["name"].partition("(")[0], *list(one.values())[1:])
+        for one in found["parameters"]
     )
-    return Fit(parameters, group, float(wish.rms), not wish.structured)
+    covariance = np.array(found["covariance"], dtype=float)
+    return Fit(parameters, found["group"], found["rms_misfit"], found["follows"], covariance, found)
 
 
 def read_moduli(

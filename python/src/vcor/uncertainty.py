@@ -267,6 +267,10 @@ def propagate(
         column = values[:, k]
         if np.ptp(column) <= 1e-12 * np.abs(column).max():
             continue
+        if len(names) == 1:
+            # SALib takes a single group for none
+            first[0, k] = total[0, k] = 1.0
+            continue
         indices = analysis.analyze(
             problem, column, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
         )
@@ -305,10 +309,10 @@ class _Joint:
             covariance = np.array(source["covariance"], dtype=float)
         except (KeyError, TypeError, ValueError):
             raise InputError("--covariance: found no JSON of vcor fit or identify") from None
-        free = np.diag(covariance) > 0
-        if not (values[free] > 0).all() or not free.any():
+        # what a fit has brought to 0 stays there: it has no logarithm
+        kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
+        if not kept.size:
             raise InputError("--covariance: found no parameter > 0 with a standard error")
-        kept = np.flatnonzero(free)
         scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():

@@ -6,6 +6,7 @@ module vcor_fit_c_api
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
+   use vcor_fit_json, only : fit_json
    use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models
@@ -46,25 +47,15 @@ module vcor_fit_c_api
       real(c_double) :: poisson_ratio
       !> Density [kg/m3]; 0: not known
       real(c_double) :: density
-      !> Found: the &material group; released by free()
-      type(c_ptr) :: group
-      !> Names and units of the parameters, `name unit` a line; released by free()
-      type(c_ptr) :: names
-      !> Value, standard error and state of each; released by free()
-      type(c_ptr) :: values
-      !> Number of parameters
-      integer(c_int) :: count
-      !> 1 if the misfits are no noise: the model does not follow the data
-      integer(c_int) :: structured
-      !> Root of the mean square of the relative misfits [-]
-      real(c_double) :: rms
+      !> Found: the document of `vcor_fit_json`; released by free()
+      type(c_ptr) :: json
    end type c_fit_t
 
 contains
 
    !> Fit a model to data
    function vcor_fit_data(c_fit, error) bind(c) result(code)
-      !> What is to be fitted; its last components are set
+      !> What is to be fitted; its last component is set
       type(c_fit_t), intent(inout) :: c_fit
       !> `vcor_error`, or null
       type(c_ptr), value :: error
@@ -76,13 +67,9 @@ contains
       type(samples_t) :: samples
       type(reading_t) :: reading
       type(fit_t) :: fit
-      character(len=:), allocatable :: model, note, place, names
-      real(wp) :: poisson_ratio
-      integer :: i
+      character(len=:), allocatable :: model, note, place
 
-      c_fit%group = c_null_ptr
-      c_fit%names = c_null_ptr
-      c_fit%values = c_null_ptr
+      c_fit%json = c_null_ptr
 !$omp critical (vcor_c_api)
       allocate (reading%units(0))
       reading%poisson_ratio = c_fit%poisson_ratio
@@ -103,20 +90,9 @@ contains
       end if
       if (.not. allocated(trouble)) then
          fit%data%name = fortran(c_fit%name)
-         poisson_ratio = min(0.5_wp, real(c_fit%poisson_ratio, wp))
-         c_fit%group = c_text(material_text(fit%data, real(c_fit%density, wp), poisson_ratio, &
-            samples%first_time(), samples%last_time()))
-         names = ''
-         do i = 1, size(fit%parameters)
-            names = names//trim(fit%parameters(i)%name)//' '//trim(fit%parameters(i)%unit) &
-               //new_line('a')
-         end do
-         c_fit%names = c_text(names)
-         c_fit%count = size(fit%parameters)
-         c_fit%values = c_numbers([(fit%parameters(i)%value, fit%parameters(i)%error, &
-            real(fit%parameters(i)%state, wp), i=1, size(fit%parameters))])
-         c_fit%rms = fit%rms
-         c_fit%structured = merge(1_c_int, 0_c_int, fit%structured)
+         c_fit%json = c_text(fit_json(fit, samples, material_text(fit%data, &
+            real(c_fit%density, wp), min(0.5_wp, real(c_fit%poisson_ratio, wp)), &
+            samples%first_time(), samples%last_time())))
       end if
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)

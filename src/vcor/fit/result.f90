@@ -71,6 +71,8 @@ module vcor_fit_result
       real(wp) :: variance = 0.0_wp
       !> Whether the misfits are no noise: the model does not follow the data
       logical :: structured = .false.
+      !> Correlation of the parameters [-], shape (n, n); 0 of those that are given
+      real(wp), allocatable :: correlation(:, :)
       !> Condition of the derivatives by the parameters that are free, each scaled to length 1
       real(wp) :: condition = 1.0_wp
    end type fit_t
@@ -114,7 +116,10 @@ contains
       !> Error of code `error_numerical` if the data do not determine the parameters
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: j(size(r), size(x)), inverse(size(x), size(x)), condition, scale
+      real(wp) :: j(size(r), size(x)), inverse(size(x), size(x)), condition
+      !> Standard deviations of the unknowns over that of a residual; of a rate, whose logarithm is
+      !> that of the time but for its sign, with another sign
+      real(wp) :: deviations(size(x))
       integer, allocatable :: inner(:)
       integer :: i
 
@@ -129,12 +134,22 @@ contains
       fit%structured = is_structured(r, j(:, inner), points)
       fit%variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
       call covariance(j, inverse, condition)
+      allocate (fit%correlation(size(fit%parameters), size(fit%parameters)), source=0.0_wp)
       do i = 1, size(x)
+         deviations(i) = sqrt(inverse(i, i))
          associate (parameter => fit%parameters(free(i)))
             ! the unknown of a time of a series is its rate
-            scale = merge(parameter%value, exp(x(i)), parameter%name == 'times')
-            parameter%error = scale*sqrt(fit%variance)*sqrt(inverse(i, i))
+            if (parameter%name == 'times') then
+               parameter%error = parameter%value*sqrt(fit%variance)*deviations(i)
+               deviations(i) = -deviations(i)
+            else
+               parameter%error = exp(x(i))*sqrt(fit%variance)*deviations(i)
+            end if
          end associate
+      end do
+      do i = 1, size(x)
+         fit%correlation(free, free(i)) = inverse(:, i)/(deviations*deviations(i))
+         fit%correlation(free(i), free(i)) = 1.0_wp
       end do
    end subroutine set_errors
 

@@ -1,0 +1,64 @@
+!> A fit as a JSON document: what `vcor fit --json` writes, and what the Python package reads
+module vcor_fit_json
+   use vcor_json, only : array, member, numbers, object
+   use vcor_text, only : integer_text
+   use vcor_fit_result, only : fit_t
+   use vcor_fit_samples, only : samples_t
+   use vcor_kinds, only : wp
+   use vcor_version, only : version
+   implicit none
+   private
+
+   public :: fit_json, parameter_name
+
+   !> States of a parameter, by their numbers
+   character(len=*), parameter :: states(0:2) = ['free ', 'fixed', 'bound']
+
+contains
+
+   !> Name of a parameter as a key of &material, with the number of its term in a series
+   pure function parameter_name(fit, i) result(name)
+      type(fit_t), intent(in) :: fit
+      integer, intent(in) :: i
+      character(len=:), allocatable :: name
+
+      name = trim(fit%parameters(i)%name)
+      if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
+   end function parameter_name
+
+   !> The document: parameters in SI units, their covariance, the misfit and the band of the data
+   pure function fit_json(fit, samples, group) result(text)
+      type(fit_t), intent(in) :: fit
+      type(samples_t), intent(in) :: samples
+      !> The material as a &material group
+      character(len=*), intent(in) :: group
+      character(len=:), allocatable :: text
+
+      character(len=:), allocatable :: list, covariance, correlation
+      integer :: i
+
+      list = ''
+      covariance = ''
+      correlation = ''
+      do i = 1, size(fit%parameters)
+         associate (one => fit%parameters(i))
+            list = list//object(member('name', parameter_name(fit, i))//member('unit', one%unit) &
+               //member('value', one%value)//member('standard_error', one%error) &
+               //member('state', trim(states(one%state))))
+            correlation = correlation//array(numbers(fit%correlation(:, i)))
+            covariance = covariance//array(numbers(fit%correlation(:, i)*(one%error &
+               *fit%parameters%error)))
+         end associate
+      end do
+      text = object(member('program', 'vcor')//member('version', version) &
+         //member('name', fit%data%name)//member('model', fit%data%model) &
+         //array(list, 'parameters')//array(covariance, 'covariance') &
+         //array(correlation, 'correlation')//member('rms_misfit', fit%rms) &
+         //member('largest_misfit', fit%largest)//member('largest_misfit_at', fit%largest_at) &
+         //member('follows', .not. fit%structured) &
+         //array(numbers([samples%first_time(), samples%last_time()]), 'band') &
+         //member('group', group))
+      text = text(:len(text) - 2)//new_line('a')
+   end function fit_json
+
+end module vcor_fit_json

@@ -1,0 +1,135 @@
+!> Parts of a JSON document, UTF-8. A comma and a blank, or the end of a line, stand at the end of
+!> each part; `object` and `array` take those of their last part away
+module vcor_json
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
+   use vcor_kinds, only : wp
+   use vcor_text, only : is_control, real_text
+   implicit none
+   private
+
+   public :: object, array, member, words, strings, numbers
+
+   !> A member of an object: a text, a number, or true or false
+   interface member
+      module procedure text_member
+      module procedure real_member
+      module procedure logical_member
+   end interface member
+
+   !> End of a line
+   character(len=*), parameter :: nl = new_line('a')
+
+contains
+
+   !> Texts as strings
+   pure function strings(texts) result(list)
+      character(len=*), intent(in) :: texts(:)
+      character(len=:), allocatable :: list
+
+      integer :: i
+
+      list = ''
+      do i = 1, size(texts)
+         list = list//quoted(texts(i))//', '
+      end do
+   end function strings
+
+   !> Numbers in the digits that read back as the same bits; null for what is not finite
+   pure function numbers(values) result(list)
+      real(wp), intent(in) :: values(:)
+      character(len=:), allocatable :: list
+
+      integer :: i
+
+      list = ''
+      do i = 1, size(values)
+         if (ieee_is_finite(values(i))) then
+            list = list//real_text(values(i))//', '
+         else
+            list = list//'null, '
+         end if
+      end do
+   end function numbers
+
+   !> Members as an object
+   pure function object(members) result(text)
+      character(len=*), intent(in) :: members
+      character(len=:), allocatable :: text
+
+      text = '{'//members(:len(members) - 2)//'},'//nl
+   end function object
+
+   !> A list, or a member whose value is one
+   pure function array(list, name) result(text)
+      character(len=*), intent(in) :: list
+      character(len=*), intent(in), optional :: name
+      character(len=:), allocatable :: text
+
+      text = '['//list(:max(0, len(list) - 2))//'],'//nl
+      if (present(name)) text = quoted(name)//': '//text
+   end function array
+
+   !> A member whose value is a list of words, given with single blanks between them
+   pure function words(name, list) result(text)
+      character(len=*), intent(in) :: name, list
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = ''
+      do i = 1, len_trim(list)
+         if (list(i:i) /= ' ') then
+            text = text//list(i:i)
+         else if (text /= '') then
+            text = text//'", "'
+         end if
+      end do
+      if (text /= '') text = '"'//text//'", '
+      text = array(text, name)
+   end function words
+
+   pure function text_member(name, value) result(text)
+      character(len=*), intent(in) :: name, value
+      character(len=:), allocatable :: text
+
+      text = quoted(name)//': '//quoted(value)//', '
+   end function text_member
+
+   pure function real_member(name, value) result(text)
+      character(len=*), intent(in) :: name
+      real(wp), intent(in) :: value
+      character(len=:), allocatable :: text
+
+      text = quoted(name)//': '//numbers([value])
+   end function real_member
+
+   pure function logical_member(name, value) result(text)
+      character(len=*), intent(in) :: name
+      logical, intent(in) :: value
+      character(len=:), allocatable :: text
+
+      text = quoted(name)//': '//trim(merge('true ', 'false', value))//', '
+   end function logical_member
+
+   !> A text as a string; blanks at its ends do not count
+   pure function quoted(words) result(text)
+      character(len=*), intent(in) :: words
+      character(len=:), allocatable :: text
+
+      character(len=6) :: code
+      integer :: i
+
+      text = '"'
+      do i = 1, len_trim(words)
+         if (is_control(words(i:i))) then
+            write (code, '(a, z4.4)') '\u', iachar(words(i:i))
+            text = text//code
+         else if (i > 1 .or. words(i:i) /= ' ') then
+            if (index('"\', words(i:i)) > 0) text = text//'\'
+            text = text//words(i:i)
+         end if
+      end do
+      text = text//'"'
+   end function quoted
+
+end module vcor_json
