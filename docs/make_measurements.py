@@ -1,0 +1,594 @@
+"""Write the figures and the numbers of docs/measurements.md: impacts beside measurements.
+
+The measurements and the cases are in data/measurements; every number that is put in is there, in
+the examples that are named here, or in the capitals below.
+
+    pip install './python[fit]' && python docs/make_measurements.py [FOLDER]
+"""
+
+import re
+import sys
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import rc_context, style
+from matplotlib.figure import Figure
+from scipy.interpolate import CubicSpline, PchipInterpolator
+from vcor.plot import PAGE, STYLE
+
+import vcor
+
+ROOT = Path(__file__).resolve().parent.parent
+DATA = ROOT / "data" / "measurements"
+#: Standard deviation of handbook values of moduli and of densities
+MODULUS, DENSITY = "5%", "2%"
+#: Samples of each band
+SAMPLES = 128
+#: Relative error of a loss factor of a data sheet
+LOSS_FACTOR = "10%"
+#: Error of an angle [degrees] and of a restitution that are read from a figure
+ANGLE, READING = 0.15, 0.005
+#: Solids that lose less steeply than Kelvin-Voigt: keys of &material
+SOLIDS = {
+    "standard solid, 1:10": {"model": "sls", "glassy_modulus": 1e8, "alpha": 1e4, "beta": 1e5},
+    "power law 0.5 and a spring": {"model": "power_law", "equilibrium_modulus": 1e7,
+                                   "coefficient": 1e5, "exponent": 0.5},
+    "power law 0.8 and a spring": {"model": "power_law", "equilibrium_modulus": 1e7,
+                                   "coefficient": 1e4, "exponent": 0.8},
+}  # fmt: skip
+
+
+def data(name):
+    """A file of data/measurements; units as its header has them."""
+    table = pd.read_csv(DATA / f"{name}.csv", comment="#")
+    return table.rename(columns=lambda head: head.split(" [")[0])
+
+
+def case(name):
+    """A case of data/measurements."""
+    return vcor.read(DATA / f"{name}.nml")
+
+
+def panels(count=2):
+    """A figure as wide as a page."""
+    made = Figure(figsize=(PAGE / 2.54, 7.6 / 2.54), layout="constrained")
+    return made, made.subplots(1, count)
+
+
+def table(head, *rows):
+    """A table in Markdown."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
+
+
+def measured(axis, x, y, y_error=None, x_error=None, **options):
+    """Measured points with their errors."""
+    settings = {"fmt": "o", "color": "0.2", "mfc": "white", "capsize": 1.5, "elinewidth": 0.7,
+                "zorder": 5, **options}  # fmt: skip
+    axis.errorbar(x, y, y_error, x_error, **settings)
+
+
+def curve(axis, x, y, color, line="-", **options):
+    """A computed curve."""
+    axis.plot(x, y, color=color, linestyle=line, marker=options.pop("marker", ""), **options)
+
+
+def hatch(axis, x, validity):
+    """Hatch where the program judges a curve not to be good, narrowly where it is outside."""
+    edges = np.concatenate([x[:1], np.sqrt(x[1:] * x[:-1]), x[-1:]])
+    for word, lines in (("caution", "//"), ("outside", "////")):
+        for i in np.flatnonzero(np.asarray(validity) == word):
+            axis.axvspan(edges[i], edges[i + 1], fill=False, hatch=lines, ec="0.8", lw=0, zorder=0)
+
+
+def legend(axis, columns=2):
+    """Legend above a panel."""
+    axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=columns, columnspacing=1.0,
+                fontsize=7, handlelength=2.2)  # fmt: skip
+
+
+def band(one, vary, address, values, quantity, **options):
+    """Percentiles 2.5, 50 and 97.5 of a quantity over an address, by `vcor uncertainty`."""
+    found = []
+    for value in values:
+        one = one.copy()
+        one[address] = value
+        spread = vcor.propagate(one, vary, samples=SAMPLES, quantities=[quantity], **options)
+        found.append(spread.table.percentiles.sel(percent=[2.5, 50, 97.5]).values[0])
+    return np.array(found).T
+
+
+def fill(axis, x, low, high, color):
+    """A band, smooth over few values."""
+    fine = np.geomspace(x[0], x[-1], 60)
+    low, high = (PchipInterpolator(np.log(x), end)(np.log(fine)) for end in (low, high))
+    axis.fill_between(fine, low, high, color=color, alpha=0.2, lw=0)
+
+
+def ticks(axis, values):
+    """Ticks of a logarithmic axis."""
+    axis.set_xscale("log")
+    axis.set_xticks(values, [f"{value:g}" for value in values])
+    axis.minorticks_off()
+    axis.set_xlim(values[0], values[-1])
+
+
+def loss_band(one, v):
+    """Relative ends of the loss into a half space of the plate, for uncertain materials."""
+    one = one.copy()
+    one["plate.waves"] = "none"
+    names = [one["sphere.material"], one["plate.material"]]
+    vary = {f"{name}.modulus": MODULUS for name in names} | {f"{names[1]}.density": DENSITY}
+    low, middle, high = band(one, vary, "impact.velocity", [v], "half_space_loss")
+    return (low / middle)[0], (high / middle)[0]
+
+
+# --------------------------------------------------------------------------- alumina on thick glass
+
+
+def oblique():
+    """Normal velocity and normal restitution of oblique impacts, and its error from reading."""
+    read = data("alumina_on_glass_oblique")
+    at, e_t = read.restitution_angle.values, read.tangential_restitution.values
+    before, after = np.radians(read.rebound_incidence), np.radians(read.rebound_angle)
+    ratio = CubicSpline(read.rebound_incidence, np.tan(after) / np.tan(before))(at)
+    relative = np.sqrt(
+        (READING / e_t) ** 2
+        + sum(
+            (np.radians(ANGLE) / (np.sin(angle) * np.cos(angle))) ** 2 for angle in (before, after)
+        )
+    )
+    return 3.9 * np.cos(np.radians(at)), e_t / ratio, e_t / ratio * relative
+
+
+def alumina():
+    """Four plates under the sphere of Kharaz et al., and the thickness that is not known."""
+    point = data("alumina_on_glass").iloc[0]
+    one = vcor.read(ROOT / "examples" / "alumina_on_glass.nml")
+    v = np.geomspace(1.5, 5, 4)
+    fine = np.geomspace(1.5, 5, 24)
+    quantities = ["cor_sphere", "half_space_loss", "validity", "validity_cause"]
+    made, (left, right) = panels()
+    rows, plates = [], {}
+    half_space = vcor.Case(re.sub(r"half_thickness.*\n", "\n", one.text()))
+    choices = (
+        ("no waves", one, "none", "0.5", ":"),
+        ("thin plate, 25 mm", one, "constant", "C2", "-."),
+        ("body, 25 mm", one, "body", "C1", "-"),
+        ("half space", half_space, "body", "C3", "--"),
+    )
+    low, high = loss_band(half_space, point.velocity)
+    for name, of, waves, color, line in choices:
+        of = of.copy()
+        of["plate.waves"] = waves
+        at = v if waves == "body" else fine
+        found = of.sweep({"impact.velocity": at}, quantities)
+        loss = PchipInterpolator(np.log(at), 1 - found.cor_sphere)(np.log(fine))
+        plates[name] = of.solve({"impact.velocity": point.velocity}, quantities)
+        words = {"good": ""}.get(plates[name]["validity"], f" ({plates[name]['validity']})")
+        curve(left, fine, 1 - loss, color, line, label=name + words)
+        if name == "half space":
+            left.fill_between(fine, 1 - high * loss, 1 - low * loss, color=color, alpha=0.2, lw=0)
+        rows.append([f"{name} (`{waves}`)", plates[name]["cor_sphere"], plates[name]])
+    loss = plates["no waves"]["half_space_loss"]
+    rows.append(["no waves, less `half_space_loss`", np.sqrt(1 - loss), None])
+    measured(left, *oblique(), fmt="D", color="0.6", label="oblique, from figures")
+    measured(left, point.velocity, point.cor_sphere, point.cor_sphere_sigma, label="measured")
+    left.set(xlabel="normal velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.965, 1.05))
+    ticks(left, [1.5, 2, 3, 4, 5])
+    legend(left)
+    thick = np.array([10, 13, 16, 20, 25, 35, 50])
+    for name, waves, color, line in (
+        ("thin plate", "constant", "C2", "-."),
+        ("body", "body", "C1", "-"),
+    ):
+        one["plate.waves"] = waves
+        e = one.sweep({"plate.half_thickness": thick * 5e-4}, ["cor_sphere", "validity"])
+        curve(
+            right,
+            thick,
+            e.cor_sphere,
+            color,
+            line,
+            label=name,
+            marker="o" if waves == "body" else "",
+        )
+        if waves == "body":
+            reaches = np.interp(point.cor_sphere, e.cor_sphere[:4], thick[:4])
+        else:
+            hatch(right, thick, e.validity.values)
+    right.axhspan(
+        point.cor_sphere - point.cor_sphere_sigma,
+        point.cor_sphere + point.cor_sphere_sigma,
+        color="0.85",
+        lw=0,
+        label="measured, rounding",
+    )
+    right.set(xlabel="thickness of the glass [mm]", ylim=(0.955, 1.002))
+    ticks(right, [10, 15, 20, 25, 35, 50])
+    legend(right)
+    text = table(["plate", "given", "fitted", "predicted e", "measured e",
+                  "share of the measured loss", "validity"], *(
+        [name, "E, ν, ρ of both, v" + (", 25 mm" if "25 mm" in name else ""), "nothing", f"{e:.4f}",
+         f"{point.cor_sphere:.2f}", f"{100 * (1 - e) / (1 - point.cor_sphere):.0f} %",
+         f"{of['validity']}, {of['validity_cause']}" if of else "first order"]
+        for name, e, of in rows))  # fmt: skip
+    v_n, e_n, error = oblique()
+    return made, text + "\n\n" + table(
+        ["more", "value"],
+        ["thickness at which `body` meets the measured value", f"{reaches:.0f} mm"],
+        ["95 % band of the half space for 5 % in the moduli, 2 % in the density",
+         f"{1 - high * (1 - rows[3][1]):.4f} to {1 - low * (1 - rows[3][1]):.4f}"],
+        ["mean of the oblique points, and their mean error of reading",
+         f"{e_n.mean():.2f}, {error.mean():.3f}"])  # fmt: skip
+
+
+# -------------------------------------------------------------------------------------- ice on ice
+
+
+def slope(one, v):
+    """Restitution over velocity, and d ln e/d ln v."""
+    e = one.sweep({"impact.velocity": v}, ["cor"]).cor.values
+    return e, CubicSpline(np.log(v), np.log(e))(np.log(v), 1)
+
+
+def ice():
+    """Laws of ice beside the steepest linear solid."""
+    made, (left, right) = panels()
+    one = case("ice")
+    v = np.geomspace(1e-9, 1e5, 100)
+    steepest = {}
+    for law, color, line in (("receding", "C1", "-"), ("boltzmann", "C1", "--")):
+        one["contact.law"] = law
+        e, s = slope(one, v)
+        steepest[law] = PchipInterpolator(e[::-1], s[::-1])
+        curve(right, e, -s, color, line, label=f"Kelvin-Voigt, {law}")
+    one["contact.law"] = "receding"
+    largest = 0.0
+    for number, (name, keys) in enumerate(SOLIDS.items()):
+        solid = vcor.Case({
+            "impact": {"velocity": 1.0}, "sphere": {"radius": 0.025, "material": "hard"},
+            "plate": {"material": "solid", "waves": "none"}, "contact": {"law": "receding"},
+            "material": [{"name": "hard", "model": "rigid", "density": 917.0},
+                         {"name": "solid", "density": 917.0, "poisson_ratio": 0.33, **keys}],
+        })  # fmt: skip
+        e, s = slope(solid, np.geomspace(1e-9, 1e3, 80))
+        known = (e > 0.02) & (e < 0.9) & (s < 0)
+        largest = max(largest, np.max(s[known] / steepest["receding"](e[known])))
+        curve(
+            right,
+            e[known],
+            -s[known],
+            "0.5",
+            ((0, (1, 1)), (0, (5, 1)), (0, (3, 1, 1, 1)))[number],
+            label=name,
+        )
+    rows = []
+    for color, law in zip(("C2", "C3", "C5"), data("ice_laws").itertuples(), strict=True):
+        critical = 0.01 * law.critical_velocity
+        at = np.geomspace(max(law.lowest_velocity, critical), law.highest_velocity, 9)
+        e = (at / critical) ** -law.exponent
+        fit = vcor.identify(one, {"velocity": at, "cor": e}, ["ice.viscosity"])
+        measured(left, at, e, color=color, label=f"{law.temperature} K, law")
+        known = fit.band
+        curve(left, known["velocity"], known["cor"], color)
+        left.fill_between(
+            known["velocity"], known["low"], known["high"], color=color, alpha=0.2, lw=0
+        )
+        measured(right, e[[0, -1]], [law.exponent] * 2, fmt="o-", color=color)
+        over = [law.exponent / -steepest["receding"](e[i]) for i in (4, 8)]
+        models = [row["model"] for row in fit.data]
+        rows.append([
+            f"{law.temperature} K", f"{law.exponent:.3f}", f"{e[0]:.2f} to {e[-1]:.2f}",
+            f"{over[0]:.2f} and {over[1]:.2f}", f"{fit['ice.viscosity'] / 1e6:.2f} MPa s",
+            f"{100 * fit.relative_error:.0f} %", f"{max(models):.2f} to {min(models):.2f}",
+        ])  # fmt: skip
+    seen = data("ice_spheres").iloc[0]
+    middle = np.sqrt(seen.lowest_velocity * seen.highest_velocity)
+    measured(
+        left,
+        middle,
+        seen["mean"],
+        [[seen["mean"] - seen.lowest], [seen.highest - seen["mean"]]],
+        [[middle - seen.lowest_velocity], [seen.highest_velocity - middle]],
+        fmt="s",
+        label="spheres of 15 mm",
+    )
+    across = np.geomspace(1e-4, 0.3, 40)
+    hatch(left, across, one.sweep({"impact.velocity": across}, ["validity"]).validity.values)
+    left.set(xscale="log", xlim=(1e-4, 0.3), ylim=(0, 1.05), xlabel="velocity [m/s]",
+             ylabel="coefficient of restitution")  # fmt: skip
+    left.plot([], [], color="0.5", marker="", label="Kelvin-Voigt, fitted")
+    legend(left)
+    right.set(
+        xlabel="coefficient of restitution", ylabel="−d ln e/d ln v", xlim=(0, 1), ylim=(0, 0.34)
+    )
+    measured(right, [], [], fmt="o-", label="laws of ice")
+    legend(right)
+    return made, table(
+        ["law", "its slope", "its e",
+         "its slope over that of Kelvin-Voigt, in the middle and at the fast end", "fitted viscosity",
+         "misfit of the fit", "e of the fit"],
+        *rows) + "\n\n" + table(
+        ["more", "value"],
+        ["largest slope of the three other solids over that of Kelvin-Voigt at the same e",
+         f"{largest:.2f}"])  # fmt: skip
+
+
+# ------------------------------------------------------------------------------- spheres and walls
+
+
+def of_yield(at):
+    """Validity of an impact, and the pressure that decides on it."""
+    return f"{at['validity']}, mean pressure {at['mean_pressure'] / 1e9:.2f} GPa"
+
+
+def acetate():
+    """A pair of spheres predicts the wall; a glass sphere on a wall that yields."""
+    made, (left, right) = panels()
+    seen = data("acetate_pair").iloc[0]
+    v = np.geomspace(0.3, 3, 4)
+    fine = np.geomspace(0.3, 3, 24)
+    rows = []
+    fits = {
+        "Kelvin-Voigt": ("acetate", "acetate.viscosity", "{:.0f} Pa s"),
+        "one loss tangent": ("lossy", "lossy.exponent", "exponent {:.4f}"),
+    }
+    for (model, (name, free, form)), color in zip(fits.items(), ("C1", "C2"), strict=True):
+        pair, wall = case("acetate_pair"), case("acetate_on_wall")
+        for one in (pair, wall):
+            one["sphere.material"] = name
+        pair["plate.material"] = name
+        fit = vcor.identify(pair, DATA / "acetate_pair.csv", [free])
+        pair[free] = wall[free] = fit[free]
+        vary = {"aluminium.modulus": MODULUS}
+        low, _, high = band(wall, vary, "impact.velocity", v, "cor", covariance=fit.as_dict())
+        fill(left, v, low, high, color)
+        for one, line, what in ((pair, ":", "pair"), (wall, "-", "wall")):
+            found = one.sweep({"impact.velocity": fine}, ["cor", "validity"])
+            curve(left, fine, found.cor, color, line, label=f"{what}, {model}")
+        hatch(left, fine, found.validity.values)
+        at = wall.solve({"impact.velocity": seen.velocity}, ["cor", "half_space_loss", "validity"])
+        ends = band(wall, vary, "impact.velocity", [seen.velocity], "cor", covariance=fit.as_dict())
+        rows.append([f"acetate on a wall, {model}", form.format(fit[free]), f"{at['cor']:.3f}",
+                     f"{ends[0][0]:.3f} to {ends[2][0]:.3f}", "not found",
+                     at["validity"]])  # fmt: skip
+    measured(left, seen.velocity, seen.cor, seen.cor_sigma, label="pair, measured")
+    left.set(xlabel="velocity [m/s]", ylabel="coefficient of restitution", ylim=(0.81, 0.91))
+    legend(left)
+    one, seen = case("glass_on_wall"), data("glass_on_wall").iloc[0]
+    low, high = loss_band(one, seen.velocity)
+    found = one.sweep({"impact.velocity": v}, ["cor_sphere"]).cor_sphere.values
+    loss = PchipInterpolator(np.log(v), 1 - found)(np.log(fine))
+    curve(right, fine, 1 - loss, "C3", "--", label="elastic half space")
+    right.fill_between(fine, 1 - high * loss, 1 - low * loss, color="C3", alpha=0.2, lw=0)
+    one["plate.waves"] = "none"
+    hatch(right, fine, one.sweep({"impact.velocity": fine}, ["validity"]).validity.values)
+    measured(
+        right,
+        seen.velocity,
+        seen.cor_sphere,
+        seen.cor_sphere_sigma,
+        label="glass on a wall, measured",
+    )
+    one["plate.waves"] = "body"
+    at = one.solve({"impact.velocity": seen.velocity}, ["cor_sphere", "mean_pressure", "validity"])
+    e = at["cor_sphere"]
+    rows.append(["glass on a wall", "nothing", f"{e:.4f}",
+                 f"{1 - high * (1 - e):.4f} to {1 - low * (1 - e):.4f}", f"{seen.cor_sphere:.2f}",
+                 of_yield(at)])  # fmt: skip
+    granite, big = case("granite_spheres"), data("granite_spheres").iloc[0]
+    at = granite.solve({"impact.velocity": big.velocity}, ["cor", "mean_pressure", "validity"])
+    right.fill_between([0.3, 1.5], big.cor - big.cor_sigma, big.cor + big.cor_sigma,
+                       color="0.85", lw=0, label="two granite spheres", zorder=0.5)  # fmt: skip
+    rows.append(["two granite spheres", "nothing", f"{at['cor']:.4f}", "no loss in the model",
+                 f"{big.cor:.2f} ± {big.cor_sigma:.2f}",
+                 of_yield(at)])  # fmt: skip
+    right.set(xlabel="velocity [m/s]", ylim=(0.74, 1.01))
+    legend(right)
+    for axis in (left, right):
+        ticks(axis, [0.3, 0.5, 1, 2, 3])
+    return made, table(["impact at 1 m/s", "fitted", "predicted e", "95 % band", "measured e",
+                        "validity"], *rows)  # fmt: skip
+
+
+# ----------------------------------------------------------------------------------- contact times
+
+
+def their_time(one, v, plate):
+    """Contact time of Hertz as McLaskey and Glaser (2010) write and confirm it."""
+    ball = one["sphere.material"]
+    sum_ = sum(
+        (1 - one[f"{name}.poisson_ratio"] ** 2) / (pi * one[f"{name}.modulus"])
+        for name in (ball, plate)
+    )
+    density = one[f"{ball}.density"]
+    return 4.53 * (4 * density * pi * sum_ / 3) ** 0.4 * one["sphere.radius"] * v**-0.2
+
+
+def contact_times():
+    """Contact time over velocity, and over the thickness of a plate."""
+    made, (left, right) = panels()
+    one, seen = case("steel_ball_on_steel"), data("contact_time").iloc[0]
+    v = np.geomspace(0.3, 3, 24)
+    vary = {"steel.modulus": MODULUS, "block.modulus": MODULUS, "steel.density": DENSITY}
+    at = np.geomspace(0.3, 3, 4)
+    low, _, high = 1e6 * band(one, vary, "impact.velocity", at, "contact_time")
+    found = one.sweep({"impact.velocity": v}, ["contact_time", "validity"])
+    fill(left, at, low, high, "C1")
+    curve(left, v, 1e6 * found.contact_time, "C1", label="vcor")
+    curve(left, v, 1e6 * their_time(one, v, "block"), "black", ":", label="McLaskey and Glaser")
+    hatch(left, v, found.validity.values)
+    left.axhspan(
+        seen.contact_time - seen.contact_time_sigma,
+        seen.contact_time + seen.contact_time_sigma,
+        color="0.88",
+        lw=0,
+        zorder=0,
+        label="measured, speed not known",
+    )
+    left.set(xlabel="velocity [m/s]", ylabel="contact time [µs]", ylim=(3.8, 7.8))
+    ticks(left, [0.3, 0.5, 1, 2, 3])
+    legend(left)
+    time = one.solve({"impact.velocity": 1.0}, ["contact_time"])["contact_time"]
+    meets = (1e6 * time / (seen.contact_time + seen.contact_time_sigma * np.array([1, 0, -1]))) ** 5
+    one["plate.waves"] = "body"
+    wave = one.solve({"impact.velocity": 1.0}, ["contact_time", "cor_sphere"])
+    rows = [
+        ["contact time at 1 m/s, vcor without waves", f"{1e6 * time:.3f} µs"],
+        ["the same by the formula of McLaskey and Glaser",
+         f"{1e6 * their_time(one, 1.0, 'block'):.3f} µs"],
+        ["with waves in 50 mm of steel", f"{1e6 * wave['contact_time']:.3f} µs"],
+        ["measured", f"about {seen.contact_time:.0f} µs"],
+        ["speed that has it, and from 5.5 to 4.5 µs",
+         f"{meets[1]:.1f} m/s, {meets[0]:.1f} to {meets[2]:.1f} m/s"],
+    ]  # fmt: skip
+    plate, claim = case("steel_on_glass"), data("plate_thickness").iloc[0]
+    half = np.geomspace(0.4e-3, 30e-3, 120)
+    thin = plate.sweep(
+        {"plate.half_thickness": half}, ["contact_time", "inelasticity", "cor_sphere"]
+    )
+    thick = np.array([1.0, 1.4, 2.0, 2.5, 3.0, 4.0, 5.0])
+    plate["plate.waves"] = "body"
+    body = plate.sweep(
+        {"plate.half_thickness": thick * 5e-4},
+        ["contact_time", "cor_sphere", "validity", "plate_wave_number"],
+    )
+    # the thickness that the thin plate's contact time would read
+    read = np.interp(-body.contact_time, -thin.contact_time, 2e3 * half)
+    lam = np.interp(thick * 5e-4, half, thin.inelasticity)
+    error = read / thick - 1
+    curve(right, thin.inelasticity, thin.cor_sphere, "C2", "-.", label="e, thin plate")
+    curve(right, lam, body.cor_sphere, "C1", label="e, body", marker="o")
+    second = right.twinx()
+    curve(second, lam, 100 * error, "C3", "--", marker="s")
+    curve(right, [], [], "C3", "--", label="error of the thickness", marker="s")
+    limit = 100 * claim.largest_relative_error
+    second.fill_between(
+        [0.05, claim.largest_inelasticity], -limit, limit, color="0.88", lw=0, zorder=0
+    )
+    right.fill_between([], [], [], color="0.88", label="measured: within 3 %")
+    right.set(xlabel="inelasticity λ", ylabel="restitution of the sphere", ylim=(0, 1),
+              zorder=second.get_zorder() + 1, frame_on=False)  # fmt: skip
+    right.tick_params(right=False)
+    second.set(ylabel="error of the thickness [%]", ylim=(-10, 40))
+    second.tick_params(left=False, top=False)
+    ticks(right, [0.05, 0.1, 0.2, 0.5, 1, 2])
+    legend(right)
+    steps = [[f"{h:.1f} mm", f"{of:.2f}", f"{k:.2f}", f"{zener:.3f}", f"{e:.3f}",
+              f"{100 * wrong:+.1f} %"]
+             for h, of, k, zener, e, wrong in zip(
+                 thick, lam, body.plate_wave_number.values,
+                 np.interp(thick * 5e-4, half, thin.cor_sphere), body.cor_sphere.values, error,
+                 strict=True)]  # fmt: skip
+    return made, table(["contact time", "value"], *rows) + "\n\n" + table(
+        ["glass", "λ", "`plate_wave_number`", "e, thin plate", "e, body",
+         "error of the thickness from the contact time"],
+        *steps)  # fmt: skip
+
+
+# ---------------------------------------------------------------- rubbers, and a ball that bounces
+
+
+def resilience():
+    """Rebound of rubbers whose loss factor a data sheet has; a ball that bounces for 40 s."""
+    made, (left, right) = panels()
+    one = vcor.read(ROOT / "examples" / "identification" / "resilience.nml")
+    exponent = np.geomspace(0.01, 0.78, 60)
+    loss = np.tan(pi * exponent / 2)
+    exact = one.sweep({"rubber.exponent": exponent}, ["resilience"]).resilience.values
+    exponent_of = PchipInterpolator(exact[::-1], exponent[::-1])
+    few = np.array([0.01, 0.05, 0.15, 0.4, 0.7])
+    low, _, high = band(one, {"rubber.exponent": LOSS_FACTOR}, "rubber.exponent", few, "resilience")
+    fill(left, np.tan(pi * few / 2), 100 * low, 100 * high, "C1")
+    curve(left, loss, 100 * exact, "C1", label="exact")
+    one["contact.law"] = "boltzmann"
+    other = one.sweep({"rubber.exponent": exponent}, ["resilience"]).resilience.values
+    curve(left, loss, 100 * other, "C2", "-.", label="boltzmann")
+    curve(left, loss, 100 * np.exp(-pi * loss), "black", ":", label="textbook")
+    one["contact.law"] = "receding"
+    rows = []
+    for name, row in zip(
+        ("Sylodyn ND", "Sylodyn NF"), data("resilience").itertuples(), strict=True
+    ):
+        value = one.solve({"rubber.exponent": 2 / pi * np.arctan(row.loss_factor)}, ["resilience"])
+        measured(left, row.loss_factor, 100 * row.resilience, 100 * row.resilience_sigma,
+                 label=None if rows else "data sheets")  # fmt: skip
+        needed = np.tan(pi / 2 * exponent_of(row.resilience))
+        rows.append([name, f"loss factor {row.loss_factor:.2f}",
+                     f"{100 * value['resilience']:.1f} %",
+                     f"{100 * np.exp(-pi * row.loss_factor):.1f} %",
+                     f"{100 * row.resilience:.0f} ± {100 * row.resilience_sigma:.0f} %",
+                     f"{needed:.3f}"])  # fmt: skip
+    for name, row in zip(
+        ("red ball", "black ball"), data("rubber_balls").itertuples(), strict=True
+    ):
+        needed = np.tan(pi / 2 * exponent_of(row.resilience))
+        left.axhline(100 * row.resilience, color="0.6", lw=0.7, ls="--", marker="", zorder=1)
+        at = 0.7 if row.resilience > 0.5 else 0.022
+        left.annotate(name, (at, 100 * row.resilience + 1), color="0.4", fontsize=7)
+        rows.append([name, "nothing", "none", "none", f"about {100 * row.resilience:.0f} %",
+                     f"{needed:.3f}"])  # fmt: skip
+    left.set(xlabel="loss factor tan δ", ylabel="resilience [%]", ylim=(0, 100))
+    ticks(left, [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2])
+    legend(left)
+    text = table(["rubber", "given", "predicted resilience", "textbook", "measured",
+                  "tan δ that the measured one needs"], *rows)  # fmt: skip
+    flight = data("bouncing_ball")
+    period, middle = (flight.end - flight.start) / 10, (flight.end + flight.start) / 2
+    bounces = np.diff(middle) / np.sqrt(period[1:].values * period[:-1].values)
+    e = (period[1:].values / period[:-1].values) ** (1 / bounces)
+    v = 9.80665 / 2 * np.sqrt(period[1:].values * period[:-1].values)
+    one, at, fine = case("bouncing_ball"), np.geomspace(0.1, 1.3, 4), np.geomspace(0.1, 1.3, 24)
+    found = one.sweep({"impact.velocity": at}, ["cor_sphere"]).cor_sphere.values
+    lost = PchipInterpolator(np.log(at), 1 - found)(np.log(fine))
+    low, high = loss_band(one, 1.0)
+    curve(right, fine, 1 - lost, "C3", "--", label="elastic half space")
+    right.fill_between(fine, 1 - high * lost, 1 - low * lost, color="C3", alpha=0.2, lw=0)
+    curve(right, fine, np.ones_like(fine), "0.5", ":", label="no waves")
+    measured(right, v, e, e.std(ddof=1), label="from times in flight")
+    right.set(xlabel="velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.9915, 1.0002))
+    ticks(right, [0.1, 0.2, 0.5, 1, 1.3])
+    legend(right)
+    steps = [[f"{of:.2f}", f"{1e3 * (1 - seen):.1f} ± {1e3 * e.std(ddof=1):.1f}",
+              f"{1e3 * np.interp(of, fine, lost):.1f}"]
+             for of, seen in zip(v, e, strict=True)]  # fmt: skip
+    return made, text + "\n\n" + table(
+        ["v [m/s]", "measured 1000 (1 − e)", "predicted 1000 (1 − e)"], *steps)  # fmt: skip
+
+
+PARTS = {
+    "alumina": alumina,
+    "ice": ice,
+    "spheres": acetate,
+    "times": contact_times,
+    "rebound": resilience,
+}
+
+
+def page(text, tables):
+    """The page with its tables made anew, each between its name and `end` in comments."""
+    for name, lines in tables.items():
+        text, count = re.subn(rf"(<!-- {name} -->\n).*?(\n<!-- end -->)",
+                              lambda found, lines=lines: found[1] + lines + found[2], text,
+                              flags=re.DOTALL)  # fmt: skip
+        if count != 1:
+            raise SystemExit(f"docs/measurements.md: found {count} places for {name}, expected one")
+    return text
+
+
+def main(folder):
+    """Write the page and its figures to a folder."""
+    tables = {}
+    with style.context(STYLE), rc_context({"svg.fonttype": "none"}):
+        for name, make in PARTS.items():
+            made, tables[name] = make()
+            made.savefig(folder / f"measurements_{name}.svg", metadata={"Date": None})
+    text = (ROOT / "docs" / "measurements.md").read_text("utf-8")
+    (folder / "measurements.md").write_text(page(text, tables), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs")
