@@ -8,7 +8,7 @@ import sys
 import pytest
 from conftest import ROOT
 
-PAGES = ["python.md", "distributed.md"]
+PAGES = ["python.md", "distributed.md", "exchange.md"]
 SCRIPTS = {
     f"{name}-{i}": script
     for name in PAGES

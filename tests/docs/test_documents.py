@@ -10,7 +10,8 @@ import pytest
 from places import LIMIT, ROOT
 
 CONSUMER = ROOT / "tests" / "consumer"
-PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md")])
+PAGES = sorted([ROOT / "README.md", ROOT / "CONTRIBUTING.md", *(ROOT / "docs").glob("*.md"),
+                *(ROOT / "docs/exchange").glob("*.md")])
 # What a block has that is not for a test: it installs, builds, needs a prefix of yours or a cluster, or
 # is about a case that is not there
 OTHER = re.compile(
@@ -104,7 +105,7 @@ def folder(vcor, tmp_path):
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/vcor").symlink_to(vcor)
-    for name in ("identify", "master", "plot", "uncertainty"):
+    for name in ("export", "identify", "master", "plot", "uncertainty"):
         script = tmp_path / f"bin/vcor-{name}"
         script.write_text(f"#!{sys.executable}\nfrom vcor._command import {name}\n\n{name}()\n")
         script.chmod(0o755)

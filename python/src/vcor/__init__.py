@@ -30,10 +30,12 @@ __all__ = [
     "NumericalError",
     "UsageError",
     "__version__",
+    "export",
     "fit",
     "identify",
     "master",
     "open",
+    "pair",
     "propagate",
     "read",
     "sensitivities",
@@ -45,8 +47,10 @@ for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, Usa
 
 #: What needs scipy, by its module; imported when it is used
 _LATER = {
+    "export": "exchange",
     "identify": "identification",
     "master": "master_curve",
+    "pair": "exchange",
     "propagate": "uncertainty",
     "sensitivities": "uncertainty",
 }

@@ -75,6 +75,11 @@ def _run(name: str, module: str) -> None:
             ) from None
 
 
+def export() -> None:
+    """Run `vcor export`."""
+    _run("export", "exchange")
+
+
 def identify() -> None:
     """Run `vcor identify`."""
     _run("identify", "identification")

@@ -1,0 +1,527 @@
+"""e(v) for other programs: input for discrete elements and physics engines, and what it costs.
+
+`export` solves a case at velocities and fits the contact law of a program to e and contact times.
+A program is one entry of TARGETS: its laws, what is written for them, and files that it goes into.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import sys
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from string import Template
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
+
+from . import _command, _library
+from ._library import Floats, InputError, NoResultWarning, NumericalError, UsageError
+from .case import Case, read
+from .contact_laws import HERTZ, LINEAR, VISCOELASTIC, Law, Twin
+
+TEMPLATES = Path(__file__).with_name("templates")
+#: Columns that an export needs
+COLUMNS = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation", "contact_radius",
+           "initial_energy", "validity")  # fmt: skip
+#: What e is, and where its end of contact is
+MEANING = {
+    "cor_sphere": "speed of the sphere away from the plate at rest over that towards it",
+    "cor": "relative speed of the bodies after over before",
+}
+#: Steps of a contact that are advised, and contacts that an input runs
+STEPS, RUNS = 200, 3
+
+
+@dataclass(frozen=True)
+class Option:
+    """A law of a program, and how its numbers are written there."""
+
+    law: Law
+    text: str
+
+
+@dataclass(frozen=True)
+class Target:
+    """A program that takes e."""
+
+    name: str
+    #: Ends of the names of its files, NAME + end + .txt in the folder templates
+    files: tuple[str, ...]
+    options: tuple[Option, ...] = ()
+    #: What to know of numbers for this program
+    notes: tuple[str, ...] = ()
+    #: Versions in which the input was run; none: it was not
+    run: str = ""
+    comment: str = "# "
+
+
+def _both(law: Law, text: str, limited: str) -> tuple[Option, Option]:
+    """A law whose force may pull, and the same with forces that are cut off at 0."""
+    return Option(law, text), Option(replace(law, clipped=True), text + limited)
+
+
+TARGETS = {
+    target.name: target
+    for target in (
+        Target("table", (".csv",)),
+        Target(
+            "rebound",
+            (".py", ".c"),
+            run="REBOUND 5.2.2",
+            notes=("Beyond the range of velocities e is that of its end.",),
+        ),
+        Target(
+            "lammps",
+            (".in",),
+            (
+                *_both(VISCOELASTIC, "hertz {hertz} {eta} damping viscoelastic", " limit_damping"),
+                *_both(HERTZ, "hertz {hertz} {e} damping coeff_restitution", " limit_damping"),
+                *_both(LINEAR, "hooke {K} {gamma} damping mass_velocity", " limit_damping"),
+            ),
+            run="LAMMPS 22 Jul 2025",
+            notes=(
+                "damping tsuji: not used here. Up to 2025 it lacks a factor of sqrt(2) (0.3, 0.5, "
+                "0.7, 0.9 give 0.440, 0.616, 0.778, 0.928); since September 2026 it has it.",
+                "hertz/material: not used here. On walls it takes E* of two equal bodies.",
+            ),
+        ),
+        Target(
+            "mujoco",
+            (".xml",),
+            (
+                Option(
+                    replace(LINEAR, clipped=True),
+                    'solref="-{omega2} -{gamma}" solimp="0.99 0.99 0.001"',
+                ),
+            ),
+            run="MuJoCo 4.0.0",
+            comment="",
+            notes=(
+                "solref is per unit of reduced mass, so that it holds for bodies of any mass; with "
+                "the default solimp e depends on the velocity.",
+                "Without a <pair>: both on both geoms, or on one with priority 1.",
+            ),
+        ),
+    )
+}
+
+
+@dataclass(frozen=True)
+class Export:
+    """Input for a program; `str` is the first of its files."""
+
+    target: str
+    #: Over `velocity`: e, e_sphere, contact_time, max_force; e_law and contact_time_law if the
+    #: program has a law of its own
+    table: xr.Dataset
+    #: Files by the ends of their names
+    texts: Mapping[str, str]
+    header: Sequence[str]
+    #: Largest misfit of the program's law or interpolation to e
+    misfit: float
+    #: What is written for each law of the program and its end of contact, the best one first
+    options: Mapping[str, Twin]
+
+    def __str__(self) -> str:
+        return next(iter(self.texts.values()))
+
+    def figure(self) -> Any:
+        """Figure (matplotlib) of e of vcor, and of the law of the program over it."""
+        from matplotlib import style
+        from matplotlib.figure import Figure
+
+        from .plot import COLUMN, HEIGHT, STYLE
+
+        with style.context(STYLE):
+            made = Figure(figsize=(COLUMN / 2.54, HEIGHT / 2.54))
+            axis = made.subplots()
+            name = str(next(iter(self.table.dims)))
+            x, e = self.table[name].values, self.table[self.table.attrs["e"]].values
+            axis.plot(x, e, label="vcor", marker="")
+            if "e_law" in self.table:
+                axis.plot(x, self.table.e_law.values, label=self.target, ls="", marker="s")
+            axis.set_xscale("log")
+            unit = self.table[name].attrs["units"]
+            axis.set(xlabel=f"{self.table[name].attrs['long_name']} [{unit}]", ylabel="e")
+            axis.legend()
+        return made
+
+
+def pair(
+    materials: Mapping[str, Any] | Sequence[Mapping[str, Any]],
+    radii: Sequence[float],
+    *,
+    velocity: float = 1.0,
+    masses: Sequence[float] | None = None,
+    **groups: Mapping[str, Any],
+) -> Case:
+    """Two beads, or a bead and a wall, as a case: reduced mass and curvature.
+
+    Parameters
+    ----------
+    materials
+        Keys of the group &material of both bodies, or of each.
+    radii
+        Radius of each bead [m]; one alone, or `math.inf` for the second: a wall.
+    velocity
+        Relative velocity of approach [m/s].
+    masses
+        Mass of each bead [kg]; None: of full spheres of the density of their material.
+    groups
+        More of the case by the names of its groups, such as `contact={"mechanics": "exact"}`.
+
+    Returns
+    -------
+    Case
+        The case, without waves.
+    """
+    both = [materials] * 2 if isinstance(materials, Mapping) else list(materials)
+    first, second = radii if len(radii) == 2 else (*radii, math.inf)
+    if not (0 < first < math.inf and second > 0 and len(both) == 2):
+        raise InputError("expected two radii > 0 [m], of which the second may be infinite, and one "
+                         "or two materials")  # fmt: skip
+    try:
+        weights = masses or [4 / 3 * math.pi * r**3 * float(one["density"])
+                             for r, one in zip((first, second), both, strict=True)]  # fmt: skip
+    except KeyError:
+        raise InputError("expected the density of both materials, or masses") from None
+    reduced = 1 / sum(1 / weight for weight in (*weights, math.inf)[:2])
+    known = {str(one["name"]): one for one in both}
+    given: dict[str, dict[str, Any]] = {
+        "impact": {"velocity": velocity},
+        "sphere": {"radius": first, "mass": reduced, "material": both[0]["name"]},
+        "plate": {"material": both[1]["name"], "waves": "none"},
+    }
+    if second < math.inf:
+        given["plate"]["surface_radius"] = second
+    for name, keys in groups.items():
+        given[name] = given.get(name, {}) | dict(keys)
+    return Case({**given, "material": list(known.values())}, name="pair.nml")
+
+
+def export(
+    case: Case | str | os.PathLike[str],
+    target: str,
+    velocities: ArrayLike,
+    *,
+    quantity: str = "cor_sphere",
+    master: bool = False,
+    threads: int | None = None,
+) -> Export:
+    """Input of another program for the impacts of a case.
+
+    Parameters
+    ----------
+    case
+        The case: a sphere, and a plate or another sphere.
+    target
+        Program: a name of `TARGETS`.
+    velocities
+        Velocities [m/s] that rise, at least 2. The law is also fitted and judged between them.
+    quantity
+        What e is: `cor_sphere` or `cor`; both are the same without waves.
+    master
+        e over (m/sqrt(R v))^(2/5), for a `table`: one curve for all sizes of a pair of materials.
+    threads
+        As for `Case.run`.
+
+    Raises
+    ------
+    InputError
+        The program has no such contact.
+    NumericalError
+        An impact has no result.
+    """
+    case = case if isinstance(case, Case) else read(case)
+    given = np.asarray(velocities, dtype=float)
+    if target not in TARGETS:
+        raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")
+    if quantity not in MEANING:
+        raise UsageError(f"unknown quantity '{quantity}', known: {', '.join(MEANING)}")
+    if given.ndim != 1 or len(given) < 2 or not (np.diff(given, prepend=0) > 0).all():
+        raise UsageError("expected two or more velocities > 0 that rise")
+    curve = _solved(case, given, quantity, threads)
+    if master:
+        return _master(case, target, curve)
+    chosen = TARGETS[target]
+    if not chosen.options:
+        return _tabulated(case, chosen, curve)
+    return _fitted(case, chosen, curve)
+
+
+def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.Dataset:
+    """Results at the velocities and between them, every second one."""
+    velocity = np.empty(2 * len(given) - 1)
+    velocity[::2], velocity[1::2] = given, np.sqrt(given[1:] * given[:-1])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", NoResultWarning)
+        found = case.points({"impact.velocity": velocity}, (*COLUMNS, "status"), threads=threads)
+    lost = ~np.isfinite(found[quantity].values)
+    if lost.any():
+        worst = found.isel(point=int(np.argmax(lost)))
+        raise NumericalError(
+            f"{case.name}: {lost.sum()} of {lost.size} velocities have no result, the first one is "
+            f"{float(worst['impact.velocity']):.4g} m/s ({worst.status.item()})"
+        )
+    columns = {
+        "e": found.cor, "e_sphere": found.cor_sphere,
+        "contact_time": found.contact_time, "max_force": found.max_force,
+    }  # fmt: skip
+    table = xr.Dataset(
+        {name: ("velocity", one.values, one.attrs) for name, one in columns.items()},
+        coords={"velocity": ("velocity", velocity, {"units": "m/s", "long_name": "velocity"})},
+        attrs=found.attrs | {"e": "e" if quantity == "cor" else "e_sphere", "quantity": quantity},
+    )
+    first = found.isel(point=0)
+    table.attrs["mass"] = float(2 * first.initial_energy / velocity[0] ** 2)
+    table.attrs["radius"] = float(first.contact_radius**2 / first.max_indentation)
+    good = int((found.validity.values == "good").sum())
+    table.attrs["validity"] = f"good at {good} of {len(velocity)} velocities"
+    return table
+
+
+def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
+    """What the numbers are for."""
+    temperature = case["impact.temperature"]
+    end = case["contact.law"] or "boltzmann"
+    waves = case["plate.waves"] or "none"
+    name = f"{case['sphere.material']} on {case['plate.material']}"
+    meaning = MEANING[curve.attrs["quantity"]] if waves != "none" else MEANING["cor"]
+    return [
+        f"vcor {_library.__version__}: {case['case.title'] or case.name}, for {target.name}",
+        f"e: {meaning} ({curve.attrs['quantity']}); contact ends where the force returns to zero",
+        f"pair: {name}, reduced mass {curve.attrs['mass']:.6g} kg, "
+        f"Hertz radius {curve.attrs['radius']:.6g} m",
+        f"contact law {end}, waves {waves}, temperature "
+        + (f"{temperature:g} K" if temperature else "not given"),
+        f"velocities: {curve.velocity.values[0]:g} to {curve.velocity.values[-1]:g} m/s, validity "
+        + curve.attrs["validity"],
+    ]
+
+
+def _finished(
+    case: Case, target: Target, curve: xr.Dataset, lines: list[str], values: Mapping[str, Any],
+    misfit: float, options: Mapping[str, Twin] | None = None,
+) -> Export:  # fmt: skip
+    """The files of a program from its templates: lines of [pair] or [wall] as the case is."""
+    surface = case["plate.surface_radius"]
+    kind = "[pair]" if surface else "[wall]"
+    lines = [*_header(case, target, curve), *lines, *target.notes]
+    if target.run:
+        lines.append(f"input of this kind was run in {target.run}")
+    radius = case["sphere.radius"]
+    middle = float(np.sqrt(curve.velocity.values[0] * curve.velocity.values[-1]))
+    known = {
+        "velocity": f"{middle:.6g}", "radius": radius, "radius2": surface,
+        "mass": f"{curve.attrs['mass']:.12g}", "mass2": f"{2 * curve.attrs['mass']:.12g}",
+    }  # fmt: skip
+    texts = {}
+    for ending in target.files:
+        comment = "// " if ending == ".c" else target.comment
+        said = [comment + _command.printable(line) for line in lines]
+        if ending == ".xml":
+            said = [line.replace("--", "- -") for line in said]
+        kept = []
+        template = TEMPLATES / f"{target.name}{ending}.txt"
+        for line in template.read_text(encoding="utf-8").splitlines():
+            if line.startswith(("[pair] ", "[wall] ")):
+                if not line.startswith(kind):
+                    continue
+                line = line[7:]
+            kept.append(line)
+        text = _Template("\n".join(kept) + "\n")
+        texts[ending] = text.substitute(known, **values, header="\n".join(said))
+    return Export(target.name, curve, texts, lines, misfit, options or {})
+
+
+class _Template(Template):
+    """A file with names such as @mass in it."""
+
+    delimiter = "@"
+
+
+def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
+    """A program that takes e(v) as it is."""
+    shown = curve.isel(velocity=slice(None, None, 2))
+    v, e = shown.velocity.values, shown[curve.attrs["e"]].values
+    spline = PchipInterpolator(np.log(v), e)
+    between = spline(np.log(curve.velocity.values))
+    misfit = float(np.abs(between - curve[curve.attrs["e"]].values).max())
+    columns = ("e", "e_sphere", "contact_time", "max_force")
+    rows = zip(v, *(shown[name].values for name in columns), strict=True)
+    nodes = [f"{x:.17g}" for x in v]
+    coefficients = [[f"{c:.17g}" for c in row] for row in spline.c.T[:, ::-1]]
+    values = {
+        "rows": "\n".join(",".join(f"{x:.17g}" for x in row) for row in rows),
+        "nodes": "(" + ", ".join(nodes) + ")",
+        "coefficients": "(\n" + "".join(f"    ({', '.join(c)}),\n" for c in coefficients) + ")",
+        "c_nodes": "{" + ", ".join(nodes) + "}",
+        "c_coefficients": "{\n" + "".join(f"    {{{', '.join(c)}}},\n" for c in coefficients) + "}",
+    }
+    lines = [f"monotone cubic interpolation over ln v: largest misfit {misfit:.2g} in e"]
+    if target.name == "table":
+        flat = ", ".join(f"{a:.9g}, {b:.9g}" for a, b in zip(v, e, strict=True))
+        lines += ["v [m/s], e, e_sphere [1], t_c [s], F_max [N]", f"flat list v, e, ...: {flat}"]
+    return _finished(case, target, shown, lines, values, misfit)
+
+
+def _fitted(case: Case, target: Target, curve: xr.Dataset) -> Export:
+    """A program with laws of its own; the one with the smallest misfit is in the input."""
+    if case["sphere.shape"] != "sphere" or _number(case, "plate.surface_radius") < 0:
+        raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
+                         "expected --for table or rebound")  # fmt: skip
+    velocity, time = curve.velocity.values, curve.contact_time.values
+    e = curve[curve.attrs["e"]].values
+    found = []
+    for option in target.options:
+        twin = option.law.fit(velocity, e, time, curve.attrs["mass"])
+        text = option.text.format(**_numbers(case, curve, twin))
+        # a program that takes e has no damping beyond the critical one
+        if "nan" not in text:
+            found.append((text, twin))
+    if not found:
+        raise NumericalError(f"{case.name}: e = {e.min():.3g} is too small for {target.name}")
+    found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
+    law, twin = found[0]
+    columns = {"e_law": twin.cor, "contact_time_law": twin.time}
+    shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})
+    shown = shown.isel(velocity=slice(None, None, 2))
+    step = float(twin.time.min()) / STEPS
+    rows = shown.isel(velocity=slice(None, None, max(1, len(shown.velocity) // 10)))
+    quantities = (rows.velocity, rows[curve.attrs["e"]], *(
+        rows[name] for name in ("e_law", "contact_time", "contact_time_law")))  # fmt: skip
+    lines = [
+        f"law: {twin.law.name}; {twin.law.end}",
+        f"largest misfit of that law to vcor: {twin.misfit:.2g} in e, "
+        f"{100 * twin.time_misfit:.2g} % in the contact time",
+        f"time step: {STEPS} in the shortest contact are {step:.3g} s",
+        "   v [m/s]       e  e of law     t_c [s]  t_c of law",
+        *(f"{v:10.4g}{a:8.5f}{b:10.5f}{t:12.4g}{u:12.4g}"
+          for v, a, b, t, u in zip(*(one.values for one in quantities), strict=True)),
+        "what to write, by law and end of contact, with the misfits in e and contact time:",
+        *(f"  {text}  ({one.law.name}, {one.law.end}: {one.misfit:.2g}, "
+          f"{100 * one.time_misfit:.2g} %)" for text, one in found),
+    ]  # fmt: skip
+    size = 8 * max(_number(case, "sphere.radius"), _number(case, "plate.surface_radius"))
+    values = {
+        **_numbers(case, curve, twin),
+        "law": law,
+        "step": f"{step:.6g}",
+        "duration": f"{RUNS * twin.time.max():.6g}",
+        "size": f"{size:g}",
+    }
+    return _finished(case, target, shown, lines, values, twin.misfit, dict(found))
+
+
+def _numbers(case: Case, curve: xr.Dataset, twin: Twin) -> dict[str, str]:
+    """Numbers that programs take for a law."""
+    mass, root = curve.attrs["mass"], math.sqrt(curve.attrs["radius"])
+    poisson = _number(case, f"{case['sphere.material']}.poisson_ratio")
+    contact_modulus = 0.75 * twin.stiffness / root
+    found = {
+        "K": twin.stiffness,
+        "gamma": twin.damping / mass,
+        "omega2": twin.stiffness / mass,
+        "hertz": twin.stiffness / root,
+        "eta": twin.damping / mass / root,
+        "e": twin.entered,
+        "contact_modulus": contact_modulus,
+        "young": 2 * (1 - poisson**2) * contact_modulus,
+        "poisson": poisson,
+        "time": math.sqrt(twin.time.min() * twin.time.max()),
+    }
+    return {name: f"{value:.9g}" for name, value in found.items()}
+
+
+def _number(case: Case, address: str) -> float:
+    """Number at an address, 0 if there is none."""
+    value = case[address]
+    return float(value) if isinstance(value, (int, float)) else 0.0
+
+
+def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
+    """Table of e over (m/sqrt(R v))^(2/5), where it depends on nothing else."""
+    reasons = {
+        "waves in the plate": case["plate.waves"] not in (None, "none"),
+        "gravity": bool(case["impact.gravity"]),
+        "a body that is no sphere": case["sphere.shape"] != "sphere",
+        "the second Volterra term": case["solver.volterra_order"] == 2,
+    }
+    for reason, holds in reasons.items():
+        if holds:
+            raise InputError(f"{case.name}: a master curve of e does not exist with {reason}")
+    if target != "table":
+        raise UsageError(f"--master is a table, found --for {target}")
+    shown = curve.isel(velocity=slice(None, None, 2))
+    mass, radius = curve.attrs["mass"], curve.attrs["radius"]
+    x = (mass / np.sqrt(radius * shown.velocity.values)) ** 0.4
+    attrs = {"units": "kg^0.4 s^0.2 m^-0.4", "long_name": "(m/sqrt(R v))^(2/5)"}
+    shown = shown.assign_coords(x=("velocity", x, attrs)).swap_dims(velocity="x").isel(
+        x=slice(None, None, -1))  # fmt: skip
+    ratio = shown.contact_time.values / shown.x.values
+    lines = _header(case, TARGETS["table"], curve) + [
+        "x = (m/sqrt(R v))^(2/5), with the reduced mass m and Hertz radius R of any two spheres of",
+        "these materials: e and t_c/x depend on x alone",
+        f"x [{attrs['units']}], e [1], t_c/x [s per unit of x]",
+    ]
+    rows = [f"{a:.17g},{b:.17g},{c:.17g}" for a, b, c in zip(
+        shown.x.values, shown[curve.attrs["e"]].values, ratio, strict=True)]  # fmt: skip
+    text = "\n".join([*("# " + _command.printable(line) for line in lines), "x,e,t_c/x", *rows])
+    return Export("master", shown, {".csv": text + "\n"}, lines, 0.0, {})
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command `vcor export`; exits with the codes of the program."""
+    parser = _command.Parser(
+        "export",
+        description="Input for other programs from e(v) of a case: the law that they have, fitted "
+        "to e and contact times, with its misfit. Prints it; with --output, writes it and a "
+        "figure.",
+    )
+    add = parser.add_argument
+    add("case", metavar="CASE.nml")
+    add("--for", metavar="PROGRAM", dest="target", required=True,
+        help=f"one of {', '.join(TARGETS)}")  # fmt: skip
+    add("--velocities", metavar="A:B:N", required=True,
+        help="N velocities from A to B [m/s], in equal ratios")  # fmt: skip
+    add("--quantity", choices=tuple(MEANING), default="cor_sphere",
+        help="what e is; default: cor_sphere")  # fmt: skip
+    add("--master", action="store_true",
+        help="table of e over (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
+    add("--threads", metavar="N", type=int)
+    parser.add_outputs()
+    parser.set_defaults(output=None)
+    with _command.one_line():
+        _work(parser.options(arguments))
+
+
+def _work(options: argparse.Namespace) -> None:
+    """Export, and print or write the files."""
+    try:
+        low, high, count = options.velocities.split(":")
+        velocities = np.geomspace(float(low), float(high), int(count))
+        if not (0 < float(low) < float(high) < math.inf and 2 <= int(count) <= 10000):
+            raise ValueError
+    except ValueError:
+        raise UsageError(
+            f"--velocities {options.velocities}: expected such as 0.05:5:20, from small to large"
+        ) from None
+    found = export(options.case, options.target, velocities, quantity=options.quantity,
+                   master=options.master, threads=options.threads)  # fmt: skip
+    if options.output is None:
+        sys.stdout.write(str(found))
+        return
+    stem = f"{Path(options.case).stem}_{found.target}"
+    _command.finish(options, "\n".join(found.header), stem, found.texts, found.figure())
+
+
+if __name__ == "__main__":
+    main()

