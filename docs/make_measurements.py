@@ -24,19 +24,28 @@ ROOT = Path(__file__).resolve().parent.parent
 DATA = ROOT / "data" / "measurements"
 #: Standard deviation of handbook values of moduli and of densities
 MODULUS, DENSITY = "5%", "2%"
+#: Of a laboratory that is not known [m/s2]
+GRAVITY = 9.80665
 #: Samples of each band
 SAMPLES = 128
 #: Relative error of a loss factor of a data sheet
 LOSS_FACTOR = "10%"
+#: Speed of the oblique impacts [m/s]
+OBLIQUE = 3.9
 #: Error of an angle [degrees] and of a restitution that are read from a figure
 ANGLE, READING = 0.15, 0.005
-#: Solids that lose less steeply than Kelvin-Voigt: keys of &material
+#: Solids whose slope is compared with that of Kelvin-Voigt: keys of &material; three are drawn
 SOLIDS = {
     "standard solid, 1:10": {"model": "sls", "glassy_modulus": 1e8, "alpha": 1e4, "beta": 1e5},
     "power law 0.5 and a spring": {"model": "power_law", "equilibrium_modulus": 1e7,
                                    "coefficient": 1e5, "exponent": 0.5},
     "power law 0.8 and a spring": {"model": "power_law", "equilibrium_modulus": 1e7,
                                    "coefficient": 1e4, "exponent": 0.8},
+    "standard solid, 1:100": {"model": "sls", "glassy_modulus": 1e9, "alpha": 1e3, "beta": 1e5},
+    "standard solid, 1:30, and a dashpot": {"model": "prony", "equilibrium_modulus": 1e7,
+                                            "moduli": 3e8, "rates": 1e5, "viscosity": 1e2},
+    "power law 0.95 and a spring": {"model": "power_law", "equilibrium_modulus": 1e7,
+                                    "coefficient": 1e4, "exponent": 0.95},
 }  # fmt: skip
 
 
@@ -49,6 +58,19 @@ def data(name):
 def case(name):
     """A case of data/measurements."""
     return vcor.read(DATA / f"{name}.nml")
+
+
+def put_in(*names):
+    """The numbers of cases that were put in by hand, as their files have them."""
+    lines = []
+    for name in names:
+        text = re.sub(r"!.*", "", (ROOT / name).read_text("utf-8"))
+        groups = re.findall(r"&(impact|sphere|plate|material)\b(.*?)(?:^|\s)/", text, re.S | re.M)
+        keys = [re.sub(r"\s*=\s*", " ", keys).strip().replace("'", "") for _, keys in groups]
+        words = [re.sub(r"\s*[,\n]\s*", ", ", one) for one in keys]
+        words = [re.sub(r"^name (.*?), model ", r"*\1* ", word) for word in words]
+        lines.append(f"- [{Path(name).name}](../{name}): {'; '.join(words)}")
+    return "\n".join(["Put in by hand (what is fitted is a first guess there):", "", *lines])
 
 
 def panels(count=2):
@@ -140,7 +162,7 @@ def oblique():
             (np.radians(ANGLE) / (np.sin(angle) * np.cos(angle))) ** 2 for angle in (before, after)
         )
     )
-    return 3.9 * np.cos(np.radians(at)), e_t / ratio, e_t / ratio * relative
+    return OBLIQUE * np.cos(np.radians(at)), e_t / ratio, e_t / ratio * relative
 
 
 def alumina():
@@ -212,7 +234,7 @@ def alumina():
     text = table(["plate", "given", "fitted", "predicted e", "measured e",
                   "share of the measured loss", "validity"], *(
         [name, "E, ν, ρ of both, v" + (", 25 mm" if "25 mm" in name else ""), "nothing", f"{e:.4f}",
-         f"{point.cor_sphere:.2f}", f"{100 * (1 - e) / (1 - point.cor_sphere):.0f} %",
+         f"{point.cor_sphere:.2f}", f"{abs(100 * (1 - e) / (1 - point.cor_sphere)):.0f} %",
          f"{of['validity']}, {of['validity_cause']}" if of else "first order"]
         for name, e, of in rows))  # fmt: skip
     v_n, e_n, error = oblique()
@@ -247,7 +269,8 @@ def ice():
         curve(right, e, -s, color, line, label=f"Kelvin-Voigt, {law}")
     one["contact.law"] = "receding"
     largest = 0.0
-    for number, (name, keys) in enumerate(SOLIDS.items()):
+    lines = [(0, (1, 1)), (0, (5, 1)), (0, (3, 1, 1, 1))]
+    for name, keys in SOLIDS.items():
         solid = vcor.Case({
             "impact": {"velocity": 1.0}, "sphere": {"radius": 0.025, "material": "hard"},
             "plate": {"material": "solid", "waves": "none"}, "contact": {"law": "receding"},
@@ -257,14 +280,8 @@ def ice():
         e, s = slope(solid, np.geomspace(1e-9, 1e3, 80))
         known = (e > 0.02) & (e < 0.9) & (s < 0)
         largest = max(largest, np.max(s[known] / steepest["receding"](e[known])))
-        curve(
-            right,
-            e[known],
-            -s[known],
-            "0.5",
-            ((0, (1, 1)), (0, (5, 1)), (0, (3, 1, 1, 1)))[number],
-            label=name,
-        )
+        if lines:
+            curve(right, e[known], -s[known], "0.5", lines.pop(0), label=name)
     rows = []
     for color, law in zip(("C2", "C3", "C5"), data("ice_laws").itertuples(), strict=True):
         critical = 0.01 * law.critical_velocity
@@ -309,11 +326,11 @@ def ice():
     legend(right)
     return made, table(
         ["law", "its slope", "its e",
-         "its slope over that of Kelvin-Voigt, in the middle and at the fast end", "fitted viscosity",
-         "misfit of the fit", "e of the fit"],
+         "its slope over that of Kelvin-Voigt, in the middle and at the fast end",
+         "fitted viscosity", "misfit of the fit", "e of the fit"],
         *rows) + "\n\n" + table(
         ["more", "value"],
-        ["largest slope of the three other solids over that of Kelvin-Voigt at the same e",
+        [f"largest slope of {len(SOLIDS)} other solids over that of Kelvin-Voigt at the same e",
          f"{largest:.2f}"])  # fmt: skip
 
 
@@ -489,6 +506,81 @@ def contact_times():
         *steps)  # fmt: skip
 
 
+# ------------------------------------------------------------------------------------- a golf ball
+
+
+def flights(v, e, height, count):
+    """Times in flight between bounces after a fall, from e over v."""
+    restitution = PchipInterpolator(np.log(v), e)
+    speed, times = np.sqrt(2 * GRAVITY * height), []
+    for _ in range(count):
+        speed *= restitution(np.log(speed))
+        times.append(2 * speed / GRAVITY)
+    return np.array(times)
+
+
+def golf():
+    """First rebounds fit one number, which predicts the bounces that follow."""
+    made, (left, right) = panels()
+    drops, seen = data("golf_ball"), data("golf_ball_flights")
+    v, rows = np.geomspace(1.5, 6, 24), []
+    ratio, of_drops = drops.rebound_height / drops.drop_height, 0.01 * drops.drop_height
+    first = np.sqrt(ratio)
+    measured(
+        left,
+        np.sqrt(2 * GRAVITY * of_drops),
+        first,
+        first * drops.rebound_height_sigma / drops.rebound_height / 2,
+        label="first rebounds, fitted",
+    )
+    fits = {"one loss tangent": ("lossy", "lossy.exponent", "exponent {:.4f}"),
+            "Kelvin-Voigt": ("kelvin", "kelvin.viscosity", "{:.0f} Pa s")}  # fmt: skip
+    for (model, (name, free, form)), color in zip(fits.items(), ("C1", "C2"), strict=True):
+        one = case("golf_ball")
+        one["sphere.material"] = name
+        fit = vcor.identify(one, DATA / "golf_ball.csv", [free])
+        value, error = fit[free], fit.estimates[0].standard_error
+        speeds = vcor.Case(one.text().replace("drop_height = 1.0", "velocity = 1.0"))
+        low, e, high = (
+            speeds.points({"impact.velocity": v, free: x}, ["cor_sphere"]).cor_sphere.values
+            for x in (value + 1.96 * error, value, value - 1.96 * error)
+        )
+        curve(left, v, e, color, label=model)
+        left.fill_between(v, low, high, color=color, alpha=0.2, lw=0)
+        chi2 = 0.0
+        for (height, run), mark in zip(seen.groupby("drop_height"), "sD", strict=True):
+            times = flights(v, e, 0.01 * height, len(run))
+            off, relative = run.flight_time / times - 1, run.flight_time_sigma / times
+            chi2 += np.sum((off / relative) ** 2)
+            measured(
+                right,
+                run.bounce + (0.08 if mark == "D" else -0.08),
+                100 * off,
+                100 * relative,
+                fmt=mark,
+                color=color,
+                label=f"{height} cm, {model}",
+            )
+        judged = speeds.solve({"impact.velocity": 4.0, free: value}, ["validity", "validity_cause"])
+        rows.append([model, form.format(value), f"{fit.chi2:.1f} for {fit.dof}",
+                     f"{times[-1]:.3f} s", f"{chi2:.0f} for {len(seen)}",
+                     f"{judged['validity']}, {judged['validity_cause']}"])  # fmt: skip
+    for (height, run), mark in zip(seen.groupby("drop_height"), "sD", strict=True):
+        time, sigma = run.flight_time.values, run.flight_time_sigma.values
+        measured(left, GRAVITY / 2 * np.sqrt(time[1:] * time[:-1]), time[1:] / time[:-1],
+                 np.hypot(sigma[1:], sigma[:-1]) / time[:-1], fmt=mark, color="0.6",
+                 label=f"flights, {height} cm")  # fmt: skip
+    left.set(xlabel="velocity [m/s]", ylabel="restitution of the sphere", ylim=(0.86, 0.93))
+    ticks(left, [1.5, 2, 3, 4, 5, 6])
+    legend(left)
+    right.axhline(0, color="black", lw=0.6, marker="")
+    right.set(xlabel="bounce", ylabel="flight: measured − predicted [%]")
+    legend(right)
+    return made, table(["material", "fitted", "χ² of the first rebounds",
+                        "predicted eighth flight, 110 cm",
+                        "χ² of all flights", "validity at 4 m/s"], *rows)  # fmt: skip
+
+
 # ---------------------------------------------------------------- rubbers, and a ball that bounces
 
 
@@ -540,7 +632,7 @@ def resilience():
     period, middle = (flight.end - flight.start) / 10, (flight.end + flight.start) / 2
     bounces = np.diff(middle) / np.sqrt(period[1:].values * period[:-1].values)
     e = (period[1:].values / period[:-1].values) ** (1 / bounces)
-    v = 9.80665 / 2 * np.sqrt(period[1:].values * period[:-1].values)
+    v = GRAVITY / 2 * np.sqrt(period[1:].values * period[:-1].values)
     one, at, fine = case("bouncing_ball"), np.geomspace(0.1, 1.3, 4), np.geomspace(0.1, 1.3, 24)
     found = one.sweep({"impact.velocity": at}, ["cor_sphere"]).cor_sphere.values
     lost = PchipInterpolator(np.log(at), 1 - found)(np.log(fine))
@@ -559,13 +651,18 @@ def resilience():
         ["v [m/s]", "measured 1000 (1 − e)", "predicted 1000 (1 − e)"], *steps)  # fmt: skip
 
 
+#: Sections of the page, and the cases with the numbers that were put in
 PARTS = {
-    "alumina": alumina,
-    "ice": ice,
-    "spheres": acetate,
-    "times": contact_times,
-    "rebound": resilience,
-}
+    "alumina": (alumina, "examples/alumina_on_glass"),
+    "times": (contact_times, "data/measurements/steel_ball_on_steel",
+              "data/measurements/steel_on_glass"),
+    "golf": (golf, "data/measurements/golf_ball"),
+    "rebound": (resilience, "examples/identification/resilience",
+                "data/measurements/bouncing_ball"),
+    "spheres": (acetate, "data/measurements/acetate_pair", "data/measurements/acetate_on_wall",
+                "data/measurements/glass_on_wall", "data/measurements/granite_spheres"),
+    "ice": (ice, "data/measurements/ice"),
+}  # fmt: skip
 
 
 def page(text, tables):
@@ -583,8 +680,9 @@ def main(folder):
     """Write the page and its figures to a folder."""
     tables = {}
     with style.context(STYLE), rc_context({"svg.fonttype": "none"}):
-        for name, make in PARTS.items():
-            made, tables[name] = make()
+        for name, (make, *cases) in PARTS.items():
+            made, text = make()
+            tables[name] = f"{text}\n\n{put_in(*(f'{one}.nml' for one in cases))}"
             made.savefig(folder / f"measurements_{name}.svg", metadata={"Date": None})
     text = (ROOT / "docs" / "measurements.md").read_text("utf-8")
     (folder / "measurements.md").write_text(page(text, tables), encoding="utf-8")
