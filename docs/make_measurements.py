@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from matplotlib import rc_context, style
+from matplotlib import style
 from matplotlib.figure import Figure
 from scipy.interpolate import CubicSpline, PchipInterpolator
 from vcor.plot import PAGE, STYLE
@@ -679,7 +679,7 @@ def page(text, tables):
 def main(folder):
     """Write the page and its figures to a folder."""
     tables = {}
-    with style.context(STYLE), rc_context({"svg.fonttype": "none"}):
+    with style.context(STYLE):
         for name, (make, *cases) in PARTS.items():
             made, text = make()
             tables[name] = f"{text}\n\n{put_in(*(f'{one}.nml' for one in cases))}"

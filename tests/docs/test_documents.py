@@ -101,7 +101,8 @@ def test_modules_and_files_that_pages_name():
 @pytest.fixture
 def folder(vcor, tmp_path):
     """A folder as the documents take it: a copy of the examples, and mine.nml, a case of yours."""
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    for name in ("examples", "data"):
+        shutil.copytree(ROOT / name, tmp_path / name)
     shutil.copy(ROOT / "examples/paper/sls.nml", tmp_path / "mine.nml")
     (tmp_path / "bin").mkdir()
     (tmp_path / "bin/vcor").symlink_to(vcor)
