@@ -177,14 +177,14 @@ contains
    !> force is not to keep its end from being found. References by tests/reference/impact_solver.py,
    !> the last two by ive at 1e-10
    subroutine test_fluid_plates()
-      real(wp), parameter :: alpha(7) = [1.0e-4_wp, 1.0e-4_wp, 1.0e-4_wp, 1.0e-4_wp, 1.0_wp, &
-         1.0e-4_wp, 1.0e-4_wp]
-      real(wp), parameter :: beta(7) = [5.88e6_wp, 1.0e5_wp, 1.19e4_wp, 1.0e5_wp, 1.8e4_wp, &
-         4.64159e7_wp, 1.06082e8_wp]
-      logical, parameter :: receding(7) = [.false., .false., .true., .true., .true., .false., &
-         .false.]
-      real(wp), parameter :: cor(7) = [0.43898_wp, 0.412498286_wp, 0.336355376_wp, 0.421353081_wp, &
-         0.288561116_wp, 2.035e-5_wp, 3.468e-5_wp]
+      real(wp), parameter :: alpha(9) = [1.0e-4_wp, 1.0e-4_wp, 1.0e-4_wp, 1.0e-4_wp, 1.0_wp, &
+         1.0e-2_wp, 3.0e-3_wp, 1.0e-4_wp, 1.0e-4_wp]
+      real(wp), parameter :: beta(9) = [5.88e6_wp, 1.0e5_wp, 1.19e4_wp, 1.0e5_wp, 1.8e4_wp, &
+         1.0e6_wp, 3.0e6_wp, 4.64159e7_wp, 1.06082e8_wp]
+      logical, parameter :: receding(9) = [.false., .false., .true., .true., .true., .true., &
+         .false., .false., .false.]
+      real(wp), parameter :: cor(9) = [0.43898_wp, 0.412498286_wp, 0.336355376_wp, 0.421353081_wp, &
+         0.288561116_wp, 0.308531266_wp, 0.195588273_wp, 2.035e-5_wp, 3.468e-5_wp]
       real(wp), parameter :: roughly = 1.0e-5_wp
       type(prony_t) :: material
       type(impact_t) :: fluid

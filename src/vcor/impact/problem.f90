@@ -67,6 +67,8 @@ module vcor_impact_problem
       procedure :: fast_time_scale
       !> Time after which a contact counts as lasting
       procedure :: patience
+      !> Whether a step is too long for the plate
+      procedure :: outruns
       !> Force at first contact
       procedure :: first_force
       !> Radius of the contact
@@ -372,6 +374,24 @@ contains
       if (firmness > 0.0_wp) time = max(time, self%elastic_time(firmness))
       time = 1000.0_wp*time
    end function patience
+
+   !> Whether the plate may flee from the sphere and be caught up with within a step, unseen: alpha
+   !> grows in it, and takes up a part of the motion
+   elemental function outruns(self, alpha_before, alpha, impulse, time)
+      class(impact_t), intent(in) :: self
+      !> alpha at the start and at the end of the step [m/(N s)]
+      real(wp), intent(in) :: alpha_before, alpha
+      !> Impulse at its end [N s]
+      real(wp), intent(in) :: impulse
+      !> Its end [s]
+      real(wp), intent(in) :: time
+      logical :: outruns
+
+      ! growth of alpha in a step that follows it, and share of the way of the sphere
+      real(wp), parameter :: resolved = 2.0_wp, noticeable = 0.3_wp
+
+      outruns = alpha > resolved*alpha_before .and. alpha*impulse > noticeable*self%free_path(time)
+   end function outruns
 
    !> Whether the contact has an equilibrium modulus that pushes the bodies apart once all else has
    !> relaxed. The restitution that it gives to a fluid is about its ratio to the mean modulus over

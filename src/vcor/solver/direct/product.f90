@@ -101,6 +101,7 @@ contains
       real(wp) :: dt, cor(3), cor_sphere(3), depth(3), force(3)
       type(richardson_t) :: found
       integer :: level
+      logical :: crude
 
       associate (time_step => self%settings%time_step, end_time => self%settings%end_time, &
                  accuracy => self%settings%accuracy)
@@ -118,8 +119,13 @@ contains
          level = 0
          do
             level = level + 1
-            call march(self%settings, impact, dt, trajectory, error)
+            call march(self%settings, impact, dt, trajectory, crude, error)
             if (allocated(error)) return
+            if (crude .and. .not. time_step > 0.0_wp) then
+               dt = 0.5_wp*dt
+               level = 0
+               cycle
+            end if
             ! coarse steps can miss the end, so only the given step decides that there is none
             if (trajectory%status /= contact_separated .and. (level == 3 .or. &
                 .not. (time_step > 0.0_wp .or. trajectory%status == contact_resting &
@@ -172,20 +178,25 @@ contains
    end function extrapolated
 
    !> One run with a given step
-   subroutine march(settings, impact, dt, trajectory, error)
+   subroutine march(settings, impact, dt, trajectory, crude, error)
       !> End, second term, and whether to go on after the separation
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       type(trajectory_t), intent(out) :: trajectory
+      !> Whether a step was too long for a plate whose alpha grows, or the end of a receding contact
+      !> too sudden for it
+      logical, intent(out) :: crude
       type(error_t), allocatable, intent(out) :: error
 
       ! rate of the indentation over the velocity of a free fall
       real(wp), parameter :: beyond_all_motion = 1.0e10_wp
+      ! part of the approach that the last step of a rebound may take back
+      real(wp), parameter :: last_part = 0.125_wp
       type(run_t) :: run
-      real(wp) :: end_time, node(columns)
-      integer :: n, room
+      real(wp) :: end_time, node(columns), alpha
+      integer :: n, room, turn
       logical :: ends
 
       end_time = settings%end_time
@@ -194,21 +205,34 @@ contains
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
       run%speed = impact%velocity
+      run%motion%alpha = impact%plate%alpha(0.0_wp)
       call make_room(run, impact, dt, room, trajectory)
       trajectory%state(:, 0) = 0.0_wp
       trajectory%state([col_velocity, col_sphere_velocity], 0) = impact%velocity
       trajectory%state(col_force, 0) = impact%first_force()
       trajectory%state(col_plate_velocity, 0) = impact%plate%alpha(0.0_wp)*impact%first_force()
       trajectory%state(col_velocity, 0) = impact%velocity - trajectory%state(col_plate_velocity, 0)
+      crude = .false.
+      turn = 0
       n = 0
       do
          n = n + 1
-         if (n > most_steps) exit
+         if (n > most_steps) then
+            if (trajectory%status /= contact_separated) call raise(error, error_numerical, &
+               'the end of this contact takes more steps than product integration can make: use ' &
+               //"method = 'ive' or a longer solver.time_step")
+            exit
+         end if
+         alpha = run%motion%alpha
          if (n >= room) then
             room = 2*room
             call make_room(run, impact, dt, room, trajectory)
          end if
          call take_step(run, impact, n)
+         crude = crude .or. &
+            impact%outruns(alpha, run%motion%alpha, run%motion%impulse, run%motion%t)
+         if (crude .and. .not. settings%time_step > 0.0_wp) return
+         if (.not. run%receding%shrinks) turn = n
          if (run%receding%regrows) then
             ! what its weight pushes back does not come off any more
             if (trajectory%has_died_out(impact, .true.)) exit
@@ -234,6 +258,7 @@ contains
          ends = node(col_force) <= 0.0_wp .and. run%speed < 0.0_wp
          if (run%receding%shrinks) then
             ends = run%receding%t1(3) <= 0.0_wp
+            crude = crude .or. ends .and. run%receding%t1(2) > last_part*real(turn, wp)
             if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
                trajectory, n)
          else if (ends) then

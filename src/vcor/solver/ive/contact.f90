@@ -21,15 +21,15 @@ module vcor_solver_ive_contact
       land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_newton, only : accompany, guess, solve
-   use vcor_solver_ive_panel, only : panel_t, relative_velocity
+   use vcor_solver_ive_panel, only : panel_t, plate_gains, relative_velocity
    use vcor_solver_ive_problem, only : new_panel_problem
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_ive_tuning, only : cut_at_end, early_yield, error_of_kernel, fast, &
+   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
-      force_share, grown_alpha, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
+      force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, &
       most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
@@ -165,38 +165,7 @@ contains
          self%step%length = self%step%reach
          if (continuous) self%step%length = self%step%reach*0.5_wp**levels(self%accuracy)
       end associate
-      do while (yields_early(self))
-         self%step%length = 0.5_wp*self%step%length
-      end do
    end subroutine start
-
-   !> Whether a plate whose alpha grows may take up the motion within the first step: the contact
-   !> may end in it, between its stages. A plate at rest would have given way by the share
-   !> alpha K u/s of s = v0 t + g t^2/2, K the integral of the kernel, a share that only grows with
-   !> time
-   function yields_early(self) result(yields)
-      !> The contact, its first step chosen
-      type(contact_t), intent(in) :: self
-      !> Whether it may
-      logical :: yields
-
-      real(wp) :: time, way, alpha, largest
-
-      associate (impact => self%problem%impact)
-         time = self%step%duration()
-         way = impact%free_path(time)
-         yields = .false.
-         if (impact%plate%hereditary()) return
-         alpha = impact%plate%alpha(time)
-         if (.not. alpha > grown_alpha*self%start%alpha) return
-         ! that of the whole time scale T is more, and known: K = m v T/u(v T)
-         largest = impact%mass*self%speed*self%time_scale &
-            /impact%law%u(self%speed*self%time_scale)
-         yields = alpha*largest*impact%law%u(way) > early_yield*way
-         if (yields) yields = alpha*self%problem%modes%contact%integral(time) &
-            *impact%law%u(way) > early_yield*way
-      end associate
-   end function yields_early
 
    !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
    !> collocation does not resolve the internal variables that settle within the step
@@ -260,8 +229,8 @@ contains
       type(contact_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
 
-      real(wp) :: force_error, allowed
-      integer :: n
+      real(wp) :: force_error, allowed, cor_error, sphere_error
+      integer :: n, j
 
       n = self%panel%stages
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact, &
@@ -285,6 +254,8 @@ contains
             if (self%branches) self%excess = usually_better*self%excess
             allowed = abs(slope_at_end(collocator%rule, panel, panel%force)) &
                *panel%time(n)*self%time_tolerance()
+            call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
+            self%excess = max(self%excess, cor_error/self%accuracy)
          else if (.not. maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
             allowed = force_share*allowed
          end if
@@ -295,6 +266,10 @@ contains
                - coarse%indentation(1:)))/(self%speed*self%time_scale)
             self%excess = max(self%excess, self%inner/(inner_allowed*self%accuracy))
          end if
+         do j = 1, n
+            if (any(impact%outruns(panel%alpha(j - 1), panel%alpha(j), panel%impulse(j:n), &
+                panel%time(j:n)))) self%excess = huge(1.0_wp)
+         end do
       end associate
    end subroutine judge
 
@@ -421,7 +396,8 @@ contains
                  impact => self%problem%impact)
          part = error_over_difference(self, trajectory%steps)
          sphere_error = self%largest_inner + impulse_error(self, part)/(impact%mass*impact%velocity)
-         cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity
+         cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity &
+            + plate_error(self, part)
       end associate
       call self%problem%advance(self%problem%collocator%rule, self%step, self%panel, self%start)
       call follow_rebound(self%course_t, approach, trajectory, error)
@@ -450,7 +426,7 @@ contains
          impulse = impulse_error(self, part)
          fall = slope_at_end(rule, panel, panel%force)
          time = part*abs((panel%force(n) - coarse%force(n - 1))/fall)
-         alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         alpha_rate = self%alpha_rate()
          ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
          ! of the velocity of the plate
          moved = panel%force(n)/fall
@@ -460,8 +436,8 @@ contains
             + abs(panel%force(n)*moved)/(impact%mass*impact%velocity)
          cor_sphere_error = least + (impulse/impact%mass + impact%gravity*time)/impact%velocity
          cor_error = cor_sphere_error + abs(plate)/(impact%velocity*panel%time(n)) &
-            *(moved/panel%time(n))**2 + (impulse*alpha_rate &
-            + time*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            *(moved/panel%time(n))**2 + plate_error(self, part) &
+            + (time*(plate_gains(panel, alpha_rate) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          ! at a branch point both solutions have F' = 0, but not at the same time
@@ -470,6 +446,21 @@ contains
             /impact%velocity
       end associate
    end subroutine estimate_errors
+
+   !> Error of the velocity alpha' I of a plate whose alpha grows, over that of the impact
+   pure function plate_error(self, part) result(error)
+      !> The contact, its panel solved
+      type(contact_t), intent(in) :: self
+      !> Error of the solution over its difference to the companion
+      real(wp), intent(in) :: part
+      !> Error [-]
+      real(wp) :: error
+
+      associate (n => self%panel%stages)
+         error = part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1))*self%alpha_rate() &
+            /self%problem%impact%velocity
+      end associate
+   end function plate_error
 
    !> Error of the impulse. What the panels add to the difference to the companion may cancel, which
    !> says nothing about the solution: what one of them has added to that of the motion counts, too
@@ -493,7 +484,8 @@ contains
    !> Error of the solution over its difference to the companion. The difference is the error of the
    !> companion: that of the solution is less, where the solution is smooth by orders, where it is
    !> not by a factor of some size. With few panels it is anybody's guess; next to the branch point
-   !> of u and where alpha' of a frozen plate is infinite at first contact neither is better
+   !> of u, where alpha' of a frozen plate is infinite at first contact, and where the velocity of a
+   !> plate that flees feels the impulse more than that of the sphere, neither is better
    pure function error_over_difference(self, panels) result(part)
       type(contact_t), intent(in) :: self
       !> Number of panels
@@ -502,6 +494,7 @@ contains
 
       associate (problem => self%problem)
          part = merge(1.0_wp, solution_share, panels <= few_panels .or. self%branches &
+            .or. self%alpha_rate()*problem%impact%mass > 1.0_wp &
             .or. problem%impact%plate%frozen() .and. problem%modes%contact%error > 0.0_wp)
       end associate
    end function error_over_difference

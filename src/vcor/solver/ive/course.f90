@@ -43,6 +43,7 @@ module vcor_solver_ive_course
       logical :: ends = .false., last = .false.
    contains
       procedure :: motion_error
+      procedure :: alpha_rate
       procedure :: growth_of
       procedure :: is_best_end
       procedure :: growth_of_step
@@ -66,15 +67,17 @@ contains
       end associate
    end function growth_of
 
-   !> What a panel adds to the error of the motion, by its companion: through the impulse, the
-   !> indentation and the velocity of a plate that drifts
+   !> What a panel adds to the error of the motion, by its companion: through the impulse, in the
+   !> velocity of the sphere or alpha' I of the plate, the indentation and the velocity of a plate
+   !> that drifts
    pure function motion_error(self) result(error)
       class(course_t), intent(in) :: self
       !> Error over `speed`: without gravity that of the coefficient of restitution [-]
       real(wp) :: error
 
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
-         error = self%growth_of(panel%impulse, coarse%impulse)/(impact%mass*self%speed) &
+         error = self%growth_of(panel%impulse, coarse%impulse) &
+            *max(1.0_wp/impact%mass, self%alpha_rate())/self%speed &
             + self%growth_of(panel%indentation, coarse%indentation) &
             /(self%speed*self%time_scale)
          ! what rings in a layer comes to nothing in the motion
@@ -82,6 +85,20 @@ contains
             error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
       end associate
    end function motion_error
+
+   !> Rate of alpha at the end of the panel, of a plate with the velocity alpha F + alpha' I
+   pure function alpha_rate(self) result(rate)
+      class(course_t), intent(in) :: self
+      !> Rate [m/(N s2)]
+      real(wp) :: rate
+
+      rate = 0.0_wp
+      associate (n => self%panel%stages, panel => self%panel, &
+                 plate => self%problem%impact%plate)
+         if (.not. plate%drifts() .and. panel%alpha(n) > panel%alpha(0)) &
+            rate = plate%alpha_rate(panel%time(n), panel%alpha(n))
+      end associate
+   end function alpha_rate
 
    !> Whether an end does not become better: rounding in the force of stiff internal variables, or
    !> what is handed down, keeps its time from being known better

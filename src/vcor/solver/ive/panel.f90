@@ -7,7 +7,7 @@ module vcor_solver_ive_panel
    private
 
    public :: panel_t, start_t
-   public :: move_to_end, plate_velocity, relative_velocity
+   public :: move_to_end, plate_velocity, relative_velocity, plate_gains
 
    !> State at the start of a panel
    type :: start_t
@@ -171,6 +171,23 @@ contains
             *impact%plate%alpha_rate(panel%time(j), panel%alpha(j))
       end if
    end function plate_velocity
+
+   !> What the velocity alpha' I of a plate gains per time at the end of the contact, where F is
+   !> zero: alpha grows about as a power of time or exponentially there
+   pure function plate_gains(panel, alpha_rate) result(gain)
+      !> The last panel
+      type(panel_t), intent(in) :: panel
+      !> alpha' at its end [m/(N s2)]
+      real(wp), intent(in) :: alpha_rate
+      !> Gain [m/s2]
+      real(wp) :: gain
+
+      associate (n => panel%stages)
+         gain = 0.0_wp
+         if (alpha_rate > 0.0_wp) gain = alpha_rate*panel%impulse(n) &
+            *max(1.0_wp/panel%time(n), alpha_rate/panel%alpha(n))
+      end associate
+   end function plate_gains
 
    !> Rate of the indentation at a stage of a panel: s' = v0 + g t - I/m - U'
    pure function relative_velocity(impact, panel, j) result(velocity)

@@ -14,6 +14,7 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_course, only : course_t, share
    use vcor_solver_ive_newton, only : accompany, close_contact, solve
+   use vcor_solver_ive_panel, only : plate_gains
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
@@ -234,7 +235,7 @@ contains
 
       n = self%panel%stages
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
-         alpha_rate = impact%plate%alpha_rate(panel%time(n), panel%alpha(n))
+         alpha_rate = self%alpha_rate()
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
          self%error = solution_share*(impulse_error/impact%mass &
             + abs(panel%indentation(n) - coarse%indentation(n - 1))/self%start%t1)/impact%velocity
@@ -246,12 +247,12 @@ contains
             time_error = abs(panel%condition(n) - coarse%condition(n - 1))/self%start%condition &
                *self%taken
             self%error = self%error + time_error*impact%gravity/impact%velocity
-            self%error(1) = self%error(1) + time_error*(alpha_rate*panel%impulse(n)/panel%time(n) &
+            self%error(1) = self%error(1) + time_error*(plate_gains(panel, alpha_rate) &
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity
          end if
          self%excess = self%motion_error()/(panel_share*self%accuracy)
-         if (self%ends) self%excess = max(self%excess, &
+         if (self%ends) self%excess = max(self%excess, self%error(1)/self%accuracy, &
             share(time_error, panel%time(n)*self%time_tolerance()))
       end associate
    end subroutine judge

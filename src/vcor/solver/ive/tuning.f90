@@ -91,10 +91,6 @@ module vcor_solver_ive_tuning
    !> Power of the accuracy where the contact recedes: the rebound feels the solution between the
    !> ends of the panels, too
    real(wp), parameter :: first_receding_growth = 0.1_wp ! tested
-   !> Share of its way that a sphere may lose to the plate in the first step, at most, where alpha
-   !> grows by more than this factor from first contact to its end
-   real(wp), parameter :: early_yield = 0.3_wp ! tested
-   real(wp), parameter :: grown_alpha = 2.0_wp ! time
    !> With a continuous spectrum what the first panel adds to the error falls by `levels_base` with
    !> each halving from `levels_error` on
    real(wp), parameter :: levels_error = 3.3e-7_wp ! tested
