@@ -1,0 +1,76 @@
+"""Write docs/results.svg, the picture of the README: restitution over velocity, temperature and thickness.
+
+    pip install './python[plot]' && python docs/make_results.py
+"""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib import rc_context, style
+from matplotlib.figure import Figure
+from vcor.plot import PAGE, STYLE
+
+import vcor
+
+ROOT = Path(__file__).resolve().parent.parent
+EXAMPLES = ROOT / "examples"
+
+
+def curve(axis, case, address, values, label=None, quantity="cor_sphere", scale=1.0):
+    """A quantity over one number of a case."""
+    found = case.sweep({address: values}, quantities=[quantity], progress=False)
+    axis.plot(scale * values, found[quantity], marker="", label=label)
+
+
+def plate(axis):
+    """The paper's steel ball on rubber, with the paper's plate and with others."""
+    velocities = np.geomspace(0.1, 20, 25)
+    for label, keys in {
+        "the paper's plate": {},
+        "any thickness": {"plate.waves": "body"},
+        "no waves": {"plate.waves": "none"},
+    }.items():
+        case = vcor.read(EXAMPLES / "paper" / "sls.nml")
+        for address, value in {"rubber.poisson_ratio": 0.48, "contact.law": "receding", **keys}.items():
+            case[address] = value
+        curve(axis, case, "impact.velocity", velocities, label)
+    axis.set(title="steel ball on rubber", xlabel="velocity [m/s]", xscale="log",
+             ylabel="coefficient of restitution")  # fmt: skip
+
+
+def ball(axis):
+    """A ball of butyl rubber on the floor, dropped from three heights."""
+    kelvin = np.linspace(268.15, 343.15, 40)
+    for height in (0.25, 2.5, 25.0):
+        case = vcor.read(EXAMPLES / "sweeps" / "squash_ball.nml")
+        case["impact.drop_height"] = height
+        found = case.sweep({"impact.temperature": kelvin}, quantities=["cor_sphere"], progress=False)
+        axis.plot(kelvin - 273.15, found.cor_sphere, marker="", label=f"from {height:g} m")
+    axis.set(title="butyl rubber ball", xlabel="temperature [°C]")
+
+
+def glass(axis):
+    """An alumina sphere on glass of any thickness, beside what Kharaz et al. measured."""
+    half = 1e-3 * np.geomspace(5, 25, 25)
+    for label, waves in (("thin plate", "constant"), ("any thickness", "body")):
+        case = vcor.read(EXAMPLES / "alumina_on_glass.nml")
+        case["plate.waves"] = waves
+        curve(axis, case, "plate.half_thickness", half, label, scale=2e3)
+    axis.axhspan(0.975, 0.985, color="0.85", zorder=0, label="measured")
+    axis.set(title="alumina sphere on glass", xlabel="thickness [mm]", xscale="log", ylim=(0.95, 1))
+    axis.set_xticks([10, 20, 50], ["10", "20", "50"])
+    axis.minorticks_off()
+
+
+def main():
+    """Write the figure."""
+    with style.context(STYLE), rc_context():
+        made = Figure(figsize=(PAGE / 2.54, 6.2 / 2.54), layout="constrained")
+        for axis, panel in zip(made.subplots(1, 3), (plate, ball, glass), strict=True):
+            panel(axis)
+            axis.legend()
+        made.savefig(ROOT / "docs" / "results.svg", metadata={"Date": None})
+
+
+if __name__ == "__main__":
+    main()
