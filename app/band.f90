@@ -9,7 +9,7 @@ module vcor_app_band
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
    use vcor_kinds, only : wp
-   use vcor_case_reliance, only : find_reliance, reliance_t
+   use vcor_case_identified, only : find_reliance, reliance_t
    use vcor_sweep_quantity, only : quantity_place
    use vcor_sweep_summary, only : summary_t
    use vcor_text, only : printable, real_text

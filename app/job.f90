@@ -47,9 +47,7 @@ module vcor_app_job
       !> Whether there is a time history in them
       logical :: history = .true.
    contains
-      procedure :: file
-      procedure :: written
-      procedure :: coordinates
+      procedure :: file, written, coordinates
    end type job_t
 
    !> The impact of a case as that on which commands about its materials look: its contact time
@@ -196,8 +194,8 @@ contains
       if (.not. job%sweep%is_grid()) then
          job%impact = job%sweep%problem%impact
       else if (request%command == 'verify') then
-         call raise(error, error_input, job%case%location('sweep', 'parameter', 1) &
-            //': verify takes single impacts, found a &sweep group')
+         call job%case%refuse('sweep', 'parameter', 1, &
+            'verify takes single impacts, found a &sweep group', error)
       end if
       if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
       if (allocated(error)) return
@@ -264,9 +262,8 @@ contains
       character(len=:), allocatable :: flaw
 
       flaw = name_flaw(name)
-      if (flaw /= '') call raise(error, error_input, job%case%location('output', key, 1) &
-         //": output."//key//": the name '"//printable(name)//"' "//flaw &
-         //', expected another name')
+      if (flaw /= '') call job%case%refuse('output', key, 1, 'output.'//key//": the name '" &
+         //printable(name)//"' "//flaw//', expected another name', error)
    end subroutine check_output_name
 
    !> Take the part of --shard

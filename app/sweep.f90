@@ -68,12 +68,8 @@ module vcor_app_sweep
       !> When the terminal was written to [s]
       real(wp), private :: shown = 0.0_wp
    contains
-      !> Points are finished
-      procedure :: finished
-      !> Whether the sweep has to stop
+      procedure :: finished, clear
       procedure, nopass :: stop_code => caught_signal
-      !> Take the line off the terminal
-      procedure :: clear
    end type watch_t
 
 contains

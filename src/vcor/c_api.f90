@@ -356,7 +356,11 @@ contains
       if (.not. allocated(trouble) .and. n > 0) call build(handle, addresses, values, trouble)
       if (.not. allocated(trouble) .and. n > 0) then
          sweep = handle%sweep
-         call give_values(sweep, handle%case, addresses, values)
+         do i = 1, size(sweep%grid%axes)
+            associate (axis => sweep%grid%axes(i))
+               axis%values = values(column_of(axis%address, handle%case, addresses), :)
+            end associate
+         end do
       end if
       team = max(1, min(int(threads), most_threads))
       if (threads == 0) team = default_threads()
@@ -599,24 +603,6 @@ contains
       if (.not. allocated(error)) call refuse_unread(case, all_materials, error)
       if (.not. allocated(error)) call read_data(case, error)
    end subroutine check
-
-   !> Give the points their values
-   subroutine give_values(sweep, case, addresses, values)
-      type(sweep_t), intent(inout) :: sweep
-      type(case_t), intent(in) :: case
-      !> Addresses that have values of their own
-      type(c_ptr), intent(in) :: addresses(:)
-      !> The values, a column for each point
-      real(wp), intent(in) :: values(:, :)
-
-      integer :: i
-
-      do i = 1, size(sweep%grid%axes)
-         associate (axis => sweep%grid%axes(i))
-            axis%values = values(column_of(axis%address, case, addresses), :)
-         end associate
-      end do
-   end subroutine give_values
 
    !> Which of some addresses, as texts, an address is
    function column_of(address, case, addresses) result(column)

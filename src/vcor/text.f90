@@ -6,7 +6,7 @@ module vcor_text
    implicit none
    private
 
-   public :: lower, same_name, canonical_name, integer_text, real_text, logical_text, quoted
+   public :: lower, canonical_name, integer_text, real_text, quoted
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
    public :: buffer_t
 
@@ -22,10 +22,7 @@ module vcor_text
       !> Room for bytes, the first `length` are in use
       character(len=:), allocatable, private :: room
    contains
-      !> Put a text at the end
-      procedure :: add
-      !> The text so far
-      procedure :: text
+      procedure :: add, text
    end type buffer_t
 
 contains
@@ -58,18 +55,6 @@ contains
       end do
    end function canonical_name
 
-   !> Whether two names are the same: case, blanks against underscores and outer blanks make no
-   !> difference
-   pure function same_name(a, b) result(same)
-      !> One name
-      character(len=*), intent(in) :: a
-      character(len=*), intent(in) :: b
-      !> True if they are the same
-      logical :: same
-
-      same = canonical_name(a) == canonical_name(b)
-   end function same_name
-
    !> An integer as text
    pure function integer_text(number) result(text)
       integer, intent(in) :: number
@@ -80,15 +65,6 @@ contains
       write(buffer, "(i0)") number
       text = trim(buffer)
    end function integer_text
-
-   !> A logical as a namelist has it
-   pure function logical_text(flag) result(text)
-      logical, intent(in) :: flag
-      !> `.true.` or `.false.`
-      character(len=:), allocatable :: text
-
-      text = trim(merge(".true. ", ".false.", flag))
-   end function logical_text
 
    !> A text in quotes, as a namelist has it
    pure function quoted(text) result(between)

@@ -12,7 +12,7 @@ module vcor_case_case
    use vcor_interval, only : contains_number
    use vcor_error, only : error_input, error_internal, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_text, only : canonical_name, integer_text, lower, printable, real_text, same_name
+   use vcor_text, only : canonical_name, integer_text, lower, printable, real_text
    implicit none
    private
 
@@ -77,61 +77,16 @@ module vcor_case_case
       !> Items by group
       type(items_t), allocatable, private :: group(:)
    contains
-      !> Begin anew, for a case file of this name
-      procedure :: start
-      !> Add a group
-      procedure :: add
-      !> Add a material of another case
-      procedure :: adopt
-      !> Whether there is nothing but materials
-      procedure :: is_materials
-      !> File that a material comes from
-      procedure :: source_of
-      !> Number of times a group is in the case
+      procedure :: start, add, adopt, is_materials, source_of, revision, model, find_material
+      procedure :: material_of, address, path, row, number, given, put, unset, refuse
       procedure :: count => count_items
-      !> Line of the case file a group begins in
       procedure :: line => line_of_item
-      !> Number of changes of an item
-      procedure :: revision
-      !> Value of the selector of an item, such as the model of a material
-      procedure :: model
-      !> Item of the material of a name
-      procedure :: find_material
-      !> Item of the material of a body
-      procedure :: material_of
-      !> Address of a key
-      procedure :: address
-      !> Path of an address
-      procedure :: path
-      !> Row of the catalogue for an address, which depends on the model
-      procedure :: row
-      !> Entry at an address
       procedure :: entry => entry_at
-      !> Number at an address
-      procedure :: number
-      !> Value of a key
       generic :: get => get_real, get_integer, get_logical, get_text, get_list
-      procedure, private :: get_real
-      procedure, private :: get_integer
-      procedure, private :: get_logical
-      procedure, private :: get_text
-      procedure, private :: get_list
-      !> Whether a key was given
-      procedure :: given
-      !> Set an entry, a number, a text or a list as it is
       generic :: set => set_entry, set_number, set_text, set_list
-      procedure, private :: set_entry
-      procedure, private :: set_number
-      procedure, private :: set_text
-      procedure, private :: set_list
-      !> Set a number if it is within its range
-      procedure :: put
-      !> Take a value back: the key has its default
-      procedure :: unset
-      !> Where a key was given, for messages
       generic :: location => location_of_key, location_of_address
-      procedure, private :: location_of_key
-      procedure, private :: location_of_address
+      procedure, private :: get_real, get_integer, get_logical, get_text, get_list, set_entry
+      procedure, private :: set_number, set_text, set_list, location_of_key, location_of_address
    end type case_t
 
    !> Whether two addresses are the same
@@ -347,7 +302,7 @@ contains
 
       do item = 1, self%count('material')
          call self%get('material', 'name', other, item)
-         if (same_name(name, other)) return
+         if (canonical_name(name) == canonical_name(other)) return
       end do
       item = 0
    end function find_material
@@ -665,6 +620,19 @@ contains
          item%revision = item%revision + 1
       end associate
    end subroutine unset
+
+   !> Raise an error about a key
+   pure subroutine refuse(self, group, key, item, message, error)
+      class(case_t), intent(in) :: self
+      character(len=*), intent(in) :: group, key
+      !> Number of the item
+      integer, intent(in) :: item
+      !> Found and expected
+      character(len=*), intent(in) :: message
+      type(error_t), allocatable, intent(inout) :: error
+
+      call raise(error, error_input, self%location(group, key, item)//': '//message)
+   end subroutine refuse
 
    !> Where a key was given, for messages
    pure function location_of_key(self, group, key, item) result(text)

@@ -75,7 +75,7 @@ contains
 
       call self%get('material', 'name', name, item)
       if (self%find_material(name) < item) then
-         call fail(self, 'material', 'name', item, "there are two materials of the name '" &
+         call self%refuse('material', 'name', item, "there are two materials of the name '" &
             //shortened(name)//"', the first at " &
             //self%location('material', 'name', self%find_material(name)) &
             //'; expected different names', error)
@@ -112,7 +112,7 @@ contains
       if (.not. (self%given('material', from, item) .and. self%given('material', to, item))) return
       call self%get('material', from, first, item)
       call self%get('material', to, last, item)
-      if (.not. first < last) call fail(self, 'material', to, item, 'found '//from//' = ' &
+      if (.not. first < last) call self%refuse('material', to, item, 'found '//from//' = ' &
          //real_text(first)//' and '//to//' = '//real_text(last)//', expected '//from//' < '//to, &
          error)
    end subroutine check_band
@@ -136,10 +136,10 @@ contains
          address = self%address('material', trim(shift_keys(i)), item)
          reason = why_no_shift(self, address)
          if (self%given('material', trim(shift_keys(i)), item)) then
-            if (reason /= '') call fail(self, 'material', trim(shift_keys(i)), item, &
+            if (reason /= '') call self%refuse('material', trim(shift_keys(i)), item, &
                'the impact does not read it: '//reason, error)
          else if (i <= keys_needed .and. reason == '' .and. all(.not. swept == address)) then
-            call fail(self, 'material', 'shift', item, "key '"//trim(shift_keys(i)) &
+            call self%refuse('material', 'shift', item, "key '"//trim(shift_keys(i)) &
                //"' is missing in &material "//quoted(shortened(name))//" with shift = '"//shift &
                //"', expected "//wanted(catalogue(address%row)), error)
          end if
@@ -157,7 +157,7 @@ contains
 
       if (.not. self%given('impact', 'temperature')) return
       reason = why_unread(self, self%address('impact', 'temperature'))
-      if (reason /= '') call fail(self, 'impact', 'temperature', 1, 'the impact does not read ' &
+      if (reason /= '') call self%refuse('impact', 'temperature', 1, 'the impact does not read ' &
          //'it: '//reason, error)
    end subroutine check_temperature
 
@@ -171,7 +171,7 @@ contains
       character(len=:), allocatable :: name
 
       call self%get(body, 'material', name)
-      if (self%find_material(name) == 0) call fail(self, body, 'material', 1, &
+      if (self%find_material(name) == 0) call self%refuse(body, 'material', 1, &
          "there is no material '"//shortened(name)//"' for &"//body//'; ' &
          //suggestion(canonical_name(name), material_names(self)), error)
    end subroutine check_body
@@ -185,7 +185,7 @@ contains
 
       call self%get('output', 'stem', stem)
       if (index(stem, '/') > 0 .or. stem == '.' .or. stem == '..') &
-         call fail(self, 'output', 'stem', 1, "found stem = '"//shortened(stem) &
+         call self%refuse('output', 'stem', 1, "found stem = '"//shortened(stem) &
          //"', expected a name without a folder (that is output.directory)", error)
    end subroutine check_stem
 
@@ -259,7 +259,7 @@ contains
                //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
          else if (is_there(key) .and. is_there(other)) then
-            call fail(self, group%name, other, address%item, 'found both '//key//' and '//other &
+            call self%refuse(group%name, other, address%item, 'found both '//key//' and '//other &
                //', expected one of them', error)
          else if (entry%present) then
             message = range_message(catalogue(row), entry)
@@ -275,7 +275,7 @@ contains
             message = message//', expected '//wanted(catalogue(row))
             if (other /= '') message = message//', or '//other
          end if
-         if (message /= '') call fail(self, group%name, key, address%item, message, error)
+         if (message /= '') call self%refuse(group%name, key, address%item, message, error)
       end associate
 
    contains
@@ -289,18 +289,5 @@ contains
             .and. any(swept == self%address(groups(address%group)%name, name, address%item))
       end function is_there
    end subroutine check_entry
-
-   !> Raise an error about a key
-   subroutine fail(self, group, key, item, message, error)
-      type(case_t), intent(in) :: self
-      character(len=*), intent(in) :: group, key
-      !> Number of the item
-      integer, intent(in) :: item
-      !> Found and expected
-      character(len=*), intent(in) :: message
-      type(error_t), allocatable, intent(inout) :: error
-
-      call raise(error, error_input, self%location(group, key, item)//': '//message)
-   end subroutine fail
 
 end module vcor_case_checks

@@ -7,7 +7,6 @@ module vcor_case_grid
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_interval, only : log_spacing, spaced
    use vcor_kinds, only : wp
-   use vcor_numeric_sorting, only : sort
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_catalogue, only : catalogue, groups, key_t, keys_of, real_key, &
@@ -46,10 +45,8 @@ module vcor_case_grid
       !> Whether point i has value i of each parameter: a list of points, not their product
       logical :: is_list = .false.
    contains
-      !> Number of points
-      procedure :: count => count_points
-      !> Which value of each parameter a point has
       procedure :: places
+      procedure :: count => count_points
    end type grid_t
 
 contains
@@ -104,9 +101,9 @@ contains
 
       allocate (grid%axes(case%count('sweep')))
       if (size(grid%axes) > most_axes) then
-         call refuse(case, 'parameter', most_axes + 1, 'found '//integer_text(size(grid%axes)) &
-            //' &sweep groups, expected at most '//integer_text(most_axes) &
-            //', the dimensions that an HDF5 file may have', error)
+         call case%refuse('sweep', 'parameter', most_axes + 1, 'found ' &
+            //integer_text(size(grid%axes))//' &sweep groups, expected at most ' &
+            //integer_text(most_axes)//', the dimensions that an HDF5 file may have', error)
          return
       end if
       points = 1.0_wp
@@ -136,7 +133,7 @@ contains
       call case%get('sweep', 'parameter', path, item)
       call resolve(case, path, axis%address, message)
       if (allocated(message)) then
-         call refuse(case, 'parameter', item, message, error)
+         call case%refuse('sweep', 'parameter', item, message, error)
          return
       end if
 
@@ -165,7 +162,7 @@ contains
             //case%location('sweep', 'parameter', i)
       end do
       if (allocated(message)) then
-         call refuse(case, 'parameter', item, message, error)
+         call case%refuse('sweep', 'parameter', item, message, error)
          return
       end if
       row = row_for_model(row, model)
@@ -205,42 +202,43 @@ contains
       call case%get('sweep', 'spacing', spacing, item)
       if (case%given('sweep', 'values', item)) then
          do i = 1, size(ends)
-            if (case%given('sweep', trim(ends(i)), item)) call refuse(case, trim(ends(i)), item, &
-               'found both values and '//trim(ends(i))//', expected values, or start, stop and ' &
-               //'count', error)
+            if (case%given('sweep', trim(ends(i)), item)) call case%refuse('sweep', trim(ends(i)), &
+               item, 'found both values and '//trim(ends(i))//', expected values, or start, ' &
+               //'stop and count', error)
             if (allocated(error)) return
          end do
          call case%get('sweep', 'values', values, item)
          n = size(values)
          if (spacing == log_spacing) then
-            call refuse(case, 'spacing', item, "spacing = 'log' is for start, stop and count, " &
-               //'found values', error)
+            call case%refuse('sweep', 'spacing', item, "spacing = 'log' is for start, stop and " &
+               //'count, found values', error)
          else if (n == 0) then
-            call refuse(case, 'values', item, 'the list is empty, expected one value or more', &
-               error)
+            call case%refuse('sweep', 'values', item, 'the list is empty, expected one value or ' &
+               //'more', error)
          end if
       else
          do i = 1, size(ends)
             if (case%given('sweep', trim(ends(i)), item)) cycle
-            call refuse(case, trim(ends(i)), item, "key '"//trim(ends(i))//"' is missing in " &
-               //'&sweep, expected values, or start, stop and count', error)
+            call case%refuse('sweep', trim(ends(i)), item, "key '"//trim(ends(i)) &
+               //"' is missing in &sweep, expected values, or start, stop and count", error)
             return
          end do
          call case%get('sweep', 'start', start, item)
          call case%get('sweep', 'stop', stop, item)
          call case%get('sweep', 'count', n, item)
          if (spacing == log_spacing .and. .not. start > 0.0_wp) then
-            call refuse(case, 'start', item, "found start = "//real_text(start) &
+            call case%refuse('sweep', 'start', item, "found start = "//real_text(start) &
                //", expected start > 0 with spacing = 'log'", error)
          else if (spacing == log_spacing .and. .not. stop > 0.0_wp) then
-            call refuse(case, 'stop', item, "found stop = "//real_text(stop) &
+            call case%refuse('sweep', 'stop', item, "found stop = "//real_text(stop) &
                //", expected stop > 0 with spacing = 'log'", error)
          end if
       end if
       if (allocated(error)) return
       if (points*real(n, wp) > real(most_points, wp)) then
-         call refuse(case, 'parameter', item, 'the grid has '//real_text(points*real(n, wp)) &
-            //' points, expected at most '//integer_text(most_points), error)
+         call case%refuse('sweep', 'parameter', item, 'the grid has ' &
+            //real_text(points*real(n, wp))//' points, expected at most ' &
+            //integer_text(most_points), error)
          return
       end if
       if (.not. allocated(values)) then
@@ -281,23 +279,49 @@ contains
          if (sorted(i) > sorted(i - 1)) cycle
          key = 'count'
          if (case%given('sweep', 'values', item)) key = 'values'
-         call refuse(case, key, item, 'the value '//real_text(sorted(i))//' is there twice, ' &
-            //'expected different values', error)
+         call case%refuse('sweep', key, item, 'the value '//real_text(sorted(i)) &
+            //' is there twice, expected different values', error)
          return
       end do
    end subroutine refuse_repeated
 
-   !> Raise an error about a key of a &sweep group
-   subroutine refuse(case, key, item, message, error)
-      type(case_t), intent(in) :: case
-      character(len=*), intent(in) :: key
-      !> Number of the group
-      integer, intent(in) :: item
-      !> Found and expected
-      character(len=*), intent(in) :: message
-      type(error_t), allocatable, intent(inout) :: error
+   !> Sort numbers, in a time proportional to n log n whatever their order: runs of 1, 2, 4 ...
+   !> numbers are merged
+   pure subroutine sort(values)
+      !> Finite numbers, increasing afterwards, shape (n)
+      real(wp), intent(inout) :: values(:)
 
-      call raise(error, error_input, case%location('sweep', key, item)//': '//message)
-   end subroutine refuse
+      real(wp), allocatable :: merged(:)
+      integer :: n, run, start, middle, end, i, j, k
+
+      n = size(values)
+      allocate (merged(n))
+      run = 1
+      do while (run < n)
+         do start = 1, n, 2*run
+            middle = min(start + run, n + 1)
+            end = min(start + 2*run, n + 1)
+            i = start
+            j = middle
+            do k = start, end - 1
+               if (j >= end) then
+                  merged(k) = values(i)
+                  i = i + 1
+               else if (i >= middle) then
+                  merged(k) = values(j)
+                  j = j + 1
+               else if (values(i) <= values(j)) then
+                  merged(k) = values(i)
+                  i = i + 1
+               else
+                  merged(k) = values(j)
+                  j = j + 1
+               end if
+            end do
+         end do
+         values = merged
+         run = 2*run
+      end do
+   end subroutine sort
 
 end module vcor_case_grid

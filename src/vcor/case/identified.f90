@@ -1,15 +1,53 @@
-!> A material that was found by a fit, as a group of a case and in the place of another
+!> A material that was found by a fit: as a group of a case, in the place of another, and how much
+!> an impact leans on what it is beyond the data that it was fitted to
+!>
+!> The keys valid_from and valid_to of a material tell the band of these data. The measure is the
+!> change of the coefficient of restitution when the modulus is held constant outside of the band,
+!> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
+!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it
+!> is; a sum of exponentials would go on growing before the band.
 module vcor_case_identified
-   use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t, parameters_of
-   use vcor_material_parameter, only : parameter_t
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : find_group
    use vcor_case_printed, only : case_text
+   use vcor_case_problem, only : material_of_case, solve_case
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : contact_separated
+   use vcor_kinds, only : wp
+   use vcor_material, only : material_data_t, parameters_of
+   use vcor_material_moduli, only : sampled_times, time_range_t
+   use vcor_material_parameter, only : parameter_t
+   use vcor_material_shifted, only : time_factor_of
+   use vcor_material_type, only : material_t
    implicit none
    private
 
-   public :: put_material, take_as_is, material_text
+   public :: put_material, material_text, reliance_t, find_reliance
+
+   !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
+   real(wp), parameter :: little = 1.0e-4_wp
+   !> A contact is shorter than so many contact times, whatever the material is beyond them
+   real(wp), parameter :: ample = 10.0_wp
+
+   !> What an impact leans on
+   type :: reliance_t
+      !> Whether it leans on anything beyond the data
+      logical :: leans = .false.
+      !> Number of the material
+      integer :: item = 0
+      !> Band of its data at the temperature of the impact [s]
+      real(wp) :: band(2) = 0.0_wp
+      !> Whether there is an end to the band, before and after
+      logical :: ends(2) = .false.
+      !> cor with the modulus as it is [-]
+      real(wp) :: cor = 0.0_wp
+      !> cor with the modulus held constant outside of the band [-], if that impact has a result
+      real(wp) :: held = 0.0_wp
+      !> Whether that impact has a result
+      logical :: solved = .false.
+   end type reliance_t
 
 contains
 
@@ -78,5 +116,63 @@ contains
       call case%set(case%address('material', 'valid_to'), valid_to)
       text = case_text(case, complete=.false., remarks=.true.)
    end function material_text
+
+   !> Find out how much an impact leans on a material beyond its data
+   subroutine find_reliance(reliance, case, item, contact_time)
+      !> What is found
+      type(reliance_t), intent(out) :: reliance
+      !> The case, with the parameters of the impact
+      type(case_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Contact time of the impact, which ends in separation [s]
+      real(wp), intent(in) :: contact_time
+
+      type(case_t) :: other
+      class(material_t), allocatable :: material
+      type(outcome_t) :: held, free
+      type(error_t), allocatable :: error
+      real(wp), allocatable :: times(:), moduli(:)
+      real(wp) :: first, last
+
+      reliance%item = item
+      call material_of_case(case, item, material, error)
+      if (allocated(error)) return
+      call case%get('material', 'valid_from', first, item)
+      call case%get('material', 'valid_to', last, item)
+      first = first*time_factor_of(material)
+      last = last*time_factor_of(material)
+      reliance%band = [first, last]
+      reliance%ends = .not. ieee_is_nan(reliance%band)
+      if (.not. any(reliance%ends)) return
+
+      if (.not. reliance%ends(2)) last = ample*contact_time
+      if (.not. reliance%ends(1)) first = min(1.0e-9_wp*contact_time, 0.1_wp*last)
+      ! the contact does not see what comes after it
+      if (.not. last < ample*contact_time) &
+         last = max(ample*contact_time, 2.0_wp*first)
+      times = sampled_times(time_range_t(first, last))
+      allocate (moduli(size(times)))
+      moduli = material%relaxation(times)
+      other = case
+      call other%set(other%address('solver', 'method'), 'direct', given=.true.)
+      call other%set(other%address('solver', 'scheme'), 'product', given=.true.)
+      call other%set(other%address('solver', 'accuracy'), 0.1_wp*little)
+      call other%unset(other%address('solver', 'time_step'))
+      call solve_case(other, free, error)
+      if (allocated(error) .or. free%status /= contact_separated) return
+      reliance%cor = free%cor
+      call other%set(other%address('material', 'model', item), 'table', given=.true.)
+      call take_as_is(other, item)
+      call other%set(other%address('material', 'times', item), times, given=.true.)
+      call other%set(other%address('material', 'moduli', item), moduli, given=.true.)
+      call solve_case(other, held, error)
+      reliance%solved = .not. allocated(error)
+      if (reliance%solved) reliance%solved = held%status == contact_separated
+      reliance%held = held%cor
+      ! a contact that is over before the data begin is made up altogether, whatever changes
+      reliance%leans = .not. reliance%solved .or. (reliance%ends(1) .and. first > contact_time)
+      if (.not. reliance%leans) reliance%leans = abs(held%cor - free%cor) > little
+   end subroutine find_reliance
 
 end module vcor_case_identified

@@ -62,12 +62,7 @@ module vcor_case_namelist
       !> The token that is looked at next
       integer, private :: next = 1
    contains
-      !> Find the next group
-      procedure :: next_group
-      !> Find the next statement of the group
-      procedure :: next_statement
-      !> A place in the text, for messages
-      procedure :: place
+      procedure :: next_group, next_statement, place
    end type namelist_t
 
    character, parameter :: tab = achar(9), line_feed = achar(10), carriage_return = achar(13)

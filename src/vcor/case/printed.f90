@@ -4,7 +4,7 @@ module vcor_case_printed
    use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
       last_row, list_key, logical_key, real_key, row_for_model
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_text, only : buffer_t, integer_text, logical_text, quoted, real_text
+   use vcor_text, only : buffer_t, integer_text, quoted, real_text
    implicit none
    private
 
@@ -122,7 +122,7 @@ contains
       case (integer_key)
          text = integer_text(nint(entry%number))
       case (logical_key)
-         text = logical_text(entry%number > 0.5_wp)
+         text = trim(merge('.true. ', '.false.', entry%number > 0.5_wp))
       case (list_key)
          text = list_text(entry%list, len(indent) + len_trim(key%name) + len(" = "))
       case default

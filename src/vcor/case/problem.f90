@@ -95,10 +95,7 @@ module vcor_case_problem
       !> Number of the material that the last error is about, 0: none
       integer, private :: culprit = 0
    contains
-      !> Follow the numbers of the case
-      procedure :: update
-      !> Solve and judge the impact
-      procedure :: solve
+      procedure :: update, solve
    end type problem_t
 
 contains

@@ -51,16 +51,8 @@ module vcor_io_checkpoint
       !> Where in the file columns begin [bytes]: those of the summary in their order, check
       integer(c_int64_t), allocatable, private :: offsets(:)
    contains
-      !> Whether there is a file
-      procedure :: is_open
-      !> Keep outcomes
-      procedure :: put
-      !> Close the file, which stays
+      procedure :: is_open, put, close_as, remove
       procedure :: close => close_checkpoint
-      !> Close the file and give it another name
-      procedure :: close_as
-      !> Close the file and remove it
-      procedure :: remove
    end type checkpoint_t
 
 contains

@@ -54,14 +54,9 @@ module vcor_io_columns
       !> Where the next line begins, and where the columns of this one do and end
       integer, private :: next = 0, from(most_columns) = 1, to(most_columns) = 0
    contains
-      !> Take the next line
+      procedure :: cell, is_numeric
       procedure :: take => take_row
-      !> What is wrong with a line of numbers, whatever they say
       procedure :: check => check_row
-      !> One of its columns
-      procedure :: cell
-      !> Whether a column looks like a number
-      procedure :: is_numeric
    end type row_t
 
 contains

@@ -29,14 +29,8 @@ module vcor_sweep_failures
       !> Points with an estimated error above the accuracy asked for
       type(failure_t) :: inexact
    contains
-      !> Note points
-      procedure :: note
-      !> Order the reasons by their first point
-      procedure :: sort
-      !> All reasons as numbers
+      procedure :: note, sort, add_packed
       procedure :: pack => pack_reasons
-      !> Add reasons from numbers
-      procedure :: add_packed
    end type failures_t
 
 contains

@@ -21,10 +21,8 @@ module vcor_sweep_part
       !> Points of all parts together
       integer :: points = 0
    contains
-      !> Number of points of the part
-      procedure :: count => count_places
-      !> Point at a place
       procedure :: point
+      procedure :: count => count_places
    end type part_t
 
 contains

@@ -85,9 +85,8 @@ module vcor_sweep_quantity
       !> What they are, shape (most); unallocated where nobody asks
       type(quantity_t), allocatable :: quantities(:)
    contains
-      procedure, private :: add_real, add_whole, add_label
-      !> Add a column
       generic :: add => add_real, add_whole, add_label
+      procedure, private :: add_real, add_whole, add_label
    end type list_t
 
    !> Columns of a history, in the order of the rows of a trajectory's state

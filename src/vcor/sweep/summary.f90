@@ -29,12 +29,7 @@ module vcor_sweep_summary
       !> Status, one of the `contact_*` and `point_*` constants, shape (points)
       integer, allocatable :: status(:)
    contains
-      !> Keep the outcome of a point
-      procedure :: put
-      !> Keep the outcomes of a part
-      procedure :: put_part
-      !> NaN for the values of pending points
-      procedure :: blank_pending
+      procedure :: put, put_part, blank_pending
    end type summary_t
 
 contains

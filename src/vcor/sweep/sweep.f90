@@ -40,7 +40,6 @@ module vcor_sweep_sweep
       !> What to say about a value that is out of range, shape (axes)
       type(error_t), allocatable, private :: objections(:)
    contains
-      !> Whether the case has a &sweep group
       procedure :: is_grid
    end type sweep_t
 

@@ -82,17 +82,7 @@ module vcor_numeric_radau_collocation
       !> `closing` for one in sqrt(time left), shape (closing:)
       type(panel_map_t), allocatable :: map(:)
    contains
-      !> Times of the stages of a panel
-      procedure :: times
-      !> Value of a polynomial given at the points
-      procedure :: interpolate
-      !> About the values of such a polynomial at as many arguments as a panel has stages
-      procedure :: extend
-      !> Derivative of a polynomial at the points
-      procedure :: slopes
-      !> About the zero of a polynomial between two arguments
-      procedure :: crossing
-      !> Coefficients of such a polynomial in powers of its argument
+      procedure :: times, interpolate, extend, slopes, crossing
       procedure, private :: powers
    end type collocation_t
 

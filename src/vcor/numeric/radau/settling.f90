@@ -38,10 +38,7 @@ module vcor_numeric_radau_settling
       !> Coefficients of y^k in them, shape (k, polynomial)
       real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
-      !> Sum over many exponentials
-      procedure :: total
-      !> The same over pairs of conjugate ones
-      procedure :: total_of_pairs
+      procedure :: total, total_of_pairs
       procedure, private :: slope_powers
    end type settling_t
 
