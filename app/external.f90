@@ -1,9 +1,10 @@
 !> Commands that other packages bring: `vcor NAME ...` is `vcor-NAME ...` if PATH has such a program
 module vcor_app_external
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_loc, &
+   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_loc, &
       c_null_char, c_null_ptr, c_ptr, c_size_t
    use vcor_app_cli, only : argument_t
    use vcor_app_commands, only : commands
+   use vcor_io_posix, only : fortran_text
    use vcor_words, only : contains_word
    implicit none
    private
@@ -67,14 +68,6 @@ module vcor_app_external
          integer(c_int), value :: mode
          integer(c_int) :: status
       end function c_access
-
-      !> Length of a text of C
-      pure function c_strlen(text) bind(c, name='strlen') result(length)
-         import :: c_ptr, c_size_t
-         type(c_ptr), value :: text
-         !> Bytes before its null
-         integer(c_size_t) :: length
-      end function c_strlen
    end interface
 
 contains
@@ -119,7 +112,6 @@ contains
       integer(c_int), parameter :: mark_folders = 2, may_run = 1
       type(glob_t) :: found
       type(c_ptr), pointer :: paths(:)
-      character(kind=c_char), pointer :: path(:)
       character(len=:), allocatable :: folders, pattern, name
       integer :: i, j, first, length
 
@@ -143,14 +135,11 @@ contains
             call c_f_pointer(found%paths, paths, [found%count])
             do j = 1, size(paths)
                if (c_access(paths(j), may_run) /= 0) cycle
-               call c_f_pointer(paths(j), path, [c_strlen(paths(j))])
-               allocate (character(len=size(path)) :: name)
-               name = transfer(path, name)
+               name = fortran_text(paths(j))
                first = index(name, '/vcor-', back=.true.) + 6
                if (verify(name(first:), letters) == 0 .and. all(names /= name(first:)) .and. &
                   .not. contains_word(commands, name(first:))) &
                   names = [character(len=longest) :: names, name(first:)]
-               deallocate (name)
             end do
          end if
          call c_globfree(found)

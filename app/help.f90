@@ -7,7 +7,7 @@ module vcor_app_help
    use vcor_case_catalogue, only : described_keys, groups, integer_key, key_t, kind_name, &
       logical_key, range_text, real_key, text_key
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
-   use vcor_interval, only : interval_text
+   use vcor_material_parameter, only : interval_text
    use vcor_json, only : array, member, object, strings, words
    use vcor_words, only : nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &

@@ -19,6 +19,7 @@ module vcor_c_api
    use vcor_impact_trajectory, only : history_steps
    use vcor_io_case_reader, only : override, read_case, read_case_text
    use vcor_io_data_file, only : read_data
+   use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_sweep_failures, only : failures_t
@@ -36,7 +37,7 @@ module vcor_c_api
    implicit none
    private
 
-   public :: c_error_t, c_column_t, fortran, c_text, c_numbers, told
+   public :: c_error_t, c_column_t, c_text, c_numbers, told
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
       vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
       vcor_relaxation, vcor_complex_modulus, vcor_verify
@@ -94,14 +95,6 @@ module vcor_c_api
          integer(c_size_t), value :: size
          type(c_ptr) :: room
       end function malloc
-
-      !> Length of a text of C
-      pure function strlen(text) bind(c, name='strlen') result(length)
-         import :: c_ptr, c_size_t
-         type(c_ptr), value :: text
-         !> Bytes before its null
-         integer(c_size_t) :: length
-      end function strlen
 
       !> Number of the process
       function getpid() bind(c, name='getpid') result(number)
@@ -715,25 +708,6 @@ contains
       end do
       room(n + 1) = c_null_char
    end subroutine put_text
-
-   !> A text of C
-   function fortran(text) result(copy)
-      type(c_ptr), intent(in) :: text
-      !> The same
-      character(len=:), allocatable :: copy
-
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i, n
-
-      n = 0
-      if (c_associated(text)) n = int(strlen(text))
-      allocate (character(len=n) :: copy)
-      if (n == 0) return
-      call c_f_pointer(text, letters, [n])
-      do i = 1, n
-         copy(i:i) = letters(i)
-      end do
-   end function fortran
 
    !> A text for C, released by free()
    function c_text(text) result(copy)

@@ -5,14 +5,13 @@ program test_material
    use, intrinsic :: ieee_exceptions, only : ieee_get_halting_mode, ieee_invalid, ieee_set_flag, &
       ieee_set_halting_mode
    use vcor_error, only : error_t
-   use vcor_interval, only : is_within
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, model_parameters, models, new_material, &
       parameters_of
    use vcor_material_cerf, only : cerf_t, new_cerf
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_mittag_leffler, only : mittag_leffler_t, new_mittag_leffler
-   use vcor_material_parameter, only : linear, parameter_t
+   use vcor_material_parameter, only : is_within, linear, parameter_t
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_numeric_legendre, only : gauss_nodes

@@ -6,7 +6,7 @@ program test_sweep
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : override, read_case_text
-   use vcor_interval, only : spaced
+   use vcor_material_parameter, only : spaced
    use vcor_kinds, only : wp
    use vcor_solver, only : solver_t
    use vcor_case_address, only : swept_addresses

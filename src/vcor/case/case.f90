@@ -9,7 +9,7 @@ module vcor_case_case
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       integer_key, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
-   use vcor_interval, only : contains_number
+   use vcor_material_parameter, only : contains_number
    use vcor_error, only : error_input, error_internal, error_t, raise
    use vcor_kinds, only : wp
    use vcor_text, only : canonical_name, integer_text, lower, printable, real_text

@@ -7,9 +7,8 @@
 !> constants must: a unit test says when one is full.
 module vcor_case_catalogue
    use vcor_kinds, only : wp
-   use vcor_interval, only : interval_t, interval_text
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
-   use vcor_material_parameter, only : density, positive
+   use vcor_material_parameter, only : density, interval_t, interval_text, positive
    use vcor_material_shifted, only : shift_laws, shift_parameters
    use vcor_text, only : lower
    use vcor_words, only : contains_word, join_words

@@ -5,7 +5,7 @@
 !> axes go on together.
 module vcor_case_grid
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_interval, only : log_spacing, spaced
+   use vcor_material_parameter, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve
    use vcor_case_case, only : address_t, case_t, operator(==)

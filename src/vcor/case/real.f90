@@ -5,7 +5,7 @@
 !> from its first to its last byte.
 module vcor_case_real
    use vcor_kinds, only : wp
-   use vcor_interval, only : largest, smallest
+   use vcor_material_parameter, only : largest, smallest
    use vcor_text, only : lower, shortened
    implicit none
    private

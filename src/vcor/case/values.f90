@@ -5,7 +5,7 @@ module vcor_case_values
       wanted
    use vcor_case_namelist, only : value_t, values_in
    use vcor_case_real, only : looks_numeric, read_real
-   use vcor_interval, only : contains_number, is_computable
+   use vcor_material_parameter, only : contains_number, is_computable
    use vcor_kinds, only : wp
    use vcor_text, only : control_in, integer_text, is_utf8, lower, quoted, real_text, shortened
    use vcor_words, only : contains_word, nearest_name, spelled

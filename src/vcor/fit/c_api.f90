@@ -2,11 +2,12 @@
 module vcor_fit_c_api
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_f_pointer, c_int, &
       c_null_ptr, c_ptr
-   use vcor_c_api, only : c_numbers, c_text, fortran, told
+   use vcor_c_api, only : c_numbers, c_text, told
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
    use vcor_fit_json, only : fit_json
+   use vcor_io_posix, only : fortran => fortran_text
    use vcor_io_sample_file, only : read_samples, reading_t
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models

@@ -376,25 +376,14 @@ contains
       call check_part(path, identity, error)
       if (allocated(error)) return
       allocate (checks(size(summary%status)))
-      call read_columns(path, summary, error, checks)
+      call read_results(path, summary, error, checks)
       if (allocated(error)) return
       where (checks /= checks_of(summary, 1, size(checks))) &
          summary%status = point_pending
    end subroutine read_points
 
-   !> Read the results of a finished sweep
-   subroutine read_results(path, summary, error)
-      character(len=*), intent(in) :: path
-      !> Outcomes, with room for all of its points
-      type(summary_t), intent(inout) :: summary
-      !> Error of code `error_file` if they cannot be read
-      type(error_t), allocatable, intent(out) :: error
-
-      call read_columns(path, summary, error)
-   end subroutine read_results
-
-   !> Read all columns of a file
-   subroutine read_columns(path, summary, error, checks)
+   !> Read all columns of a file, of a finished sweep or of a part
+   subroutine read_results(path, summary, error, checks)
       character(len=*), intent(in) :: path
       !> Outcomes, with room for all of its points
       type(summary_t), intent(inout) :: summary
@@ -434,7 +423,7 @@ contains
       if (.not. allocated(error)) return
       error%code = error_file
       error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
-   end subroutine read_columns
+   end subroutine read_results
 
    !> Find the numbers that the texts of a column stand for
    subroutine number_texts(column, quantity, path, error)

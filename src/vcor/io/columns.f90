@@ -66,7 +66,7 @@ contains
       class(row_t), intent(inout) :: self
       character(len=*), intent(in) :: text
 
-      if (self%line == 0) self%next = start_of(text)
+      if (self%line == 0) self%next = merge(4, 1, index(text, byte_order_mark) == 1)
       self%is_there = self%next <= len(text)
       if (.not. self%is_there) return
       call take_line(text, self%next, self%content, self%comment)
@@ -110,16 +110,6 @@ contains
       is_numeric = looks_numeric(self%content(self%from(i):self%to(i)))
    end function is_numeric
 
-   !> Where the first line of a text begins
-   pure function start_of(text) result(start)
-      character(len=*), intent(in) :: text
-      !> Place of its first character
-      integer :: start
-
-      start = 1
-      if (index(text, byte_order_mark) == 1) start = 1 + len(byte_order_mark)
-   end function start_of
-
    !> Number of lines in a text, or a little more
    pure function lines_in(text) result(n)
       character(len=*), intent(in) :: text
@@ -140,14 +130,14 @@ contains
       !> The line without its end and without what follows a #
       character(len=:), allocatable, intent(out) :: content
       !> What follows the #
-      character(len=:), allocatable, intent(out), optional :: comment
+      character(len=:), allocatable, intent(out) :: comment
       integer :: last, mark
 
       last = scan(text(start:), carriage_return//line_feed) + start - 2
       if (last < start - 1) last = len(text)
       mark = index(text(start:last), "#")
       content = text(start:merge(start + mark - 2, last, mark > 0))
-      if (present(comment)) comment = text(start + len(content) + 1:last)
+      comment = text(start + len(content) + 1:last)
       if (names_separator(content)) content = ""
       start = last + 2
       if (start > len(text)) return

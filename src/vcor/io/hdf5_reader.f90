@@ -1,26 +1,25 @@
 !> HDF5 files read back: what is in them, and what they say about themselves
 !>
 !>     call open_hdf5(reader, 'case.h5', error)
-!>     text = text_attribute(reader, '/', 'title')
+!>     text = text_attribute(reader, 'title')
 !>     call read_column(reader, 'summary/cor', real_column, n, column, error)
 !>     call close_hdf5(reader)
 !>
 !> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
-!> width and byte order, text of fixed or variable length. Every error is an `error_file` with the
+!> width and byte order, text of variable length. Every error is an `error_file` with the
 !> name of the file, but for what a file lacks that is there: that is an `error_input`.
 module vcor_io_hdf5_reader
-   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int64_t, c_loc, &
-      c_null_char, c_null_ptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_int64_t, c_loc, c_null_ptr, c_ptr
    use hdf5, only : h5aclose_f, h5aexists_by_name_f, h5aget_space_f, h5aget_type_f, &
       h5aopen_by_name_f, h5aread_f, h5dclose_f, h5dget_space_f, h5dget_type_f, h5dopen_f, &
       h5dread_f, h5dvlen_reclaim_f, h5f_acc_rdonly_f, h5fclose_f, h5fis_hdf5_f, h5fopen_f, &
       h5p_default_f, h5sclose_f, h5sget_simple_extent_npoints_f, h5t_float_f, h5t_integer_f, &
       h5t_native_double, h5t_native_integer, h5t_string, h5t_string_f, h5tclose_f, h5tcopy_f, &
-      h5tget_class_f, h5tget_cset_f, h5tget_size_f, h5tis_variable_str_f, h5tset_cset_f, hid_t, &
-      hsize_t, size_t
+      h5tget_class_f, h5tget_cset_f, h5tis_variable_str_f, h5tset_cset_f, hid_t, hsize_t
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_hdf5, only : begin_hdf5, c_get_offset, end_hdf5
    use vcor_io_path, only : check_readable, plain_file_exists
+   use vcor_io_posix, only : fortran_text
    use vcor_io_seal, only : check_seal
    use vcor_io_table, only : column_t, integer_column, real_column, text_column
    use vcor_text, only : integer_text, printable, shortened
@@ -94,26 +93,27 @@ contains
       reader%file = -1_hid_t
    end subroutine close_hdf5
 
-   !> A text attribute of a group or a dataset
-   function text_attribute(reader, path, name) result(text)
+   !> A text attribute of the file
+   function text_attribute(reader, name) result(text)
       type(reader_t), intent(in) :: reader
-      !> Path of the group or the dataset, `/` for the file
-      character(len=*), intent(in) :: path
       character(len=*), intent(in) :: name
       !> Its value; empty if there is none or it is no single text
       character(len=:), allocatable :: text
 
       type(column_t) :: column
       integer(hid_t) :: attribute, space, type_id
-      integer :: class, ignored, status
+      integer :: ignored, status
+      logical :: exists
 
       text = ''
-      call open_attribute(reader, path, name, attribute, space, status)
+      call h5aexists_by_name_f(reader%file, '/', name, exists, status)
+      if (status < 0 .or. .not. exists) return
+      call h5aopen_by_name_f(reader%file, '/', name, attribute, status)
       if (status < 0) return
+      call h5aget_space_f(attribute, space, status)
       call h5aget_type_f(attribute, type_id, status)
-      call h5tget_class_f(type_id, class, status)
-      if (class == h5t_string_f) then
-         column%length = 1
+      call read_length(space, column%length, status)
+      if (column%length == 1) then
          call read_texts(attribute, .true., space, type_id, column, status)
          if (status >= 0) text = trim(column%texts)
       end if
@@ -121,31 +121,6 @@ contains
       call h5sclose_f(space, ignored)
       call h5aclose_f(attribute, ignored)
    end function text_attribute
-
-   !> Open an attribute of one value
-   subroutine open_attribute(reader, path, name, attribute, space, status)
-      type(reader_t), intent(in) :: reader
-      !> Path of the group or the dataset, and name of the attribute
-      character(len=*), intent(in) :: path, name
-      !> The attribute and its space, open
-      integer(hid_t), intent(out) :: attribute, space
-      !> Negative if there is none, or not one value; then nothing is open
-      integer, intent(out) :: status
-
-      integer :: ignored, length
-      logical :: exists
-
-      call h5aexists_by_name_f(reader%file, path, name, exists, status)
-      if (.not. exists) status = -1
-      if (status >= 0) call h5aopen_by_name_f(reader%file, path, name, attribute, status)
-      if (status < 0) return
-      call h5aget_space_f(attribute, space, status)
-      call read_length(space, length, status)
-      if (status >= 0 .and. length == 1) return
-      status = -1
-      call h5sclose_f(space, ignored)
-      call h5aclose_f(attribute, ignored)
-   end subroutine open_attribute
 
    !> Read a column of a table, of which it is known what it has
    subroutine read_column(reader, path, kind, length, column, error)
@@ -283,7 +258,7 @@ contains
       if (status >= 0) length = int(number)
    end subroutine read_length
 
-   !> Read text, of a dataset or an attribute
+   !> Read text of variable length, of a dataset or an attribute
    subroutine read_texts(object, is_attribute, space, type_id, column, status)
       !> The dataset or the attribute
       integer(hid_t), intent(in) :: object
@@ -293,113 +268,44 @@ contains
       integer(hid_t), intent(in) :: type_id
       !> Column whose length is set; its texts are afterwards
       type(column_t), intent(inout) :: column
-      !> Negative on failure
+      !> Negative on failure, or if it is something else
       integer, intent(out) :: status
 
-      character(kind=c_char), allocatable, target :: letters(:)
       type(c_ptr), allocatable, target :: places(:)
       type(c_ptr) :: buffer
       integer(hid_t) :: memory_type
-      integer(size_t) :: width
-      integer :: character_set, i, ignored
+      integer :: character_set, class, i, ignored
       logical :: varies
 
-      call h5tis_variable_str_f(type_id, varies, status)
+      varies = .false.
+      call h5tget_class_f(type_id, class, status)
+      if (class == h5t_string_f) call h5tis_variable_str_f(type_id, varies, status)
+      if (.not. varies) status = -1
       if (status < 0) return
-      if (varies) then
-         call h5tget_cset_f(type_id, character_set, status)
-         call h5tcopy_f(h5t_string, memory_type, status)
-         call h5tset_cset_f(memory_type, character_set, status)
-         allocate (places(max(1, column%length)))
-         places = c_null_ptr
-         buffer = c_loc(places)
-         call read_raw(memory_type)
-         if (status >= 0) then
-            column%width = maxval([0, (length_at(places(i)), i=1, column%length)])
-            allocate (character(len=column%width*column%length) :: column%texts)
-            do i = 1, column%length
-               call copy_at(places(i), column%texts((i - 1)*column%width + 1:i*column%width))
-            end do
-            call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
-         end if
-         call h5tclose_f(memory_type, ignored)
+      call h5tget_cset_f(type_id, character_set, status)
+      call h5tcopy_f(h5t_string, memory_type, status)
+      call h5tset_cset_f(memory_type, character_set, status)
+      allocate (places(max(1, column%length)))
+      places = c_null_ptr
+      buffer = c_loc(places)
+      if (column%length == 0) then
+         continue
+      else if (is_attribute) then
+         call h5aread_f(object, memory_type, buffer, status)
       else
-         ! in the type of the file itself: with its length and its padding
-         call h5tget_size_f(type_id, width, status)
-         column%width = int(width)
-         allocate (letters(column%width*column%length + 1))
-         letters = c_null_char
-         buffer = c_loc(letters)
-         call read_raw(type_id)
+         call h5dread_f(object, memory_type, buffer, status)
+      end if
+      if (status >= 0) then
+         do i = 1, column%length
+            column%width = max(column%width, len(fortran_text(places(i))))
+         end do
          allocate (character(len=column%width*column%length) :: column%texts)
          do i = 1, column%length
-            associate (first => (i - 1)*column%width + 1, last => i*column%width)
-               call copy_letters(letters(first:last), column%texts(first:last))
-            end associate
+            column%texts((i - 1)*column%width + 1:i*column%width) = fortran_text(places(i))
          end do
+         call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
       end if
-
-   contains
-
-      !> Read as it is
-      subroutine read_raw(memory_type)
-         !> Type in memory
-         integer(hid_t), intent(in) :: memory_type
-
-         if (column%length == 0) return
-         if (is_attribute) then
-            call h5aread_f(object, memory_type, buffer, status)
-         else
-            call h5dread_f(object, memory_type, buffer, status)
-         end if
-      end subroutine read_raw
+      call h5tclose_f(memory_type, ignored)
    end subroutine read_texts
-
-   !> Length of a text of C
-   function length_at(place) result(length)
-      !> Where it begins, or null
-      type(c_ptr), intent(in) :: place
-      !> Bytes before its NUL
-      integer :: length
-
-      character(kind=c_char), pointer :: letters(:)
-
-      length = 0
-      if (.not. c_associated(place)) return
-      call c_f_pointer(place, letters, [huge(1)])
-      do while (letters(length + 1) /= c_null_char)
-         length = length + 1
-      end do
-   end function length_at
-
-   !> Copy a text of C
-   subroutine copy_at(place, text)
-      !> Where it begins, or null
-      type(c_ptr), intent(in) :: place
-      character(len=*), intent(out) :: text
-
-      character(kind=c_char), pointer :: letters(:)
-
-      text = ''
-      if (.not. c_associated(place)) return
-      call c_f_pointer(place, letters, [len(text)])
-      call copy_letters(letters, text)
-   end subroutine copy_at
-
-   !> Copy letters up to a NUL
-   pure subroutine copy_letters(letters, text)
-      !> Letters, shape (n)
-      character(kind=c_char), intent(in) :: letters(:)
-      !> Text of n characters, padded with blanks
-      character(len=*), intent(out) :: text
-
-      integer :: i
-
-      text = ''
-      do i = 1, size(letters)
-         if (letters(i) == c_null_char) exit
-         text(i:i) = letters(i)
-      end do
-   end subroutine copy_letters
 
 end module vcor_io_hdf5_reader

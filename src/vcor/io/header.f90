@@ -400,36 +400,16 @@ contains
       !> In seconds, rad/s or Pa
       real(wp) :: scale
 
-      select case (unit)
-      case ("ns")
-         scale = 1.0e-9_wp
-      case ("us")
-         scale = 1.0e-6_wp
-      case ("ms")
-         scale = 1.0e-3_wp
-      case ("min")
-         scale = 60.0_wp
-      case ("h")
-         scale = 3600.0_wp
-      case ("kPa", "krad/s")
-         scale = 1.0e3_wp
-      case ("MPa", "N/mm2")
-         scale = 1.0e6_wp
-      case ("GPa")
-         scale = 1.0e9_wp
-      case ("mHz")
-         scale = 2.0e-3_wp*pi
-      case ("Hz")
-         scale = 2.0_wp*pi
-      case ("kHz")
-         scale = 2.0e3_wp*pi
-      case ("MHz")
-         scale = 2.0e6_wp*pi
-      case ("GHz")
-         scale = 2.0e9_wp*pi
-      case default
-         scale = 1.0_wp
-      end select
+      character(len=*), parameter :: names(*) = [character(len=6) :: "ns", "us", "ms", "min", "h", &
+         "kPa", "krad/s", "MPa", "N/mm2", "GPa", "mHz", "Hz", "kHz", "MHz", "GHz"]
+      real(wp), parameter :: sizes(*) = [1.0e-9_wp, 1.0e-6_wp, 1.0e-3_wp, 60.0_wp, 3600.0_wp, &
+         1.0e3_wp, 1.0e3_wp, 1.0e6_wp, 1.0e6_wp, 1.0e9_wp, &
+         2.0_wp*pi*[1.0e-3_wp, 1.0_wp, 1.0e3_wp, 1.0e6_wp, 1.0e9_wp]]
+      integer :: i
+
+      scale = 1.0_wp
+      i = findloc(names == unit, .true., dim=1)
+      if (i > 0) scale = sizes(i)
    end function unit_size
 
    !> Check that a unit is one of what a column holds

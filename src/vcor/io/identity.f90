@@ -137,7 +137,7 @@ contains
          !> Its text; empty where there is none
          character(len=:), allocatable :: text
 
-         text = text_attribute(reader, '/', name)
+         text = text_attribute(reader, name)
       end function attribute
 
       !> A number in an attribute

@@ -6,7 +6,7 @@
 !> with NUL (`c_text`); a `status` is 0 on success. Two functions are Linux's own:
 !> `__errno_location` (its name is `__error` on macOS) and `statx`.
 module vcor_io_posix
-   use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_int16_t, &
+   use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int16_t, &
       c_int64_t, c_null_char, c_ptr, c_size_t
    implicit none
    private
@@ -16,7 +16,7 @@ module vcor_io_posix
    public :: c_write, c_isatty, c_fallocate, c_pwrite, c_fsync, c_lockf, c_link
    public :: standard_output, standard_error, all_permissions, lock_alone
    public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
-   public :: c_text
+   public :: c_text, fortran_text
    public :: file_id_t, file_at, open_file, same_file_id
    public :: nothing_there, plain_file, folder, something_else
 
@@ -215,6 +215,13 @@ module vcor_io_posix
          integer(c_int), intent(in), value :: number
          type(c_ptr) :: text
       end function c_strerror
+
+      !> Bytes of a text of C before its NUL
+      pure function c_strlen(text) result(length) bind(c, name='strlen')
+         import :: c_ptr, c_size_t
+         type(c_ptr), intent(in), value :: text
+         integer(c_size_t) :: length
+      end function c_strlen
    end interface
 
 contains
@@ -227,6 +234,26 @@ contains
 
       terminated = text//c_null_char
    end function c_text
+
+   !> A text of C
+   function fortran_text(place) result(text)
+      !> Where it begins, or null
+      type(c_ptr), intent(in) :: place
+      !> The same; of null an empty one
+      character(len=:), allocatable :: text
+
+      character(kind=c_char), pointer :: letters(:)
+      integer :: i, n
+
+      n = 0
+      if (c_associated(place)) n = int(c_strlen(place))
+      allocate (character(len=n) :: text)
+      if (n == 0) return
+      call c_f_pointer(place, letters, [n])
+      do i = 1, n
+         text(i:i) = letters(i)
+      end do
+   end function fortran_text
 
    !> What there is at a path
    function file_at(path, follows) result(id)
@@ -305,16 +332,7 @@ contains
       !> Text such as `No space left on device`
       character(len=:), allocatable :: reason
 
-      integer, parameter :: longest = 200
-      character(kind=c_char), pointer :: letters(:)
-      integer :: i
-
-      call c_f_pointer(c_strerror(number), letters, [longest])
-      reason = ''
-      do i = 1, longest
-         if (letters(i) == c_null_char) exit
-         reason = reason//letters(i)
-      end do
+      reason = fortran_text(c_strerror(number))
    end function system_reason
 
 end module vcor_io_posix

@@ -6,9 +6,8 @@ module vcor_material_mittag_leffler
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_interval, only : interval_t
-   use vcor_material_parameter, only : check_values, equilibrium_modulus, parameter_t, &
-      poisson_ratio, positive, relaxing_modulus
+   use vcor_material_parameter, only : check_values, equilibrium_modulus, interval_t, &
+      parameter_t, poisson_ratio, positive, relaxing_modulus
    use vcor_material_spectrum, only : sum_of_spectrum
    use vcor_material_type, only : material_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule

@@ -4,7 +4,7 @@ module vcor_material_moduli
       ieee_quiet_nan, ieee_value
    use vcor_constants, only : pi
    use vcor_error, only : error_t, error_usage, raise
-   use vcor_interval, only : log_spacing, spaced
+   use vcor_material_parameter, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_text, only : real_text

@@ -1,17 +1,42 @@
-!> What a model of a material states of its parameters: once, in the file of the model. The keys of
-!> `&material`, the checks of its constructor and the bounds of a fit are made from it
+!> Ranges of numbers, values spread over them, and what a model of a material states of its
+!> parameters: once, in the file of the model. The keys of `&material`, the checks of its
+!> constructor and the bounds of a fit are made from it
 module vcor_material_parameter
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
-   use vcor_interval, only : interval_t, interval_text, is_within
    use vcor_kinds, only : wp
-   use vcor_text, only : real_text
+   use vcor_text, only : integer_text, real_text
    implicit none
    private
 
-   public :: parameter_t, check_values
+   public :: interval_t, contains_number, is_within, is_computable, interval_text, largest, smallest
+   public :: spaced, log_spacing, parameter_t, check_values
    public :: linear, logarithmic
    public :: positive, not_negative, between_0_and_1
    public :: density, poisson_ratio, equilibrium_modulus, relaxing_modulus
+
+   !> Largest magnitude of a number that is read
+   real(wp), parameter :: largest = 1.0e300_wp
+   !> Smallest magnitude of a number that is read and is not zero
+   real(wp), parameter :: smallest = 1.0e-300_wp
+   !> Magnitudes of the numbers of a case; nothing physical comes near, and products of some stay
+   !> finite
+   real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
+
+   !> Spacing of values: equal steps of the logarithm; any other word: of the values themselves
+   character(len=*), parameter :: log_spacing = 'log'
+
+   !> Range of a number
+   type :: interval_t
+      !> Lower bound, in the unit of the key
+      real(wp) :: lower = -largest
+      !> Upper bound, in the unit of the key
+      real(wp) :: upper = largest
+      !> Whether the lower bound itself is outside
+      logical :: lower_open = .false.
+      !> Whether the upper bound itself is outside
+      logical :: upper_open = .false.
+   end type interval_t
 
    !> Scale of a parameter that may be 0: a term of a sum
    integer, parameter :: linear = 1
@@ -89,5 +114,110 @@ contains
          return
       end do
    end subroutine check_values
+
+   !> Whether a number is within a range
+   pure function contains_number(range, number) result(yes)
+      type(interval_t), intent(in) :: range
+      !> The number, finite or not
+      real(wp), intent(in) :: number
+      !> True if it is within; false for NaN, infinity and magnitudes beyond what can be computed
+      logical :: yes
+
+      yes = is_within(range, number)
+      if (yes) yes = is_computable(number)
+   end function contains_number
+
+   !> Whether a number is finite and within the bounds of a range
+   pure function is_within(range, number) result(yes)
+      type(interval_t), intent(in) :: range
+      !> The number, finite or not
+      real(wp), intent(in) :: number
+      logical :: yes
+
+      ! On its own, since comparing a NaN traps in a debug build
+      yes = ieee_is_finite(number)
+      if (.not. yes) return
+      yes = (number >= range%lower .or. range%lower <= -largest) &
+         .and. (number <= range%upper .or. range%upper >= largest)
+      if (range%lower_open) yes = yes .and. number > range%lower
+      if (range%upper_open) yes = yes .and. number < range%upper
+   end function is_within
+
+   !> Whether a finite number is zero or of a magnitude that can be computed with
+   pure function is_computable(number) result(yes)
+      real(wp), intent(in) :: number
+      logical :: yes
+
+      yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
+   end function is_computable
+
+   !> A range as text: `> 0`, `in (-1, 0.5]`; empty where it has no bounds
+   pure function interval_text(range) result(text)
+      type(interval_t), intent(in) :: range
+      character(len=:), allocatable :: text
+
+      if (range%lower > -largest .and. range%upper < largest) then
+         text = "in "//merge("(", "[", range%lower_open)//bound_text(range%lower)//", " &
+            //bound_text(range%upper)//merge(")", "]", range%upper_open)
+      else if (range%lower > -largest) then
+         text = trim(merge("> ", ">=", range%lower_open))//" "//bound_text(range%lower)
+      else if (range%upper < largest) then
+         text = trim(merge("< ", "<=", range%upper_open))//" "//bound_text(range%upper)
+      else
+         text = ""
+      end if
+   end function interval_text
+
+   !> A bound as text, without a fraction where there is none
+   pure function bound_text(bound) result(text)
+      real(wp), intent(in) :: bound
+      character(len=:), allocatable :: text
+      real(wp), parameter :: whole_below = 1.0e6_wp
+
+      text = real_text(bound)
+      if (abs(bound) >= whole_below) return
+      if (abs(bound - anint(bound)) <= 0.0_wp) text = integer_text(nint(bound))
+   end function bound_text
+
+   !> Values between two ends, which are met exactly
+   pure function spaced(start, stop, count, spacing) result(values)
+      !> First value; > 0 with logarithmic spacing
+      real(wp), intent(in) :: start
+      !> Last value, which may be below the first one; > 0 with logarithmic spacing
+      real(wp), intent(in) :: stop
+      !> Number of values, > 0; where it is 1, the value is `start`
+      integer, intent(in) :: count
+      !> `linear` or `log`
+      character(len=*), intent(in) :: spacing
+      !> The values, shape (count)
+      real(wp) :: values(count)
+
+      integer :: i
+
+      ! both forms are exact where the values are whole numbers or decades
+      do i = 2, count - 1
+         if (spacing == log_spacing) then
+            values(i) = 10.0_wp**between(log10(start), log10(stop))
+         else
+            values(i) = between(start, stop)
+         end if
+      end do
+      values(count) = stop
+      values(1) = start
+
+   contains
+
+      !> Value i of so many in equal steps
+      pure function between(a, b)
+         !> First value
+         real(wp), intent(in) :: a
+         !> Last value
+         real(wp), intent(in) :: b
+         !> Value i
+         real(wp) :: between
+
+         between = (a*real(count - i, wp) + b*real(i - 1, wp))/real(count - 1, wp)
+      end function between
+   end function spaced
 
 end module vcor_material_parameter

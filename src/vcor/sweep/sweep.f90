@@ -17,7 +17,7 @@ module vcor_sweep_sweep
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
    use vcor_case_grid, only : axis_t, grid_t, new_grid
-   use vcor_interval, only : contains_number, interval_t
+   use vcor_material_parameter, only : contains_number, interval_t
    use vcor_case_catalogue, only : catalogue, wanted
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid
