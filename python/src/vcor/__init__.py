@@ -30,6 +30,7 @@ __all__ = [
     "NumericalError",
     "UsageError",
     "__version__",
+    "card",
     "export",
     "fit",
     "identify",
@@ -38,6 +39,7 @@ __all__ = [
     "pair",
     "propagate",
     "read",
+    "read_card",
     "sensitivities",
 ]
 
@@ -47,11 +49,13 @@ for _kind in (Error, FileError, InputError, NoResultWarning, NumericalError, Usa
 
 #: What needs scipy, by its module; imported when it is used
 _LATER = {
+    "card": "cards",
     "export": "exchange",
     "identify": "identification",
     "master": "master_curve",
     "pair": "exchange",
     "propagate": "uncertainty",
+    "read_card": "cards",
     "sensitivities": "uncertainty",
 }
 

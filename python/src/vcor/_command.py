@@ -75,6 +75,11 @@ def _run(name: str, module: str) -> None:
             ) from None
 
 
+def card() -> None:
+    """Run `vcor card`."""
+    _run("card", "cards")
+
+
 def export() -> None:
     """Run `vcor export`."""
     _run("export", "exchange")

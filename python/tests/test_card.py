@@ -1,0 +1,477 @@
+"""Cards of finite element programs: what they say by the rules of each, both ways, and traps."""
+
+import dataclasses
+import math
+import re
+
+import numpy as np
+import pytest
+from conftest import PAPER, ROOT
+
+import vcor
+from vcor import cards
+from vcor.card_formats import FORMATS, GAS, UNITS, Card
+
+ALL = list(FORMATS)
+SERIES = ["abaqus", "ansys", "ansys-mpl", "lsdyna", "openradioss", "comsol"]
+#: Rounding of the 14 to 16 digits of a card, of which the long-time modulus is a difference
+ROUNDING = 1e-13
+HEAD = """&impact velocity = 5.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate material = 'rubber', waves = 'none' /
+&material name = 'steel', model = 'rigid', density = 7800.0 /
+&material name = 'rubber', density = 1100.0, poisson_ratio = {nu}, {keys} /
+"""
+PRONY = "model='prony', equilibrium_modulus=1.234e6, moduli=3e7,2.1e6, times=1.23e-5,0.1"
+MODELS = {
+    "sls": "model='sls', glassy_modulus=1.5e7, alpha=300.0, beta=1200.0",
+    "prony": PRONY,
+    "rates": "model='prony', equilibrium_modulus=2e6, moduli=3e7,2e6, rates=3e3,70.0",
+    "shear": PRONY + ", modulus_kind='shear'",
+    "power_law": "model='power_law', equilibrium_modulus=2e6, coefficient=8.85e5, exponent=0.5",
+    "springpot": "model='power_law', equilibrium_modulus=1e6, coefficient=5e6, exponent=0.2",
+    "cerf": "model='cerf', equilibrium_modulus=2e6, relaxing_modulus=5e8, beta=500.0",
+    "mittag_leffler": "model='mittag_leffler', equilibrium_modulus=1e7, relaxing_modulus=2e9, "
+    "exponent=0.4, time=1e-5",
+}
+WLF = ", shift='wlf', reference_temperature=298.15, wlf_c1=8.61, wlf_c2=200.4"
+ARRHENIUS = ", shift='arrhenius', reference_temperature=298.15, activation_energy=1.2e5"
+
+
+def case_of(keys, nu=0.45):
+    return vcor.Case(HEAD.format(nu=nu, keys=keys))
+
+
+def back(tmp_path, text, **options):
+    """A card that was written, read again."""
+    path = tmp_path / "some.card"
+    path.write_text(text)
+    return vcor.read_card(path, **options)
+
+
+def assert_same(found, wanted):
+    """The same material to the digits of the card."""
+    assert (found.name, found.shift.keys()) == (wanted.name, wanted.shift.keys())
+    for key, value in wanted.shift.items():
+        assert found.shift[key] == (value if key == "shift" else pytest.approx(value, rel=ROUNDING))
+    assert found.poisson_ratio == pytest.approx(wanted.poisson_ratio, abs=ROUNDING)
+    assert found.density == pytest.approx(wanted.density, rel=ROUNDING)
+    assert found.times == pytest.approx(wanted.times, rel=ROUNDING)
+    assert found.moduli == pytest.approx(wanted.moduli, rel=ROUNDING)
+    loss = ROUNDING * wanted.glassy_modulus
+    assert found.equilibrium_modulus == pytest.approx(wanted.equilibrium_modulus, abs=loss)
+
+
+def with_material(case, made):
+    """A case with the group of a card in place of its material."""
+    text = re.sub(r"&material\s+name = '" + made.name + r"'.*?\n/\n", "", case.text(), flags=re.S)
+    return vcor.Case(text + str(made))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_material_comes_back(model, tmp_path):
+    case = case_of(MODELS[model])
+    made = vcor.card(case, "rubber", terms=17)
+    codes = ALL if len(made.moduli) == 1 else SERIES
+    for units, code in zip([*UNITS] * 2, codes, strict=False):
+        assert_same(back(tmp_path, made.text(code, units)), made)
+    other = with_material(case, back(tmp_path, made.text("abaqus")))
+    cor, again = (one.solve(quantities=["cor"])["cor"] for one in (case, other))
+    assert again == pytest.approx(cor, abs=1e-9 if not made.remarks else 3e-4)
+
+
+@pytest.mark.parametrize("code", SERIES)
+def test_any_series_comes_back(code, tmp_path):
+    rng = np.random.default_rng(23)
+    for _ in range(20):
+        n = int(rng.integers(1, 18))
+        shift = {}
+        if "wlf" in FORMATS[code].shifts:
+            shift = [{}, {"shift": "wlf", "reference_temperature": rng.uniform(200, 400),
+                          "wlf_c1": rng.uniform(1, 50), "wlf_c2": rng.uniform(10, 500)},
+                     {"shift": "arrhenius", "reference_temperature": rng.uniform(200, 400),
+                      "activation_energy": rng.uniform(1e4, 1e6)}][rng.integers(3)]  # fmt: skip
+        made = Card(
+            "a name", rng.uniform(-0.4, 0.499), 10 ** rng.uniform(2, 9),
+            tuple(10 ** rng.uniform(2, 10, n)), tuple(10 ** rng.uniform(-9, 9, n)),
+            rng.uniform(10, 9000), shift,
+        )  # fmt: skip
+        assert_same(back(tmp_path, made.text(code, rng.choice(list(UNITS)))), made)
+
+
+# ------------------------------------------------------------- what the cards say, by their rules
+
+
+def numbers_of(lines):
+    return [[float(x) for x in re.split(r"[,\s]+", line.strip(" ,"))] for line in lines]
+
+
+def shear_and_bulk(code, text, t):
+    """G(t) and K(t) as the manuals of the programs define them, t of shape (n,)."""
+    lines = [line for line in text.splitlines() if not re.match(r"\*\*|!|\$|#|/COM", line)]
+
+    def after(start, n=1):
+        k = next(k for k, line in enumerate(lines) if line.startswith(start)) + 1
+        return numbers_of(lines[k : k + n])
+
+    def decay(rows, i, j=None):
+        return sum(row[i] * np.exp(-t * (row[j] if j else 1 / row[-1])) for row in rows)
+
+    if code == "abaqus":
+        young, nu = after("*ELASTIC")[0]
+        rows = numbers_of(lines[lines.index("*VISCOELASTIC, TIME=PRONY") + 1 :])
+        g, k = (1 - sum(row[i] for row in rows) + decay(rows, i) for i in (0, 1))
+        return young / (2 * (1 + nu)) * g, young / (3 * (1 - 2 * nu)) * k
+    if code.startswith("ansys"):
+        young, nu = (float(line.split(",")[3]) for line in lines if line[:5] in ("MP,EX", "MP,PR"))
+        parts = []
+        for kind in ("SHEAR", "BULK"):
+            k = next(k for k, line in enumerate(lines) if line.endswith(kind)) + 1
+            words = []
+            while k < len(lines) and lines[k].startswith("TBDATA"):
+                words += map(float, lines[k].split(",")[2:])
+                k += 1
+            rows = list(zip(words[::2], words[1::2], strict=True))
+            parts.append(1 - sum(words[::2]) + decay(rows, 0))
+        return young / (2 * (1 + nu)) * parts[0], young / (3 * (1 - 2 * nu)) * parts[1]
+    rows = numbers_of(lines[4:])
+    assert after("rubber")[0][2] == pytest.approx(sum(row[2] for row in rows))
+    return decay(rows, 0, 1), decay(rows, 2, 3)
+
+
+@pytest.mark.parametrize("code", ["abaqus", "ansys", "ansys-mpl", "lsdyna"])
+def test_the_card_has_the_modulus_of_the_material(code):
+    case = case_of(PRONY)
+    t = np.geomspace(1e-7, 10, 30)
+    g, k = shear_and_bulk(code, vcor.card(case, "rubber").text(code), t)
+    assert 9 * k * g / (3 * k + g) == pytest.approx(
+        case.material("rubber").relaxation(t), rel=1e-12
+    )
+    assert (3 * k - 2 * g) / (2 * (3 * k + g)) == pytest.approx(0.45, rel=1e-12)
+
+
+def columns(line, *widths):
+    ends = np.cumsum(widths)
+    return [float(line[e - w : e] or 0) for e, w in zip(ends, widths, strict=True)]
+
+
+def test_openradioss_has_the_long_time_law_and_the_terms_upon_it():
+    # GS = sum mu alpha, G = GS/2, K = GS (1 + nu)/(3 (1 - 2 nu)) of hm_read_mat42.F of OpenRadioss;
+    # visc_prony.F adds 2 G_i and K_i with rates
+    made = vcor.card(case_of(PRONY), "rubber")
+    lines = made.text("openradioss").splitlines()
+    rows = [line for line in lines if not line.startswith("#")]
+    assert rows[0] == "/MAT/LAW42/1" and rows[1] == "rubber" and rows[8] == "/VISC/PRONY/1"
+    nu, mu, alpha = (columns(rows[k], 20)[0] for k in (3, 4, 6))
+    assert rows[9][:10] == f"{2:10d}" and nu == 0.45
+    table = [columns(row, 20, 20, 20, 20) for row in rows[10:]]
+    shear = mu * alpha / 2
+    bulk = mu * alpha * (1 + nu) / (3 * (1 - 2 * nu))
+    assert 2 * (1 + nu) * shear == pytest.approx(1.234e6, rel=1e-12)
+    for (g, rate, k, bulk_rate), modulus, time in zip(table, made.moduli, made.times, strict=True):
+        assert rate == bulk_rate == pytest.approx(1 / time, rel=1e-15)
+        assert (2 * (1 + nu) * g, k / g) == pytest.approx((modulus, bulk / shear), rel=1e-12)
+
+
+@pytest.mark.parametrize("code", ["lsdyna-006", "openradioss-law34"])
+def test_one_term_cards(code):
+    made = vcor.card(case_of(MODELS["sls"]), "rubber")
+    lines = [line for line in made.text(code).splitlines() if line[0] not in "$#*/"][1:]
+    if code == "lsdyna-006":
+        _, density, bulk, g0, g, beta = columns(lines[0], *[20] * 6)
+    else:
+        density, bulk, (g0, g, beta) = (
+            float(lines[0]),
+            float(lines[1]),
+            columns(lines[2], *[20] * 3),
+        )
+    assert (density, beta) == pytest.approx((1100.0, 1200.0))
+    assert (2.9 * g0, 2.9 * g, 0.3 * bulk) == pytest.approx((1.5e7, 3.75e6, 1.5e7))
+    assert any("grows from 0.45 to 0.487" in note for note in made.notes(code))
+
+
+def test_comsol_has_three_columns_and_the_long_time_node():
+    text = vcor.card(case_of(PRONY), "rubber").text("comsol")
+    rows = numbers_of(line for line in text.splitlines() if not line.startswith("%"))
+    assert [row[0] for row in rows] == [1, 2] and [row[2] for row in rows] == [1.23e-5, 0.1]
+    assert [2.9 * row[1] for row in rows] == pytest.approx([3e7, 2.1e6])
+    assert float(re.search(r"shear_modulus = (\S+)", text)[1]) == pytest.approx(1.234e6 / 2.9)
+
+
+# ------------------------------------------------------------------------------------------- traps
+
+
+ROWS = "0.4, {k}, 1e-3\n0.5, {k5}, 2.0"
+
+
+def abaqus_of(tmp_path, elastic, rows=ROWS, k=True, rest="", **options):
+    rows = rows.format(k=0.4 if k else 0.0, k5=0.5 if k else 0.0)
+    text = (
+        f"*Material, name=PAD\n{elastic}\n** remark\n*Viscoelastic, time = PRONY\n{rows}\n{rest}\n"
+    )
+    return back(tmp_path, text, **options)
+
+
+def test_moduli_of_abaqus_are_long_term_by_default(tmp_path):
+    for head in ("*Elastic", "*ELASTIC, moduli=LONG TERM", "*Elastic, type=ISOTROPIC"):
+        found = abaqus_of(tmp_path, f"{head}\n1e6, 0.4")
+        assert found.equilibrium_modulus == pytest.approx(1e6)
+        assert found.moduli == pytest.approx((4e6, 5e6))
+        assert found.poisson_ratio == 0.4 and found.name == "PAD"
+    found = abaqus_of(tmp_path, "*Elastic, moduli=INSTANTANEOUS\n1e7, 0.4")
+    assert found.equilibrium_modulus == pytest.approx(1e6)
+    assert found.moduli == pytest.approx((4e6, 5e6))
+
+
+@pytest.mark.parametrize("long_term", [True, False])
+def test_a_bulk_modulus_that_does_not_relax_is_said(long_term, tmp_path):
+    e, nu = (1e6, 0.49) if long_term else (1e7, 0.4)
+    head = f"*Elastic, moduli={'LONG TERM' if long_term else 'INSTANTANEOUS'}\n{e}, {nu}"
+    found = abaqus_of(tmp_path, head, k=False)
+    shear, bulk = e / (2 * (1 + nu)), e / (3 * (1 - 2 * nu))
+    start = shear * 10 if long_term else shear
+    low, high = ((3 * bulk - 2 * g) / (2 * (3 * bulk + g)) for g in (start, start / 10))
+    assert found.poisson_ratio == pytest.approx(low)
+    assert found.glassy_modulus == pytest.approx(2 * (1 + low) * start)
+    assert f"grows from {low:.6g} to {high:.6g}" in found.remarks[-1]
+    found = abaqus_of(tmp_path, head, k=False, poisson_ratio=0.49)
+    assert found.glassy_modulus == pytest.approx(2 * 1.49 * start) and found.poisson_ratio == 0.49
+
+
+def test_a_ratio_that_is_not_constant_is_refused(tmp_path):
+    head, rows = "*Elastic, moduli=instantaneous\n1e7, 0.4", "0.4, 0.1, 1e-3"
+    with pytest.raises(vcor.InputError, match="Poisson's ratio is not constant") as caught:
+        abaqus_of(tmp_path, head, rows)
+    assert caught.value.code == 3
+    assert abaqus_of(tmp_path, head, rows, poisson_ratio=0.4).moduli == pytest.approx((4e6,))
+    # an incompressible one has no bulk modulus
+    assert abaqus_of(tmp_path, head.replace("0.4", "0.5"), rows).poisson_ratio == 0.5
+
+
+def test_shifts_have_the_sign_and_base_of_each_program(tmp_path):
+    made = vcor.card(case_of(PRONY + WLF), "rubber")
+    assert "*TRS, DEFINITION=WLF\n298.15, 8.61, 200.4\n" in made.text("abaqus")
+    assert made.text("ansys").endswith("TB,SHIFT,1,1,3,WLF\nTBDATA,1,298.15,8.61,200.4\n")
+    first = made.text("lsdyna").split("rubber\n")[1].splitlines()[1]
+    reference, a, b = columns(first, *[20] * 8)[5:]
+    assert (reference, a / math.log(10), b) == pytest.approx((298.15, 8.61, 200.4))
+    assert any("unconfirmed" in note for note in made.notes("lsdyna"))
+    assert any("unconfirmed" in note for note in back(tmp_path, made.text("lsdyna")).remarks)
+    made = vcor.card(case_of(PRONY + ARRHENIUS), "rubber")
+    first = made.text("lsdyna").split("rubber\n")[1].splitlines()[1]
+    assert columns(first, *[20] * 8)[5:] == pytest.approx([298.15, 1.2e5 / GAS, 0.0])
+    text = made.text("abaqus", "mm-t-s")
+    gas, energy = (float(re.search(r, text)[1]) for r in (r"GAS=(\S+)", r"NIUS\n298.15, (\S+)"))
+    assert (gas, energy) == pytest.approx((1e3 * GAS, 1.2e8))
+    head = "*Elastic, moduli=instantaneous\n1e7, 0.4"
+    zero = "*Trs\n25., 8.61, 200.4\n*Physical constants, absolute zero=-273.15"
+    assert abaqus_of(tmp_path, head, rest=zero).shift["reference_temperature"] == 298.15
+    with pytest.raises(vcor.InputError, match="DEFINITION=USER"):
+        abaqus_of(tmp_path, head, rest="*Trs, definition=USER")
+    assert abaqus_of(tmp_path, head, rest="*Trs, definition=USER", use_shift=False).shift == {}
+
+
+def test_the_card_is_at_the_reference_temperature():
+    keys = MODELS["cerf"] + WLF
+    text = HEAD.format(nu=0.4, keys=keys).replace("5.0 /", "5.0, temperature = 250.0 /")
+    warm, cold = (vcor.card(one, "rubber") for one in (case_of(keys, 0.4), vcor.Case(text)))
+    assert cold.glassy_modulus == pytest.approx(warm.glassy_modulus, rel=0.5)
+
+
+#: In the manner of the card of E1 of pyvisco (tests/data/E1_WLF.USER_MPL, NatLabRockies/pyvisco)
+ANSYS = """!E1
+MP,REFT,_MAT,_TREF
+MP,EX,  _MAT, 9115.80E6  !Pa
+MP,PRXY,_MAT, 0.35
+MPAMOD, _MAT,273+20
+
+TB,PRONY,_MAT,1,3,SHEAR
+TBDATA,1,4.117658e-02,1.000000e-10,1.553623e-02
+TBDATA,4,1.000000e-09,6.258372e-01,1.000000e+10
+
+TB,SHIFT,_MAT,1,3,WLF       ! WLF
+TBDATA, 1, 273-5, 199.73, 933.5     ! SHIFT FUNCTION PARAMETERS
+"""
+
+
+def test_cards_that_others_wrote_for_ansys(tmp_path):
+    found = back(tmp_path, ANSYS)
+    assert found.times == (1e-10, 1e-9, 1e10) and found.density is None
+    assert found.moduli[0] == pytest.approx(4.117658e-02 * 9115.8e6)
+    assert found.glassy_modulus == pytest.approx(9115.8e6)
+    assert found.shift == {"shift": "wlf", "reference_temperature": 268.0, "wlf_c1": 199.73,
+                           "wlf_c2": 933.5}  # fmt: skip
+    assert "units SI" in found.remarks[0] and "0.35" in found.remarks[1]
+    assert back(tmp_path, ANSYS, units="mm-t-s").glassy_modulus == pytest.approx(9115.8e12)
+    user = ANSYS.replace("1,3,WLF", "1,5,USER")
+    with pytest.raises(vcor.InputError, match="some.card:11: found SHIFT USER"):
+        back(tmp_path, user)
+    assert not back(tmp_path, user, use_shift=False).shift
+    # MPWRITE after a fit: ratios alone
+    native = ANSYS[ANSYS.index("TB,PRONY") : ANSYS.index("TB,SHIFT")]
+    native = "/COM,ANSYS RELEASE\n/NOP\n" + native.replace(
+        "TB,PRONY,_MAT,1,3,SHEAR", "TB,PRON,_MATL   ,   1,   3,SHEA\nTBFIELD,Temps,0.000000"
+    ) + "TBIN,NORM,1\n/GO\n"  # fmt: skip
+    with pytest.raises(vcor.InputError, match="expected --modulus"):
+        back(tmp_path, native)
+    found = back(tmp_path, native, modulus=1e9, poisson_ratio=0.4)
+    assert found.glassy_modulus == pytest.approx(1e9) and len(found.moduli) == 3
+
+
+DYNA = """*KEYWORD
+*MAT_GENERAL_VISCOELASTIC
+$ remark
+         11.1000E-09     400.0
+{second}
+       1.0      10.0
+       2.0       0.0
+*END
+"""
+
+
+def test_cards_that_others_wrote_for_lsdyna(tmp_path):
+    found = back(tmp_path, DYNA.format(second=""), units="mm-t-s")
+    assert found.density == pytest.approx(1100.0) and found.times == (0.1,)
+    nu = (3 * 400 - 2 * 3) / (2 * (3 * 400 + 3))
+    assert found.poisson_ratio == pytest.approx(nu)
+    assert found.equilibrium_modulus == pytest.approx(2e6 * 2 * (1 + nu))
+    with pytest.raises(vcor.InputError, match="second line of the card"):
+        back(tmp_path, DYNA.format(second="").replace("\n\n", "\n"))
+    long = DYNA.replace("*KEYWORD", "*KEYWORD LONG=Y").format(second="").splitlines()
+    long[3] = f"{1:20d}{1.1e-9:20.4E}{400.0:20.1f}"
+    long[5:7] = [f"{1.0:20f}{10.0:20f}", f"{2.0:20f}"]
+    assert_same(back(tmp_path, "\n".join(long), units="mm-t-s"), found)
+    free = DYNA.format(second="").replace("         11.1000E-09     400.0", "1,1.1e-9,400")
+    assert_same(back(tmp_path, free, units="mm-t-s"), found)
+    # fields of eight columns run into each other
+    narrow = DYNA.format(second="").replace("       1.0      10.0", " 1.0e+00 1.0e+01")
+    with pytest.raises(vcor.InputError, match="some.card:6: found '1.0e\\+00 1'"):
+        back(tmp_path, narrow)
+
+
+def test_what_a_card_cannot_hold_is_said():
+    def refused(words, code, keys, nu=0.45, kind=vcor.InputError, **options):
+        with pytest.raises(kind, match=words) as caught:
+            vcor.card(case_of(keys, nu), "rubber", **options).text(code)
+        assert caught.value.code == (3 if kind is vcor.InputError else 2)
+        assert "\n" not in str(caught.value)
+
+    for code in ALL:
+        refused("dashpot", code, "model='prony', equilibrium_modulus=1e6, viscosity=10.0")
+        refused("is elastic", code, "model='elastic', modulus=1e9")
+        refused("vertical shift|shift 'wlf'", code, MODELS["sls"] + WLF + ", vertical_shift=.true.")
+    refused("is rigid", "abaqus", "model='rigid'")
+    many = "model='prony', equilibrium_modulus=1e6, moduli=18*1e6, times=" + ",".join(
+        f"1e{i}" for i in range(-9, 9)
+    )
+    refused("holds 18 terms, found 19", "lsdyna", many)
+    refused("holds 1 terms, found 2", "lsdyna-006", PRONY)
+    refused("to [0-9.]+ from", "lsdyna", MODELS["power_law"], terms=3)
+    for code in ("lsdyna", "lsdyna-006", "openradioss", "openradioss-law34", "comsol"):
+        refused("Poisson's ratio 0.5", code, MODELS["sls"], 0.5)
+        vcor.card(case_of(MODELS["sls"], 0.5), "rubber", poisson_ratio=0.495).text(code)
+    refused("Poisson's ratio 0", "openradioss", MODELS["sls"], 0.0)
+    fluid = "model='prony', moduli=1e6, times=1e-3"
+    for code in ("abaqus", "ansys", "openradioss", "comsol"):
+        refused("fluid", code, fluid)
+    assert vcor.card(case_of(fluid), "rubber").text("lsdyna")
+    for code in ("openradioss", "lsdyna-006"):
+        refused("expected --no-shift", code, MODELS["sls"] + WLF)
+        vcor.card(case_of(MODELS["sls"] + WLF), "rubber", use_shift=False).text(code)
+    made = vcor.card(case_of(PRONY), "rubber")
+    with pytest.raises(vcor.InputError, match="density"):
+        dataclasses.replace(made, density=None).text("lsdyna")
+
+
+@pytest.mark.parametrize("code", ALL)
+def test_a_card_that_is_cut_off_is_refused_or_shorter(code, tmp_path):
+    made = vcor.card(case_of(MODELS["sls"]), "rubber")
+    text = made.text(code)
+    refusals = 0
+    for k in range(0, len(text), 4):
+        for broken in (text[:k], text[:k] + "x" + text[k + 1 :], text[:k] + text[k + 1 :]):
+            try:
+                back(tmp_path, broken, code=code)
+            except vcor.InputError as error:
+                refusals += 1
+                assert "\n" not in str(error)
+    assert refusals > len(text) / 8
+
+
+def test_a_card_among_others(tmp_path):
+    made = [dataclasses.replace(vcor.card(case_of(MODELS["sls"]), "rubber"), name=name)
+            for name in ("one", "two")]  # fmt: skip
+    for code in ("abaqus", "lsdyna", "openradioss"):
+        text = "".join(one.text(code) for one in made).replace("LAW42/1\ntwo", "LAW42/2\ntwo")
+        text = "/VISC/PRONY/2".join(text.rsplit("/VISC/PRONY/1", 1))
+        assert back(tmp_path, text, material="two").name == "two"
+        with pytest.raises(vcor.UsageError, match=r"2 materials, expected --material one\|two"):
+            back(tmp_path, text)
+
+
+# ---------------------------------------------------------------------------------------- commands
+
+
+def command(capsys, *words, code=0):
+    """Output of vcor card, or its line of error."""
+    if code:
+        with pytest.raises(SystemExit) as caught:
+            cards.main(list(map(str, words)))
+        assert caught.value.code == code
+        return capsys.readouterr().err
+    cards.main(list(map(str, words)))
+    return capsys.readouterr()
+
+
+def test_the_command_both_ways(tmp_path, capsys, program):
+    card = tmp_path / "rubber.inp"
+    found = command(
+        capsys, PAPER / "butyl_power_law.nml", "--material", "butyl", "--for", "abaqus",
+        "--output", card, "--units", "mm-t-s",
+    )  # fmt: skip
+    assert found.out == "" and "exponentials in place of model power_law" in found.err
+    assert card.read_text().startswith("** vcor card 'butyl', units mm-t-s: moduli in 1e+06 Pa")
+    group = tmp_path / "group.nml"
+    command(capsys, card, "--output", group)
+    text = (PAPER / "butyl_power_law.nml").read_text()
+    (tmp_path / "case.nml").write_text(text[: text.index("&material\n   name    = 'butyl'")])
+    solved = program("run", "case.nml", "group.nml", "--print", "cor")
+    wanted = vcor.read(PAPER / "butyl_power_law.nml").solve(quantities=["cor"])["cor"]
+    assert float(solved) == pytest.approx(wanted, abs=3e-4)
+    butyl = ROOT / "examples" / "materials" / "butyl.nml"
+    words = [butyl, "--material", "butyl", "--for", "comsol", "--poisson-ratio", "0.495"]
+    assert "expected --band" in command(capsys, *words, code=2)
+    assert "wlf_c1 = 8.61" in command(capsys, *words, "--band", "1e-6:1e-2").out
+
+
+def test_the_command_refuses_in_one_line(tmp_path, capsys):
+    case = PAPER / "sls.nml"
+    assert "expected --material and --for" in command(capsys, case, code=2)
+    words = [case, "--material", "rubber", "--for", "lsdyna"]
+    assert "--poisson-ratio 0.495" in command(capsys, *words, code=3)
+    assert "no such" in command(capsys, "none.k", code=4).lower()
+    assert "found no card" in command(capsys, ROOT / "LICENSE", code=2)
+    assert "would replace" in command(
+        capsys, *words, "--poisson-ratio", "0.49", "--output", case, code=2
+    )
+    assert "--band" in command(capsys, *words, "--band", "1:x", code=2)
+    assert "--poisson-ratio" in command(capsys, *words, "--poisson-ratio", "0.6", code=2)
+
+
+PAGES = sorted((ROOT / "docs" / "exchange").glob("*.md"))
+SHOWN = [
+    found
+    for page in PAGES
+    for found in re.findall(
+        r"```sh\nvcor card ([^\n]*)\n```\n\n```text\n(.*?)```\n", page.read_text(), re.DOTALL
+    )
+]
+
+
+@pytest.mark.parametrize(("words", "text"), SHOWN, ids=lambda text: text.split("\n")[0][-60:])
+def test_the_pages_show_what_the_command_prints(words, text, capsys):
+    assert command(capsys, *[ROOT / w if "/" in w else w for w in words.split()]).out == text
+
+
+def test_there_are_pages():
+    assert {word for words, _ in SHOWN for word in words.split()} >= set(FORMATS) - {"ansys-mpl"}
