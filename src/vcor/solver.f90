@@ -85,8 +85,6 @@ contains
          call refuse('adams_bashforth differentiates U = alpha(t) I, which a hereditary plate ' &
             //"does not have; use method = 'ive', or 'direct' with scheme = 'product'", &
             'waves scheme')
-      else if (impact%plate%layered() .and. settings%method == 'direct') then
-         call refuse("waves = 'body' is solved by method = 'ive'", 'waves method')
       end if
 
    contains
@@ -192,8 +190,6 @@ contains
       type(error_t), allocatable :: failure
 
       call self%ive%solve(impact, trajectory, error)
-      ! product integration knows no layers
-      if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
@@ -201,7 +197,12 @@ contains
          return
       end if
       call self%product%solve(impact, trajectory, error)
-      if (allocated(error) .or. .not. allocated(failure)) return
+      if (.not. allocated(failure)) return
+      if (allocated(error)) then
+         ! on a layer product integration makes few steps, and that says little
+         if (impact%plate%layered()) call move_alloc(failure, error)
+         return
+      end if
       ! that equal steps run out says nothing about a contact whose end nobody has set
       if (trajectory%status == contact_lasting .and. &
           .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)

@@ -75,6 +75,9 @@ module vcor_impact_plate
       procedure :: response
       !> Integral of the memory
       procedure :: memory_integral
+      !> Compliance of a layer, and what of it is at once
+      procedure :: compliance
+      procedure :: instant
    end type plate_t
 
 contains
@@ -278,6 +281,28 @@ contains
 
       value = self%memory%integral(t)
    end function memory_integral
+
+   !> Compliance C(s) of a layer without what follows the force at once
+   pure function compliance(self, s) result(c)
+      !> The plate, a layer
+      class(plate_t), intent(in) :: self
+      !> Laplace variable [1/s], real part > 0
+      complex(wp), intent(in) :: s
+      !> Compliance [m/N]
+      complex(wp) :: c
+
+      c = self%layer%compliance(s, self%footprint) - self%instant()
+   end function compliance
+
+   !> Deflection of a layer that follows the force at once
+   elemental function instant(self) result(c)
+      class(plate_t), intent(in) :: self
+      !> Deflection [m/N], <= 0; 0 for all other plates
+      real(wp) :: c
+
+      c = 0.0_wp
+      if (self%layered()) c = self%layer%instant(self%footprint)
+   end function instant
 
    !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
    elemental function alpha_rate(self, t, alpha) result(value)

@@ -15,9 +15,9 @@ module vcor_solver_ive
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_ladder, layer_margin, layer_reach, layer_start, &
+      layer_growth, layer_ladder, layer_margin, layer_start, &
       loosest_accuracy, no_sum, plate_share, window_growth, window_margin
-   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
+   use vcor_solver_type, only : default_accuracy, layer_reach, solver_settings_t, solver_t
    implicit none
    private
 

@@ -17,10 +17,12 @@ contains
    !> State where F = 0 in the step before node n, the first one with F <= 0. The indentation (by
    !> cubic Hermite interpolation) and the memory M = stiffness u - F (by a parabola) are smooth
    !> there even where s goes to zero with F
-   pure function end_of_contact(impact, stiffness, trajectory, n) result(node)
+   pure function end_of_contact(impact, stiffness, recoil, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
       !> About dF/du [N/m^1.5]
       real(wp), intent(in) :: stiffness
+      !> What C(oo) F' of a layer adds to U' at nodes n - 2, n - 1 and n [m/s]
+      real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
       !> Node
       integer, intent(in) :: n
@@ -64,15 +66,23 @@ contains
       node(col_time) = a(col_time) + theta*dt
       node(col_impulse) = hermite(a, b, col_impulse, col_force, theta)
       node(col_sphere) = hermite(a, b, col_sphere, col_sphere_velocity, theta)
-      call complete(impact, trajectory, n, theta, node)
+      call complete(impact, recoil, trajectory, n, theta, node)
+      f = (0.5_wp*(memory(1) - memory(-1)) + theta*(memory(1) - 2.0_wp*memory(0) + memory(-1)))/dt
+      associate (instant => impact%plate%instant(), velocity => node(col_velocity))
+         velocity = (velocity + instant*f) &
+            /(1.0_wp + instant*stiffness*impact%law%slope(node(col_indentation)))
+         node(col_plate_velocity) = node(col_sphere_velocity) - velocity
+      end associate
    end function end_of_contact
 
    !> State where a receding contact ends in the step before node n, as t1 gets to 0: it is a smooth
    !> function of time, and the force, an integral of u' from 0 to t1, goes to zero as t1^n
-   pure function end_of_receding_contact(impact, t1, trajectory, n) result(node)
+   pure function end_of_receding_contact(impact, t1, recoil, trajectory, n) result(node)
       type(impact_t), intent(in) :: impact
       !> t1 at nodes n - 2, n - 1 and n in any unit, the last one negative
       real(wp), intent(in) :: t1(-1:1)
+      !> What C(oo) F' of a layer adds to U' there [m/s]
+      real(wp), intent(in) :: recoil(-1:1)
       !> The trajectory, node n without a force
       type(trajectory_t), intent(in) :: trajectory
       !> Node
@@ -103,12 +113,14 @@ contains
       node(col_impulse) = a(col_impulse) + once*tau*a(col_force)
       node(col_sphere) = a(col_sphere) + tau*(a(col_sphere_velocity) &
          + tau*(0.5_wp*impact%gravity - twice*a(col_force)/impact%mass))
-      call complete(impact, trajectory, n, theta, node)
+      call complete(impact, recoil, trajectory, n, theta, node)
    end function end_of_receding_contact
 
-   !> Complete the state at the end of contact
-   pure subroutine complete(impact, trajectory, n, theta, node)
+   !> Complete the state at the end of contact, the recoil there left out
+   pure subroutine complete(impact, recoil, trajectory, n, theta, node)
       type(impact_t), intent(in) :: impact
+      !> What C(oo) F' of a layer adds to U' at nodes n - 2, n - 1 and n [m/s]
+      real(wp), intent(in) :: recoil(-1:1)
       type(trajectory_t), intent(in) :: trajectory
       !> Node behind the end
       integer, intent(in) :: n
@@ -127,7 +139,7 @@ contains
          do j = -1, 1
             associate (near => trajectory%state(:, max(n - 1 + j, 0)))
                drift(j) = impact%plate%alpha(near(col_time))*near(col_force) &
-                  - near(col_plate_velocity)
+                  + recoil(j) - near(col_plate_velocity)
             end associate
          end do
          node(col_plate) = hermite(trajectory%state(:, n - 1), trajectory%state(:, n), col_plate, &

@@ -6,16 +6,17 @@
 !>     constant, relaxing   U = alpha I,   U' = alpha F + alpha' I,   Eqs. (2) and (3)
 !>     hereditary           U = alpha I + sum_j W_{n-j} dJ_j,   U' = alpha F + sum_j W_{n-j} dI_j
 !>     frozen               U' = int alpha F' dt = alpha F - D,   D = int alpha' F dt
+!>     body                 U = C(oo) F + sum_j W_{n-j} dI_j,   U' = C(oo) F' + sum_j W_{n-j} dF_j
 !>
 !> with I and J as parabolas over each step, and the memory psi of the hereditary plate integrated
-!> exactly, as the kernel of the contact is. The drift D begins with the power of time that kernel
-!> and plate give it: no parabola. A dashpot's impulse, viscosity*u, is known apart from the force
-!> that is integrated.
+!> exactly, as the kernel of the contact is; for the W of a layer see `layer_weights`. The drift D
+!> begins with the power of time that kernel and plate give it: no parabola. A dashpot's impulse,
+!> viscosity*u, is known apart from the force that is integrated.
 module vcor_solver_direct_motion
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
-   use vcor_solver_direct_weights, only : memory_weights
+   use vcor_solver_direct_weights, only : layer_weights, memory_weights
    implicit none
    private
 
@@ -37,8 +38,10 @@ module vcor_solver_direct_motion
       real(wp) :: indentation(2) = 0.0_wp
       !> s' = velocity(1) - velocity(2)*F [m/s], [m/(N s)]
       real(wp) :: velocity(2) = 0.0_wp
-      !> Plate parameter alpha [m/(N s)]
+      !> Plate parameter alpha [m/(N s)], W_0 of a layer
       real(wp) :: alpha = 0.0_wp
+      !> What a layer's recoil adds to U', C(oo) F', at the last three nodes, the newest last [m/s]
+      real(wp) :: recoil(3) = 0.0_wp
       !> Weight of the node in integrals over time [s]
       real(wp) :: weight = 0.0_wp
       !> Impulse [N s] and its integral [N s2], once the node is solved
@@ -61,12 +64,19 @@ module vcor_solver_direct_motion
       real(wp), private :: power = 0.0_wp
       !> What a hereditary plate remembers
       type(convolution_t), private :: memory
-      !> Differences of I [N s] and J [N s2] from node to node, for the memory
-      real(wp), allocatable, private :: di(:), dj(:)
+      !> Whether it is a layer, and its C(oo) [m/N]
+      logical, private :: layered = .false.
+      real(wp), private :: instant = 0.0_wp
+      !> Force at the last node [N]
+      real(wp), private :: last_force = 0.0_wp
+      !> Differences from node to node for the memory: of J [N s2] in U and I [N s] in U', for a
+      !> layer of I and F [N]
+      real(wp), allocatable, private :: in_u(:), in_rate(:)
    contains
       procedure :: prepare
       procedure :: advance
       procedure :: respond
+      procedure :: with_recoil
       procedure :: accept
    end type motion_t
 
@@ -85,9 +95,16 @@ contains
       self%frozen = impact%plate%frozen()
       if (self%frozen) self%power = power_of_drift(impact, dt)
       if (.not. impact%plate%hereditary()) return
-      call self%memory%set(memory_weights(impact%plate, dt, steps))
-      call lengthen(self%di, 1, steps)
-      call lengthen(self%dj, 1, steps)
+      self%layered = impact%plate%layered()
+      if (self%layered) then
+         self%instant = impact%plate%instant()
+         call self%memory%set(layer_weights(impact%plate, dt, steps))
+         self%alpha = self%memory%newest
+      else
+         call self%memory%set(memory_weights(impact%plate, dt, steps))
+      end if
+      call lengthen(self%in_u, 1, steps)
+      call lengthen(self%in_rate, 1, steps)
    end subroutine prepare
 
    !> Go to node n: its rule, and all integrals but for the share of this node
@@ -106,12 +123,17 @@ contains
       real(wp), parameter :: stiff = 2.0_wp
       ! steps next to t = 0 on which the rate of the drift is no parabola
       integer, parameter :: near_start = 16
+      real(wp) :: response
 
       self%t = self%dt*real(n, wp)
+      self%recoil(1:2) = self%recoil(2:3)
       call impact%plate%alpha_and_rate(self%t, self%alpha, self%alpha_rate)
+      if (self%layered) self%alpha = self%memory%newest
+      response = self%alpha
+      if (.not. self%layered) response = response + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
-      if (n == 1 .or. self%dt*((self%alpha + self%dt*self%memory%newest)*stiffness &
-          + viscosity/impact%mass) > stiff) self%rule = self%dt*trapezoid
+      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > stiff) &
+         self%rule = self%dt*trapezoid
       self%weight = self%rule(1)
       call go_on(self%force, self%rule)
       call go_on(self%whole, self%rule)
@@ -154,23 +176,57 @@ contains
       self%velocity(1) = impact%free_velocity(self%t) - i/impact%mass - plate_velocity
       self%velocity(2) = weight/impact%mass + per_force + weight*rate
       if (self%memory%room == 0) return
+      self%indentation(1) = self%indentation(1) &
+         - self%memory%sum_over(n, 1, n - 1, self%in_u)
+      self%velocity(1) = self%velocity(1) - self%memory%sum_over(n, 1, n - 1, self%in_rate)
       associate (newest => self%memory%newest)
-         self%indentation = self%indentation - [newest*(j - self%second_impulse) &
-            + self%memory%sum_over(n, 1, n - 1, self%dj), -weight*weight*newest]
-         self%velocity = self%velocity - [newest*(i - self%impulse) &
-            + self%memory%sum_over(n, 1, n - 1, self%di), -weight*newest]
+         if (self%layered) then
+            self%indentation = self%indentation + [newest*self%impulse, self%instant]
+            self%velocity(1) = self%velocity(1) + newest*self%last_force
+         else
+            self%indentation = self%indentation &
+               - newest*[j - self%second_impulse, -weight*weight]
+            self%velocity = self%velocity - newest*[i - self%impulse, -weight]
+         end if
       end associate
    end subroutine respond
 
+   !> The velocity s' at node n with the recoil C(oo) F' of a layer, F' = kappa u' - (kappa u - F)':
+   !> what is in brackets is smooth, and its rate is that of a parabola
+   pure subroutine with_recoil(self, n, kappa, slope, du, force, speed)
+      class(motion_t), intent(inout) :: self
+      !> Node
+      integer, intent(in) :: n
+      !> About dF/du [N/m^1.5], 0 where the force is no function of u
+      real(wp), intent(in) :: kappa
+      !> du/ds at the node [m^0.5]
+      real(wp), intent(in) :: slope
+      !> Differences of u up to the node [m^1.5]
+      real(wp), intent(in) :: du(:)
+      !> Force at the node [N]
+      real(wp), intent(in) :: force
+      !> Velocity, on entry without the recoil [m/s]
+      real(wp), intent(inout) :: speed
+
+      real(wp) :: rate, without
+
+      if (.not. abs(self%instant) > 0.0_wp) return
+      rate = 1.5_wp*(force - self%last_force - kappa*du(n))
+      if (n > 1) rate = rate - 0.5_wp*(self%in_rate(n - 1) - kappa*du(n - 1))
+      without = speed
+      speed = (without - self%instant*rate/self%dt)/(1.0_wp + self%instant*kappa*slope)
+      self%recoil(3) = without - speed
+   end subroutine with_recoil
+
    !> Take the force at node n in
-   pure subroutine accept(self, n, force, dashpot)
+   pure subroutine accept(self, n, force, dashpot, drag)
       class(motion_t), intent(inout) :: self
       !> Node
       integer, intent(in) :: n
       !> Force without a dashpot's [N]
       real(wp), intent(in) :: force
-      !> Impulse of the dashpot [N s]
-      real(wp), intent(in) :: dashpot
+      !> Impulse of the dashpot [N s] and its force [N]
+      real(wp), intent(in) :: dashpot, drag
 
       real(wp) :: impulse
 
@@ -178,9 +234,14 @@ contains
       impulse = self%force%value + dashpot
       call complete(self%whole, self%rule, impulse)
       if (self%memory%room > 0) then
-         self%di(n) = impulse - self%impulse
-         self%dj(n) = self%whole%value - self%second_impulse
+         self%in_u(n) = self%whole%value - self%second_impulse
+         self%in_rate(n) = impulse - self%impulse
+         if (self%layered) then
+            self%in_u(n) = self%in_rate(n)
+            self%in_rate(n) = force + drag - self%last_force
+         end if
       end if
+      self%last_force = force + drag
       self%impulse = impulse
       self%second_impulse = self%whole%value
       if (.not. self%frozen) return

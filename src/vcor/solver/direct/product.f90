@@ -30,14 +30,15 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
+   use vcor_solver_type, only : default_accuracy, layer_reach, refuse_growth, solver_settings_t, &
+      solver_t
    implicit none
    private
 
    public :: product_t, new_product
 
-   !> A run of more steps is given up: its sums take seconds
-   integer, parameter :: most_steps = 60000
+   !> A run of more steps is given up: its sums take seconds, or the compliance of a layer does
+   integer, parameter :: most_for_all = 60000, most_for_layers = 8000
 
    !> Product integration
    type, extends(solver_t) :: product_t
@@ -96,11 +97,13 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      integer, parameter :: first_steps = 64
+      integer, parameter :: first_steps = 64, spare = 8
+      ! steps beyond which the face of a layer is not followed for the sake of `cor` alone
+      integer, parameter :: enough = 1000
       real(wp), parameter :: least_part = 32.0_wp
-      real(wp) :: dt, cor(3), cor_sphere(3), depth(3), force(3)
+      real(wp) :: dt, span, reach, cor(3), cor_sphere(3), depth(3), force(3)
       type(richardson_t) :: found
-      integer :: level
+      integer :: level, room
       logical :: crude
 
       associate (time_step => self%settings%time_step, end_time => self%settings%end_time, &
@@ -113,23 +116,29 @@ contains
                impact%time_scale()/least_part)
             ! the last step ends where the computation is to end
             if (end_time > 0.0_wp) &
-               dt = end_time/real(ceiling(min(end_time/dt, real(most_steps, wp))), wp)
+               dt = end_time/real(ceiling(min(end_time/dt, real(most_steps(impact), wp))), wp)
          end if
 
          level = 0
+         reach = 0.0_wp
+         if (impact%plate%layered() .and. accuracy > 0.0_wp) reach = layer_reach
+         span = 5.0_wp*impact%time_scale()
+         if (end_time > 0.0_wp) span = min(span, end_time)
+         room = nint(span/dt)
          do
             level = level + 1
-            call march(self%settings, impact, dt, trajectory, crude, error)
+            call march(self%settings, impact, dt, room, trajectory, crude, error)
             if (allocated(error)) return
             if (crude .and. .not. time_step > 0.0_wp) then
                dt = 0.5_wp*dt
+               room = 2*room
                level = 0
                cycle
             end if
             ! coarse steps can miss the end, so only the given step decides that there is none
             if (trajectory%status /= contact_separated .and. (level == 3 .or. &
                 .not. (time_step > 0.0_wp .or. trajectory%status == contact_resting &
-                .and. 2*trajectory%steps <= most_steps))) return
+                .and. 2*trajectory%steps <= most_steps(impact)))) return
             associate (final => trajectory%state(:, trajectory%last))
                cor = [cor(2:3), -final(col_velocity)/impact%velocity]
                cor_sphere = [cor_sphere(2:3), -final(col_sphere_velocity)/impact%velocity]
@@ -137,19 +146,21 @@ contains
             depth = [depth(2:3), trajectory%max_indentation]
             force = [force(2:3), trajectory%max_force]
             if (level >= 3) then
-               trajectory%accuracy = accuracy
+               trajectory%accuracy = max(accuracy, reach)
                found = richardson(cor)
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
                trajectory%cor_sphere_error = found%error
                if (time_step > 0.0_wp) return
-               if (max(trajectory%cor_error, trajectory%cor_sphere_error) <= accuracy) then
+               if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
+                   .and. trajectory%steps > enough &
+                   .or. trajectory%cor_error <= trajectory%accuracy)) then
                   ! the steps were not chosen for the maxima
                   trajectory%max_indentation = extrapolated(depth)
                   trajectory%max_force = extrapolated(force)
                   return
                end if
-               if (2*trajectory%steps > most_steps) then
+               if (2*trajectory%steps > most_steps(impact)) then
                   if (trajectory%misses_by_far()) call raise(error, error_numerical, 'the ' &
                      //'accuracy asked for is out of reach of product integration: give a ' &
                      //'larger solver.accuracy')
@@ -157,9 +168,17 @@ contains
                end if
             end if
             dt = 0.5_wp*dt
+            room = 2*trajectory%final + spare
          end do
       end associate
    end subroutine solve
+
+   !> Number of steps at which a run is given up
+   pure integer function most_steps(impact)
+      type(impact_t), intent(in) :: impact
+
+      most_steps = merge(most_for_layers, most_for_all, impact%plate%layered())
+   end function most_steps
 
    !> Limit of three values with steps 4 dt, 2 dt and dt, the last one where they show no order that
    !> the method has
@@ -178,12 +197,14 @@ contains
    end function extrapolated
 
    !> One run with a given step
-   subroutine march(settings, impact, dt, trajectory, crude, error)
+   subroutine march(settings, impact, dt, expected, trajectory, crude, error)
       !> End, second term, and whether to go on after the separation
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
+      !> Number of steps that it may take; when there are more there will be room
+      integer, intent(in) :: expected
       type(trajectory_t), intent(out) :: trajectory
       !> Whether a step was too long for a plate whose alpha grows, or the end of a receding contact
       !> too sudden for it
@@ -201,7 +222,7 @@ contains
 
       end_time = settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
-      room = min(max(16, nint(min(end_time, 5.0_wp*impact%time_scale())/dt)), most_steps) + 1
+      room = min(max(16, expected), most_steps(impact)) + 1
       run%second_coefficient = settings%second_coefficient
       run%viscosity = impact%kernel_viscosity()
       run%speed = impact%velocity
@@ -217,7 +238,7 @@ contains
       n = 0
       do
          n = n + 1
-         if (n > most_steps) then
+         if (n > most_steps(impact)) then
             if (trajectory%status /= contact_separated) call raise(error, error_numerical, &
                'the end of this contact takes more steps than product integration can make: use ' &
                //"method = 'ive' or a longer solver.time_step")
@@ -260,11 +281,12 @@ contains
             ends = run%receding%t1(3) <= 0.0_wp
             crude = crude .or. ends .and. run%receding%t1(2) > last_part*real(turn, wp)
             if (ends) trajectory%state(:, n) = end_of_receding_contact(impact, run%receding%t1, &
-               trajectory, n)
+               run%motion%recoil, trajectory, n)
          else if (ends) then
-            trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, trajectory, n)
+            trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, &
+               run%motion%recoil, trajectory, n)
          end if
-         if (trajectory%has_died_out(impact, n == most_steps &
+         if (trajectory%has_died_out(impact, n == most_steps(impact) &
              .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp))) then
             exit
          else if (ends) then
@@ -324,7 +346,7 @@ contains
             call step_with_a_part(run, impact, n, run%viscosity*impact%law%u(last_s &
             + 0.5_wp*run%kernel%dt*last_speed**2/(last_speed - run%speed)))
       end if
-      call run%motion%accept(n, run%force, run%dashpot)
+      call run%motion%accept(n, run%force, run%dashpot, drag(run))
       if (impact%law%receding) call run%receding%accept(n, run%s)
    end subroutine take_step
 
@@ -367,6 +389,7 @@ contains
          ! with alpha F in U' and the dashpot's force in F
          run%speed = (v_0 - slowing*run%force - (slowing - alpha)/weight*run%dashpot) &
             /(1.0_wp + alpha*run%viscosity*run%slope)
+         call run%motion%with_recoil(n, run%kernel%newest, run%slope, run%du, run%force, run%speed)
       end associate
    end subroutine step_with_all_the_past
 
@@ -389,8 +412,19 @@ contains
          run%s = indentation(1) - indentation(2)*run%force
          run%slope = impact%law%slope(run%s)
          run%speed = velocity(1) - velocity(2)*run%force
+         call run%motion%with_recoil(n, 0.0_wp, run%slope, run%du, run%force, run%speed)
       end associate
    end subroutine step_with_a_part
+
+   !> Force of the dashpot at the node
+   pure function drag(run)
+      type(run_t), intent(in) :: run
+      !> Force [N]
+      real(wp) :: drag
+
+      drag = 0.0_wp
+      if (.not. run%receding%shrinks) drag = run%viscosity*run%slope*run%speed
+   end function drag
 
    !> State at the node
    pure function state_of(run, impact) result(node)
@@ -402,9 +436,7 @@ contains
       node(col_time) = run%motion%t
       node(col_indentation) = run%s
       node(col_velocity) = run%speed
-      node(col_force) = run%force
-      if (.not. run%receding%shrinks) &
-         node(col_force) = run%force + run%viscosity*run%slope*run%speed
+      node(col_force) = run%force + drag(run)
       node(col_impulse) = run%motion%impulse
       node(col_sphere) = impact%free_path(run%motion%t) - run%motion%second_impulse/impact%mass
       node(col_sphere_velocity) = impact%free_velocity(run%motion%t) &

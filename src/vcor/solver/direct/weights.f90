@@ -1,6 +1,7 @@
 !> Weights of the sums over the past in product integration: the kernel integrated exactly over each
 !> step, times u' that changes linearly there
 module vcor_solver_direct_weights
+   use vcor_constants, only : pi
    use vcor_impact_plate, only : plate_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
@@ -9,7 +10,7 @@ module vcor_solver_direct_weights
    implicit none
    private
 
-   public :: contact_kernel_t, memory_weights, square_weights
+   public :: contact_kernel_t, layer_weights, memory_weights, square_weights
 
    !> Steps next to t = 0 that are integrated in parts, and the parts of each
    integer, parameter :: near = 16, parts = ubound(newton_cotes, 1)
@@ -99,6 +100,52 @@ contains
          (fine(1:) - fine(:near*parts - 1))/dt, sum(share*plate%memory_integral(dt*node))/dt, n, &
          weight, moment)
    end function memory_weights
+
+   !> Weights W_i of a layer, U - C(oo) F = sum_j W_{n-j} (I_j - I_{j-1}), by the convolution
+   !> quadrature of the two stages of Radau IIA, of third order: with the power series of
+   !> f(s) = s (C(s) - C(oo)) at the matrix s = Delta(zeta)/dt, Delta = A^-1 - zeta A^-1 1 e_2^T.
+   !> C. Lubich, A. Ostermann, Math. Comp. 60 (1993) 105. Only values of C are needed, to the right
+   !> of the imaginary axis by the more the higher the frequency; what rings is damped only where
+   !> a step does not resolve it. I at the first stage is that of the parabola through the nodes
+   pure function layer_weights(plate, dt, n) result(weight)
+      type(plate_t), intent(in) :: plate
+      !> Time step [s], > 0
+      real(wp), intent(in) :: dt
+      !> Number of weights
+      integer, intent(in) :: n
+      !> Weights [m/(N s)], shape (0:n-1)
+      real(wp) :: weight(0:n - 1)
+
+      ! Cauchy's integral by twice as many points as weights: what comes after them is added to
+      ! them times this
+      real(wp), parameter :: aliased = 1.0e-10_wp
+      complex(wp) :: turn(0:2*n - 1), zeta, lambda(2), f(2), slope, value
+      real(wp) :: radius
+      integer :: i, k, at
+
+      radius = aliased**(0.5_wp/real(n, wp))
+      turn = exp(cmplx(0.0_wp, pi/real(n, wp)*[(real(k, wp), k=0, 2*n - 1)], wp))
+      weight = 0.0_wp
+      do k = 0, n
+         zeta = radius*turn(k)
+         lambda = 2.0_wp + zeta + [1.0_wp, -1.0_wp]*sqrt(zeta**2 + 10.0_wp*zeta - 2.0_wp)
+         do i = 1, 2
+            f(i) = lambda(i)/dt*plate%compliance(lambda(i)/dt)
+         end do
+         ! the second row of f(Delta), its first entry times the parabola
+         slope = (f(2) - f(1))/(lambda(2) - lambda(1))
+         value = f(1) + slope*(2.5_wp + 2.0_wp*zeta - lambda(1)) &
+            - 0.5_wp*slope*(2.0_wp + 8.0_wp*zeta - zeta**2)
+         value = value/((1.0_wp - zeta)*real(n, wp))
+         if (mod(k, n) == 0) value = 0.5_wp*value
+         at = 0
+         do i = 0, n - 1
+            weight(i) = weight(i) + real(value*conjg(turn(at)), wp)
+            at = modulo(at + k, 2*n)
+         end do
+      end do
+      weight = weight*radius**[(-i, i=0, n - 1)]
+   end function layer_weights
 
    !> Weights and moments from means. By parts the moment is, with K the integral of k,
    !> (mean of K over the step - mean of K at its ends)/dt; away from t = 0 it is
