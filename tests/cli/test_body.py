@@ -3,7 +3,6 @@
 import re
 
 import pytest
-
 from program import NUMERICAL
 
 CASE = """
@@ -48,6 +47,28 @@ def test_restitution_and_energy(vcor, name):
     assert restitution == pytest.approx(IMPACTS[name][-1], abs=3e-8)
     assert waves > 0.0
     assert abs(imbalance) <= 1e-8 * initial
+
+
+def test_light_plates(vcor):
+    """A plate that is light for the sphere: the sum of exponentials has to leave it stable."""
+    vcor.write(text("layer of glass").replace("half_thickness = 0.002,", "half_thickness = 2.5e-4,"))
+    light, imbalance, initial = (
+        float(x) for x in vcor.succeeds("run", "case.nml", "--print", "cor_sphere,energy_imbalance,initial_energy").split()
+    )
+    thin = float(vcor.succeeds("run", "case.nml", "--set", "plate.waves=hereditary", "--print", "cor_sphere"))
+    assert abs(light) < 1e-3 and abs(thin) < 1e-3
+    assert abs(imbalance) <= 1e-8 * initial
+
+
+def test_points_of_a_sweep_are_single_impacts(vcor):
+    """They share the sums of the plate with the points before them, and have the same bits all the same."""
+    case = text("pmma").replace(", footprint = 0.00018507566307094617", "")
+    vcor.write(case)
+    names = ("--quiet", "--print", "cor,cor_sphere,footprint_effect,cor_error")
+    single = vcor.succeeds("run", "case.nml", *names, "--set", "impact.velocity=2.0")
+    vcor.write(case + "&sweep parameter = 'impact.velocity', values = 1.9, 1.95, 2.0, 0.5 /\n")
+    for threads in ("1", "2"):
+        assert vcor.succeeds("run", "case.nml", *names, "--threads", threads).splitlines()[2] == single.strip()
 
 
 def test_default_footprint_is_continuous(vcor):

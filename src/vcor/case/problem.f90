@@ -369,7 +369,8 @@ contains
 
    !> Solve the impact, and judge whether the model holds
    subroutine solve(self, trajectory, outcome, error)
-      class(problem_t), intent(in) :: self
+      !> The problem; what it takes to solve it is kept for those next to it
+      class(problem_t), intent(inout) :: self
       !> Course of its impact
       type(trajectory_t), intent(inout) :: trajectory
       !> Its outcome with the measures of validity
@@ -377,6 +378,7 @@ contains
       !> Error of code `error_numerical` as that of `solve_impact`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      call prepare(self)
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return
       call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
@@ -385,22 +387,32 @@ contains
          outcome%footprint_effect = cor_with_larger_footprint(self) - outcome%cor
    end subroutine solve
 
+   !> Make what method ive needs of a layer in advance
+   subroutine prepare(self)
+      type(problem_t), intent(inout) :: self
+
+      if (self%impact%plate%layered() .and. self%settings%method /= 'direct') &
+         call self%impact%plate%prepare(self%impact%law%contact_time*self%impact%time_scale())
+   end subroutine prepare
+
    !> Coefficient of restitution with a 1.25 times larger disc on the layer
    function cor_with_larger_footprint(self) result(cor)
       !> The problem, of a layer
-      type(problem_t), intent(in) :: self
+      type(problem_t), intent(inout) :: self
       !> Coefficient [-], NaN where there is none
       real(wp) :: cor
 
       real(wp), parameter :: larger = 1.25_wp
-      type(impact_t) :: impact
       type(trajectory_t) :: trajectory
       type(outcome_t) :: outcome
       type(error_t), allocatable :: error
+      real(wp) :: footprint
 
-      impact = self%impact
-      impact%plate%footprint = larger*impact%plate%footprint
-      call solve_impact(self%solver, impact, trajectory, outcome, error)
+      footprint = self%impact%plate%footprint
+      self%impact%plate%footprint = larger*footprint
+      call prepare(self)
+      call solve_impact(self%solver, self%impact, trajectory, outcome, error)
+      self%impact%plate%footprint = footprint
       cor = outcome%cor
    end function cor_with_larger_footprint
 

@@ -39,6 +39,10 @@ module vcor_impact_layer
    contains
       !> Compliance beyond Hertz' dent
       procedure :: compliance
+      !> The same for many footprints
+      procedure :: compliances
+      !> Hertz' dent by a flat punch
+      procedure :: dent
       !> Compliance for what happens at once
       procedure :: instant
    end type layer_t
@@ -70,6 +74,21 @@ contains
       !> Compliance [m/N]
       complex(wp) :: c
 
+      associate (all => self%compliances(s, [footprint]))
+         c = all(1)
+      end associate
+   end function compliance
+
+   !> The same for many footprints, which costs little more than for one
+   pure function compliances(self, s, footprint) result(c)
+      class(layer_t), intent(in) :: self
+      !> Laplace variable [1/s], real part > 0
+      complex(wp), intent(in) :: s
+      !> Radii a of the disc that is loaded [m], > 0, shape (n)
+      real(wp), intent(in) :: footprint(:)
+      !> Compliances [m/N], shape (n)
+      complex(wp) :: c(size(footprint))
+
       ! Panels grow geometrically from where nothing has happened yet; among the poles of the
       ! propagating modes they follow their distance from the real axis, further out the footprint
       real(wp), parameter :: start = 1.0e-3_wp, growth = 0.35_wp, near_poles = 0.7_wp
@@ -80,6 +99,7 @@ contains
       complex(wp) :: modulus, shear, p, q, g(nodes)
       real(wp) :: nu, gamma, distance, last_pole, bending, bending_distance, first, last, low, step
       real(wp) :: k(nodes), x(nodes)
+      integer :: i
 
       nu = self%material%poisson_ratio()
       gamma = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
@@ -93,7 +113,7 @@ contains
       first = start*min(distance, last_pole)
       bending = 0.0_wp
       bending_distance = 0.0_wp
-      last = max(far_footprint/footprint, far_wave*sqrt(abs(q)))
+      last = max(far_footprint/minval(footprint), far_wave*sqrt(abs(q)))
       if (self%thickness > 0.0_wp) then
          ! k^4 = -12 rho (1 - nu^2) s^2/(E H^2)
          bending = sqrt(sqrt(6.0_wp*(1.0_wp - nu)*abs(q))/self%thickness)
@@ -113,11 +133,13 @@ contains
          else if (low < around_bending(2)*bending) then
             step = min(step, bending_distance)
          end if
-         step = min(step, oscillation/footprint)
+         step = min(step, oscillation/maxval(footprint))
          k = low + step*self%node
-         g = deflection(k, q, p, self%thickness)
-         x = k*footprint
-         c = c + step*sum(self%weight*(g - (1.0_wp - nu))*(sin(x)/x)**2)
+         g = step*self%weight*(deflection(k, q, p, self%thickness) - (1.0_wp - nu))
+         do i = 1, size(footprint)
+            x = k*footprint(i)
+            c(i) = c(i) + sum(g*(sin(x)/x)**2)
+         end do
          low = low + step
       end do
 
@@ -128,9 +150,23 @@ contains
             + sin(2.0_wp*low*a)/(4.0_wp*a*low**4))
       end associate
       c = c/(2.0_wp*pi*shear)
-   end function compliance
+   end function compliances
 
-   !> Compliance at s -> oo: minus that of a flat punch on the static half space, glassy
+   !> Compliance of a flat punch on the static half space, what C(s) lacks to be passive
+   pure function dent(self, s, footprint) result(c)
+      class(layer_t), intent(in) :: self
+      !> Laplace variable [1/s], real part > 0
+      complex(wp), intent(in) :: s
+      !> Radius of the punch [m], > 0
+      real(wp), intent(in) :: footprint
+      !> Compliance [m/N]
+      complex(wp) :: c
+
+      c = (1.0_wp - self%material%poisson_ratio()**2) &
+         /(2.0_wp*self%material%complex_modulus(s)*footprint)
+   end function dent
+
+   !> Compliance at s -> oo: minus that of the punch, glassy
    pure function instant(self, footprint) result(c)
       class(layer_t), intent(in) :: self
       !> Radius a of the disc that is loaded [m], > 0

@@ -2,15 +2,18 @@
 !>
 !> U = instant F + sum_k c_k int_0^t exp(-l_k (t - x)) F(x) dx, some of the rates l_k in pairs of
 !> complex conjugates: waves between the faces ring. C(s) = instant + sum_k c_k/(s + l_k) is fitted
-!> by least squares. In units of the window the rates are the same for all layers, as a Fourier
-!> series on a somewhat longer one can be anything on the window, and so is the matrix; only the
-!> right side is the layer's.
+!> by least squares. In units of the window the rates are the same for all layers: a Fourier series
+!> on a somewhat longer one can be anything on the window.
 !>
 !> `instant` is the exact C(oo), not fitted. An impact on the sum stays stable as one on the layer
-!> is: C - C(oo) is the compliance of all that moves, which takes energy at any frequency, and what
-!> the fit leaves of that beyond its last point is too slow to grow within the window. Beyond the
-!> equidistant rates the points leave the line Re s = 2/window, as far as the rates do: there the
-!> response is damped, and what echoes do has no part in the motion.
+!> is, if the sum leaves C and the dent of a flat punch together passive: the misfit counts over the
+!> size of both. What the fit leaves of it beyond its last point is too slow to grow within the
+!> window. Beyond the equidistant rates the points leave the line Re s = 2/window, as far as the
+!> rates do: there the response is damped, and what echoes do has no part in the motion.
+!>
+!> Impacts share windows and fits: a fit is one for a band of footprints, at some radii in it that
+!> its coefficients are interpolated between. Windows and bands are steps of ladders, so that an
+!> impact has the same sum whichever impacts come before it.
 module vcor_impact_layer_sum
    use vcor_constants, only : pi
    use vcor_impact_layer, only : layer_t
@@ -20,167 +23,266 @@ module vcor_impact_layer_sum
    implicit none
    private
 
-   public :: line_fit_t, new_line_fit
+   public :: layer_sum_t, new_layer_sum
 
-   !> What all fits have in common, in units of the window
-   type :: line_fit_t
+   !> The band of footprints: from ladder**band to ladder**(band + 1) m, and radii in it at the
+   !> zeros of a Chebyshev polynomial of the logarithm
+   real(wp), parameter :: ladder = 2.0_wp**0.5_wp
+   integer, parameter :: radii = 9
+
+   !> Sums of a layer for the footprints of a band
+   type :: layer_sum_t
       private
-      !> Laplace variables, shape (n)
-      complex(wp), allocatable :: s(:)
-      !> Their weights, shape (n)
-      real(wp), allocatable :: weight(:)
-      !> Points on the line beyond the equidistant rates, which show what is left of echoes there
-      complex(wp), allocatable :: beyond(:)
-      !> Real rates, and one of each pair, shapes (n) and (m)
-      real(wp), allocatable :: rate(:)
-      complex(wp), allocatable :: pair_rate(:)
-      !> Weighted matrix: real parts of all rows, then imaginary ones; real terms, then two columns
-      !> for each pair
-      real(wp), allocatable :: matrix(:, :)
-      !> Q^T and R of the columns that are independent, which these are, and the columns' lengths
-      real(wp), allocatable :: q(:, :), r(:, :), length(:)
-      integer, allocatable :: pivot(:)
+      !> Time up to which they hold [s]
+      real(wp) :: window = 0.0_wp
+      integer :: band = 0
+      !> Coefficients c_k at the radii, real terms, then real and imaginary parts of the pairs,
+      !> times the radius [m2/(N s)], shape (terms, radii)
+      real(wp), allocatable :: coefficient(:, :)
+      !> Largest misfits of C at the radii as the motion feels it and as its rate does, times the
+      !> radius [m2/N]
+      real(wp) :: misfit(radii) = 0.0_wp, misfit_of_rate(radii) = 0.0_wp
    contains
-      procedure :: fit
-   end type line_fit_t
+      !> Whether they are for a footprint and a window
+      procedure :: holds
+      !> The sum for a footprint
+      procedure :: at
+   end type layer_sum_t
+
+   !> Pairs of rates: equidistant ones for a period that is longer than the window, then a series
+   !> with the damping of its steps, up to `top`
+   integer, parameter :: equidistant = 40, series = 11
+   real(wp), parameter :: step = pi/1.2_wp, damping = 3.0_wp, ratio = 1.25_wp
+   !> Real rates
+   integer, parameter :: slow = 16
+   real(wp), parameter :: slowest = 0.3_wp, fastest = 3000.0_wp
+   integer :: i_rate
+   !> The last of the equidistant rates
+   real(wp), parameter :: first = step*real(equidistant, wp)
+   !> Real rates, and one of each pair, times the window
+   real(wp), parameter :: rate(slow) = [(slowest*(fastest/slowest)**(real(i_rate, wp) &
+      /real(slow - 1, wp)), i_rate=0, slow - 1)]
+   complex(wp), parameter :: pair_rate(equidistant + series) = [ &
+      (cmplx(damping, -step*real(i_rate, wp), wp), i_rate=1, equidistant), &
+      (first*ratio**i_rate*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i_rate=1, series)]
+   !> Terms and coefficients
+   integer, parameter :: terms_of_fit = slow + 2*(equidistant + series)
+
+   !> Points times the window: on the line with this distance, then a series that leaves it with
+   !> this slope
+   real(wp), parameter :: line = 2.0_wp, dense = 0.6_wp, last = 3000.0_wp, slope = 0.1_wp
+   integer, parameter :: near = floor(first/dense) + 1, sparse = 60, points = near + sparse
+   real(wp), parameter :: omega(points) = [(dense*real(i_rate, wp), i_rate=0, near - 1), &
+      (first*(last/first)**(real(i_rate, wp)/real(sparse, wp)), i_rate=1, sparse)]
+   complex(wp), parameter :: point(points) = [(cmplx(line + slope*max(omega(i_rate) - first, &
+      0.0_wp), omega(i_rate), wp), i_rate=1, points)]
+   !> Points on the line beyond the equidistant rates, which show what is left of echoes there
+   integer, parameter :: beyond = 10
+   complex(wp), parameter :: echo(beyond) = [(cmplx(line, &
+      first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond)]
+
+   !> Error of the rate beyond all rates, over what stands in for it elsewhere, measured
+   real(wp), parameter :: beyond_rates = 5.0e-3_wp
 
    !> F has parts of the frequency w as 1/(1 + (w window/bend)^power): its start and end are powers
-   !> 1.5 of time; for the velocity U' they count for more
-   real(wp), parameter :: bend = 3.0_wp, power = 2.5_wp, power_of_rate = 1.5_wp
+   !> 1.5 of time; for the velocity U' they count for more, and the fit stands between them
+   real(wp), parameter :: bend = 3.0_wp, power = 2.5_wp, power_of_rate = 1.5_wp, &
+      power_of_fit = 2.0_wp
 
 contains
 
-   !> Make what all fits have in common
-   pure subroutine new_line_fit(self)
-      !> It; without factors if LAPACK fails
-      type(line_fit_t), intent(out) :: self
+   !> Band of a footprint
+   pure function band_of(footprint) result(band)
+      !> Radius [m], > 0
+      real(wp), intent(in) :: footprint
+      integer :: band
 
-      ! pairs of rates: equidistant ones for a period that is longer than the window, then a series
-      ! with the damping of its steps
-      integer, parameter :: equidistant = 40
-      real(wp), parameter :: step = pi/1.2_wp, damping = 3.0_wp, ratio = 1.25_wp, top = 1000.0_wp
-      ! real rates
-      integer, parameter :: slow = 16
-      real(wp), parameter :: slowest = 0.3_wp, fastest = 3000.0_wp
-      ! points: on the line with this distance, then a series that leaves it with this slope
-      real(wp), parameter :: line = 2.0_wp, dense = 0.6_wp, last = 3000.0_wp, slope = 0.1_wp
-      integer, parameter :: sparse = 60, beyond = 10
-      real(wp), parameter :: beyond_ratio = 1.25_wp
-      ! between the powers that motion and velocity want
-      real(wp), parameter :: power_of_fit = 2.0_wp
-      real(wp), parameter :: dependent = 1.0e-12_wp
-      real(wp), allocatable :: a(:, :), tau(:), work(:), omega(:)
-      complex(wp), allocatable :: column(:)
-      real(wp) :: first
-      integer :: i, j, n, m, rows, info
+      band = floor(log(footprint)/log(ladder))
+   end function band_of
 
-      first = step*real(equidistant, wp)
-      allocate (omega, source=[(dense*real(i, wp), i=0, floor(first/dense)), &
-         (first*(last/first)**(real(i, wp)/real(sparse, wp)), i=1, sparse)])
-      self%s = cmplx(line + slope*max(omega - first, 0.0_wp), omega, wp)
-      self%weight = 1.0_wp/(1.0_wp + (abs(self%s)/bend)**power_of_fit)
-      self%beyond = cmplx(line, first*beyond_ratio**([(real(i, wp), i=1, beyond)] - 0.5_wp), wp)
-      self%rate = slowest*(fastest/slowest)**([(real(i, wp), i=0, slow - 1)]/real(slow - 1, wp))
-      m = ceiling(log(top/first)/log(ratio))
-      self%pair_rate = [(cmplx(damping, -step*real(i, wp), wp), i=1, equidistant), &
-         (first*ratio**i*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i=1, m)]
+   !> Whether the sums are for a footprint and a window
+   elemental function holds(self, footprint, window)
+      class(layer_sum_t), intent(in) :: self
+      !> Radius [m], > 0
+      real(wp), intent(in) :: footprint
+      !> Time [s]
+      real(wp), intent(in) :: window
+      logical :: holds
 
-      n = size(self%s)
-      rows = 2*n
-      m = slow + 2*size(self%pair_rate)
-      allocate (self%matrix(rows, m), column(n))
-      do j = 1, m
-         if (j <= slow) then
-            column = 1.0_wp/(self%s + self%rate(j))
-         else
-            associate (l => self%pair_rate((j - slow + 1)/2))
-               if (mod(j - slow, 2) == 1) then
-                  column = 0.5_wp/(self%s + l) + 0.5_wp/(self%s + conjg(l))
-               else
-                  column = (0.0_wp, 0.5_wp)*(1.0_wp/(self%s + l) - 1.0_wp/(self%s + conjg(l)))
-               end if
-            end associate
-         end if
-         self%matrix(:, j) = [self%weight*real(column, wp), self%weight*aimag(column)]
-      end do
+      holds = .not. abs(self%window - window) > 0.0_wp .and. self%band == band_of(footprint)
+   end function holds
 
-      self%length = norm2(self%matrix, 1)
-      allocate (a(rows, m), tau(m), work(70*m), self%pivot(m))
-      do j = 1, m
-         a(:, j) = self%matrix(:, j)/self%length(j)
-      end do
-      self%pivot = 0
-      call dgeqp3(rows, m, a, rows, self%pivot, tau, work, size(work), info)
-      if (info /= 0) return
-      n = count([(abs(a(j, j)) > dependent*abs(a(1, 1)), j=1, m)])
-      self%r = a(:n, :n)
-      call dorgqr(rows, n, n, a, rows, tau, work, size(work), info)
-      if (info == 0) self%q = transpose(a(:, :n))
-   end subroutine new_line_fit
-
-   !> Fit a layer
-   pure subroutine fit(self, layer, footprint, window, terms, instant, error_of_rate)
-      class(line_fit_t), intent(in) :: self
+   !> Fit the sums of the band of a footprint
+   pure subroutine new_layer_sum(self, layer, footprint, window)
+      !> The sums; without coefficients if LAPACK fails
+      type(layer_sum_t), intent(out) :: self
       type(layer_t), intent(in) :: layer
       !> Radius of the disc that is loaded [m], > 0
       real(wp), intent(in) :: footprint
-      !> Time up to which the sum is to hold [s], > 0
+      !> Time up to which the sums are to hold [s], > 0
       real(wp), intent(in) :: window
-      !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k; the
-      !> error is the misfit of C as the motion feels it [m/N]
-      type(exponential_sum_t), intent(out) :: terms
-      !> Deflection that follows the force at once [m/N]
-      real(wp), intent(out) :: instant
-      !> Misfit of C as the velocity at the end feels it [m/N]
-      real(wp), intent(out) :: error_of_rate
 
-      complex(wp) :: c(size(self%s))
-      real(wp) :: right(2*size(self%s)), x(size(self%length)), y(size(self%q, 1))
-      real(wp), allocatable :: misfit(:)
-      integer :: i, n, info
+      integer, parameter :: middle = (radii + 1)/2
+      complex(wp) :: c(points, radii), column(points), left(radii)
+      complex(wp) :: all(points + beyond)
+      real(wp) :: radius(radii), passive(points + beyond), size_of_force(points + beyond)
+      real(wp), allocatable :: matrix(:, :)
+      integer :: i, j
 
-      instant = layer%instant(footprint)
-      do i = 1, size(c)
-         c(i) = layer%compliance(self%s(i)/window, footprint) - instant
+      self%window = window
+      self%band = band_of(footprint)
+      radius = ladder**(real(self%band, wp) + 0.5_wp*(1.0_wp + node()))
+      all = [point, echo]/window
+      do i = 1, points
+         c(i, :) = radius*layer%compliances(all(i), radius) - at_once()
+         passive(i) = abs(c(i, middle)) + abs(radius(middle)*layer%dent(all(i), radius(middle))) &
+            *(1.0_wp + (bend/abs(point(i)))**2)
       end do
-      right = [self%weight*real(c, wp), self%weight*aimag(c)]
-      y = matmul(self%q, right)
-      n = size(y)
-      call dtrtrs('U', 'N', 'N', n, 1, self%r, n, y, n, info)
-      x = 0.0_wp
-      x(self%pivot(:n)) = y
-      x = x/self%length
-      misfit = abs(matmul(self%matrix, x) - right)
-      n = size(c)
-      misfit = max(misfit(:n), misfit(n + 1:))/self%weight
-      terms%error = maxval(misfit/(1.0_wp + (abs(self%s)/bend)**power))
-      error_of_rate = maxval(misfit/(1.0_wp + (abs(self%s)/bend)**power_of_rate))
-      n = size(self%rate)
-      terms%rates = self%rate/window
-      terms%pair_rates = self%pair_rate/window
-      terms%moduli = x(:n)/window
-      terms%pair_moduli = cmplx(x(n + 1::2), x(n + 2::2), wp)/window
-      terms%viscosity = sum(terms%moduli) + sum(real(terms%pair_moduli, wp))
-      do i = 1, size(self%beyond)
-         error_of_rate = max(error_of_rate, abs(layer%compliance(self%beyond(i)/window, footprint) &
-            - instant - value(self%beyond(i)/window)) &
-            /(1.0_wp + (abs(self%beyond(i))/bend)**power_of_rate))
+      allocate (matrix(2*points, terms_of_fit))
+      do j = 1, terms_of_fit
+         column = response(j, point)
+         matrix(:, j) = [real(column, wp), aimag(column)]
       end do
-      terms%moduli = -terms%rates*terms%moduli
-      terms%pair_moduli = -terms%pair_rates*terms%pair_moduli
+      call least_squares(matrix, 1.0_wp/(passive(:points) &
+         *(1.0_wp + (abs(point)/bend)**power_of_fit)), c, self%coefficient)
+      if (.not. allocated(self%coefficient)) return
+      size_of_force = abs([point, echo])/bend
+      ! a dent that goes on beyond all rates, as that of a power law, counts as the root of time
+      if (.not. abs(at_once()) > 0.0_wp) self%misfit_of_rate = beyond_rates*radius(middle) &
+         *abs(layer%dent(point(points)/window, radius(middle)))*sqrt(bend/abs(point(points)))
+      do i = 1, points + beyond
+         left = (0.0_wp, 0.0_wp)
+         do j = 1, terms_of_fit
+            left = left + response(j, all(i)*window)*self%coefficient(j, :)
+         end do
+         if (i <= points) left = left - c(i, :)
+         if (i > points) left = left - radius*layer%compliances(all(i), radius) + at_once()
+         self%misfit_of_rate = max(self%misfit_of_rate, &
+            abs(left)/(1.0_wp + size_of_force(i)**power_of_rate))
+         if (i <= points) self%misfit = max(self%misfit, &
+            abs(left)/(1.0_wp + size_of_force(i)**power))
+      end do
+      self%coefficient = self%coefficient/window
 
    contains
 
-      !> The sum at a point, what is at once left out
-      pure function value(s)
-         !> Laplace variable [1/s]
-         complex(wp), intent(in) :: s
-         !> Compliance [m/N]
-         complex(wp) :: value
+      !> What follows the force at once, times the radius [m2/N]: the same for all
+      pure function at_once()
+         real(wp) :: at_once
 
-         value = sum(terms%moduli/(s + terms%rates)) + 0.5_wp*sum(terms%pair_moduli &
-            /(s + terms%pair_rates) + conjg(terms%pair_moduli)/(s + conjg(terms%pair_rates)))
-      end function value
-   end subroutine fit
+         at_once = radius(middle)*layer%instant(radius(middle))
+      end function at_once
+   end subroutine new_layer_sum
+
+   !> Positions of the radii in their band, from -1 to 1
+   pure function node()
+      real(wp) :: node(radii)
+
+      integer :: i
+
+      node = [(cos(pi*(real(i, wp) - 0.5_wp)/real(radii, wp)), i=1, radii)]
+   end function node
+
+   !> What a coefficient adds to C at a point times the window
+   elemental function response(term, s) result(c)
+      !> Number of the coefficient
+      integer, intent(in) :: term
+      !> The point
+      complex(wp), intent(in) :: s
+      !> Part of C for a coefficient of 1
+      complex(wp) :: c
+
+      if (term <= slow) then
+         c = 1.0_wp/(s + rate(term))
+         return
+      end if
+      associate (l => pair_rate((term - slow + 1)/2))
+         if (mod(term - slow, 2) == 1) then
+            c = 0.5_wp/(s + l) + 0.5_wp/(s + conjg(l))
+         else
+            c = (0.0_wp, 0.5_wp)*(1.0_wp/(s + l) - 1.0_wp/(s + conjg(l)))
+         end if
+      end associate
+   end function response
+
+   !> The sum for a footprint
+   pure subroutine at(self, footprint, terms, error_of_rate)
+      class(layer_sum_t), intent(in) :: self
+      !> Radius of the disc that is loaded [m], in the band
+      real(wp), intent(in) :: footprint
+      !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k; the
+      !> error is the misfit of C as the motion feels it [m/N]
+      type(exponential_sum_t), intent(out) :: terms
+      !> Misfit of C as the velocity at the end feels it [m/N]
+      real(wp), intent(out) :: error_of_rate
+
+      real(wp) :: weight(radii), distance(radii), c(terms_of_fit)
+      integer :: i
+
+      ! barycentric interpolation in ln a
+      distance = 2.0_wp*(log(footprint)/log(ladder) - real(self%band, wp)) - 1.0_wp - node()
+      weight = [((-1.0_wp)**i*sin(pi*(real(i, wp) - 0.5_wp)/real(radii, wp)), i=1, radii)]
+      if (any(.not. abs(distance) > 0.0_wp)) then
+         weight = merge(0.0_wp, 1.0_wp, abs(distance) > 0.0_wp)
+      else
+         weight = weight/distance
+      end if
+      c = matmul(self%coefficient, weight/(sum(weight)*footprint))
+      i = minloc(abs(distance), 1)
+      terms%error = self%misfit(i)/footprint
+      error_of_rate = self%misfit_of_rate(i)/footprint
+      terms%rates = rate/self%window
+      terms%pair_rates = pair_rate/self%window
+      terms%moduli = c(:slow)
+      terms%pair_moduli = cmplx(c(slow + 1::2), c(slow + 2::2), wp)
+      terms%viscosity = sum(terms%moduli) + sum(real(terms%pair_moduli, wp))
+      terms%moduli = -terms%rates*terms%moduli
+      terms%pair_moduli = -terms%pair_rates*terms%pair_moduli
+   end subroutine at
+
+   !> Weighted least squares with many right sides, as far as the columns are independent
+   pure subroutine least_squares(matrix, weight, right, x)
+      !> Matrix, rows of real parts, then of imaginary ones, shape (2*n, m); on return its factors
+      real(wp), intent(inout) :: matrix(:, :)
+      !> Weights of the rows, shape (n)
+      real(wp), intent(in) :: weight(:)
+      !> Right sides, shape (n, k)
+      complex(wp), intent(in) :: right(:, :)
+      !> Solutions, shape (m, k); not allocated if LAPACK fails
+      real(wp), allocatable, intent(out) :: x(:, :)
+
+      real(wp), parameter :: dependent = 1.0e-12_wp
+      real(wp), allocatable :: r(:, :), y(:, :), work(:)
+      real(wp) :: tau(size(matrix, 2)), length(size(matrix, 2))
+      integer :: pivot(size(matrix, 2)), rows, m, n, k, j, info
+
+      rows = size(matrix, 1)
+      m = size(matrix, 2)
+      k = size(right, 2)
+      do j = 1, m
+         matrix(:, j) = matrix(:, j)*[weight, weight]
+         length(j) = norm2(matrix(:, j))
+         matrix(:, j) = matrix(:, j)/length(j)
+      end do
+      pivot = 0
+      allocate (work(70*m))
+      call dgeqp3(rows, m, matrix, rows, pivot, tau, work, size(work), info)
+      if (info /= 0) return
+      n = count([(abs(matrix(j, j)) > dependent*abs(matrix(1, 1)), j=1, m)])
+      r = matrix(:n, :n)
+      call dorgqr(rows, n, n, matrix, rows, tau, work, size(work), info)
+      if (info /= 0) return
+      allocate (y(n, k))
+      do j = 1, k
+         y(:, j) = matmul([weight*real(right(:, j), wp), weight*aimag(right(:, j))], matrix(:, :n))
+      end do
+      call dtrtrs('U', 'N', 'N', n, k, r, n, y, n, info)
+      if (info /= 0) return
+      allocate (x(m, k), source=0.0_wp)
+      x(pivot(:n), :) = y
+      do j = 1, k
+         x(:, j) = x(:, j)/length
+      end do
+   end subroutine least_squares
 
 end module vcor_impact_layer_sum

@@ -2,7 +2,7 @@
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_layer, only : layer_t, new_layer
-   use vcor_impact_layer_sum, only : line_fit_t, new_line_fit
+   use vcor_impact_layer_sum, only : layer_sum_t, new_layer_sum
    use vcor_impact_memory, only : memory_t, new_memory
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -46,8 +46,8 @@ module vcor_impact_plate
       type(memory_t), allocatable :: memory
       !> The plate as a layer, otherwise not allocated
       type(layer_t), allocatable :: layer
-      !> What the fits of its response have in common
-      type(line_fit_t) :: line_fit
+      !> Sums of exponentials of its response that were made in advance, not allocated if none was
+      type(layer_sum_t), allocatable :: sums(:)
       !> Radius of the disc that loads the layer [m], > 0
       real(wp), public :: footprint = 0.0_wp
    contains
@@ -71,6 +71,10 @@ module vcor_impact_plate
       procedure :: hereditary
       !> Whether its velocity is no function of force and impulse
       procedure :: drifts
+      !> Time that a sum for a layer holds
+      procedure, nopass :: window
+      !> Make the response of a layer in advance
+      procedure :: prepare
       !> Its response as a sum of exponentials
       procedure :: response
       !> Integral of the memory
@@ -127,7 +131,6 @@ contains
          self%waves = waves
          allocate (self%layer)
          call new_layer(self%layer, material, 2.0_wp*half_thickness)
-         call new_line_fit(self%line_fit)
          return
       end if
       self%coefficient = sqrt(3.0_wp*material%density()/material%plane_strain_factor()) &
@@ -243,6 +246,39 @@ contains
       drifts = self%frozen() .or. self%hereditary()
    end function drifts
 
+   !> Time that a sum of exponentials for a layer holds: rounded up so that impacts of about the
+   !> same duration have the same
+   elemental function window(contact_time)
+      !> Expected contact time [s], > 0
+      real(wp), intent(in) :: contact_time
+      !> Time [s]
+      real(wp) :: window
+
+      real(wp), parameter :: margin = 1.25_wp, ladder = 2.0_wp**0.25_wp
+
+      window = ladder**ceiling(log(margin*contact_time)/log(ladder))
+   end function window
+
+   !> Make the response of a layer in advance, for its footprint and those next to it
+   pure subroutine prepare(self, contact_time)
+      !> The plate, a layer
+      class(plate_t), intent(inout) :: self
+      !> Expected contact time [s], > 0
+      real(wp), intent(in) :: contact_time
+
+      ! that are kept
+      integer, parameter :: most = 100
+      type(layer_sum_t) :: sum
+      real(wp) :: window
+
+      window = self%window(contact_time)
+      if (.not. allocated(self%sums)) allocate (self%sums(0))
+      if (any(self%sums%holds(self%footprint, window))) return
+      call new_layer_sum(sum, self%layer, self%footprint, window)
+      if (size(self%sums) == most) self%sums = [sum]
+      self%sums = [self%sums, sum]
+   end subroutine prepare
+
    !> Response of a hereditary plate on a window of time as a sum of exponentials,
    !> U' = viscosity F + instant F' + int psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
    pure subroutine response(self, window, accuracy, terms, instant, velocity_error)
@@ -260,11 +296,21 @@ contains
       !> Error of a layer's velocity times the window per force [m/N], else 0
       real(wp), intent(out) :: velocity_error
 
+      type(layer_sum_t) :: sum
+      integer :: i
+
       instant = 0.0_wp
       velocity_error = 0.0_wp
       if (allocated(self%layer)) then
-         call self%line_fit%fit(self%layer, self%footprint, window, terms, instant, &
-            velocity_error)
+         instant = self%layer%instant(self%footprint)
+         i = 0
+         if (allocated(self%sums)) i = findloc(self%sums%holds(self%footprint, window), .true., 1)
+         if (i > 0) then
+            call self%sums(i)%at(self%footprint, terms, velocity_error)
+         else
+            call new_layer_sum(sum, self%layer, self%footprint, window)
+            call sum%at(self%footprint, terms, velocity_error)
+         end if
       else
          call self%memory%exponentials(window, accuracy, terms)
       end if

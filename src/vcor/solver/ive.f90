@@ -15,8 +15,8 @@ module vcor_solver_ive
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_ladder, layer_margin, layer_start, &
-      loosest_accuracy, no_sum, plate_share, window_growth, window_margin
+      layer_growth, layer_start, loosest_accuracy, no_sum, plate_share, window_growth, &
+      window_margin
    use vcor_solver_type, only : default_accuracy, layer_reach, solver_settings_t, solver_t
    implicit none
    private
@@ -69,7 +69,7 @@ contains
       window = window_margin*impact%law%contact_time*time_scale
       growth = window_growth
       if (impact%plate%layered()) then
-         window = layer_window(impact%law%contact_time*time_scale)
+         window = impact%plate%window(impact%law%contact_time*time_scale)
          growth = layer_growth
       end if
       do
@@ -123,17 +123,6 @@ contains
          trajectory%kernel_error = contact%error
       end associate
    end subroutine solve
-
-   !> Time that the sum of a layer holds: rounded up so that impacts of about the same duration have
-   !> the same
-   pure function layer_window(contact_time) result(window)
-      !> Expected contact time [s], > 0
-      real(wp), intent(in) :: contact_time
-      !> Window [s]
-      real(wp) :: window
-
-      window = layer_ladder**ceiling(log(layer_margin*contact_time)/log(layer_ladder))
-   end function layer_window
 
    !> Error of the kernel as an impact feels it: where heavy losses end the loading early in the
    !> window, that of the kernel's integral up to there, if that is more, in the share of the

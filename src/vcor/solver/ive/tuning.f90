@@ -35,11 +35,8 @@ module vcor_solver_ive_tuning
    !> the contact outlasts it
    real(wp), parameter :: window_margin = 2.0_wp ! tested
    real(wp), parameter :: window_growth = 20.0_wp ! time
-   !> The same where the plate is a layer, whose sum is the better the tighter the window is; and
-   !> the ladder of windows, for impacts to share one
-   real(wp), parameter :: layer_margin = 1.25_wp
+   !> The factor where the plate is a layer, whose sum is the better the tighter the window is
    real(wp), parameter :: layer_growth = 2.0_wp
-   real(wp), parameter :: layer_ladder = 2.0_wp**0.25_wp
    !> Time of the largest force over the window before which it is none: the sum of a layer has no
    !> rates for so short a time
    real(wp), parameter :: layer_start = 1.0e-3_wp ! guard
