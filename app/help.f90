@@ -4,8 +4,7 @@ module vcor_app_help
    use vcor_app_commands, only : command_count, commands, entry_t, get_page, missing_package, &
       options_of, package_commands, texts_of
    use vcor_app_external, only : external_commands
-   use vcor_case_catalogue, only : described_keys, groups, integer_key, key_t, kind_name, &
-      logical_key, range_text, real_key, text_key
+   use vcor_case_catalogue, only : described_keys, groups, key_t, kind_name, range_text
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
    use vcor_material_parameter, only : interval_text
    use vcor_json, only : array, member, object, strings, words
@@ -493,18 +492,10 @@ contains
       !> real, integer, logical, text, or list: one or more reals
       character(len=:), allocatable :: name
 
-      select case (value_kind)
-      case (real_key)
-         name = "real"
-      case (integer_key)
-         name = "integer"
-      case (logical_key)
-         name = "logical"
-      case (text_key)
-         name = "text"
-      case default
-         name = "list"
-      end select
+      character(len=*), parameter :: names(*) = [character(len=7) :: "real", "integer", "logical", &
+         "text", "list"]
+
+      name = trim(names(value_kind))
    end function type_name
 
    !> Columns of a file

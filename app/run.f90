@@ -1,13 +1,12 @@
 !> Running a case of one impact; a sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
-   use vcor_app_band, only : warn_of_bands
    use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
       write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : percent, report, short, significant
    use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
-      solve_exact
+      solve_exact, warn_of_bands
    use vcor_case_problem, only : material_of_case
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t

@@ -4,7 +4,6 @@
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
-   use vcor_app_band, only : warn_of_bands
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
       write_numbers
@@ -12,7 +11,7 @@ module vcor_app_sweep
    use vcor_app_screen, only : heading, padded, right, shown, significant
    use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
       signal_name
-   use vcor_app_validity, only : about_numbers, points_remark, points_report
+   use vcor_app_validity, only : about_numbers, points_remark, points_report, warn_of_bands
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points, &

@@ -17,7 +17,7 @@ program test_impact
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_type, only : material_t
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_solver_ive, only : ive_t
    use vcor_solver_direct_product, only : product_t
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite

@@ -14,8 +14,7 @@ program test_material
    use vcor_material_parameter, only : is_within, linear, parameter_t
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
-   use vcor_numeric_legendre, only : gauss_nodes
-   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes
    use vcor_test, only : check, check_close, check_relative, check_text, finish, &
       suite
    use vcor_test_cases, only : refused, success

@@ -6,8 +6,8 @@ program test_numeric
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
    use vcor_solver_convolution, only : dot
-   use vcor_numeric_legendre, only : gauss_nodes, legendre, radau_nodes
-   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &
+      & legendre, radau_nodes
    use vcor_numeric_radau_algebra, only : apply, invert, ratio, times, width
    use vcor_numeric_radau_collocation, only : collocation_t, linear, new_collocation, panel_map_t
    use vcor_numeric_radau_settling, only : new_settling, settling_t

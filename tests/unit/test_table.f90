@@ -9,7 +9,7 @@ program test_table
    use vcor_material_power_law, only : new_power_law, power_law_t
    use vcor_material_prony, only : new_prony, prony_t
    use vcor_material_table, only : new_tabulated, tabulated_t
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : refused, random_t, success

@@ -5,7 +5,7 @@ program test_validity
    use vcor_impact_validity, only : half_space_resistance, judge, level_caution, level_good, &
       level_none, level_outside, surroundings_t, thresholds
    use vcor_kinds, only : wp
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_test, only : check, check_relative, finish, suite
    implicit none
 

@@ -332,31 +332,23 @@ contains
    pure function described_keys() result(keys)
       !> Rows, those of one text with the models of all of them
       type(key_t), allocatable :: keys(:)
+      type(key_t) :: key
       logical :: is_first(size(catalogue))
       integer :: row, other
 
       allocate (keys, source=catalogue)
       is_first = .true.
       do row = 2, size(catalogue)
-         do other = 1, row - 1
-            if (.not. says_the_same(catalogue(row), catalogue(other))) cycle
-            keys(other)%models = trim(keys(other)%models)//" "//catalogue(row)%models
-            is_first(row) = .false.
-            exit
-         end do
+         key = catalogue(row)
+         other = findloc(keys(:row - 1)%group == key%group .and. keys(:row - 1)%name == key%name &
+            .and. keys(:row - 1)%unit == key%unit .and. keys(:row - 1)%meaning == key%meaning &
+            .and. (keys(:row - 1)%required .eqv. key%required), .true., dim=1)
+         if (other == 0) cycle
+         keys(other)%models = trim(keys(other)%models)//" "//catalogue(row)%models
+         is_first(row) = .false.
       end do
       keys = pack(keys, is_first)
    end function described_keys
-
-   !> Whether two rows say the same of a key
-   pure function says_the_same(one, other) result(yes)
-      type(key_t), intent(in) :: one
-      type(key_t), intent(in) :: other
-      logical :: yes
-
-      yes = one%group == other%group .and. one%name == other%name .and. one%unit == other%unit &
-         .and. one%meaning == other%meaning .and. (one%required .eqv. other%required)
-   end function says_the_same
 
    !> What a key takes, in words: `a number > 0 [m]`
    pure function wanted(key) result(text)
@@ -377,18 +369,10 @@ contains
       !> The words
       character(len=:), allocatable :: name
 
-      select case (kind)
-      case (real_key)
-         name = "a number"
-      case (integer_key)
-         name = "a whole number"
-      case (logical_key)
-         name = ".true. or .false."
-      case (text_key)
-         name = "a text in quotes"
-      case default
-         name = "numbers"
-      end select
+      character(len=*), parameter :: names(*) = [character(len=18) :: "a number", &
+         "a whole number", ".true. or .false.", "a text in quotes", "numbers"]
+
+      name = trim(names(kind))
    end function kind_name
 
    !> Names of the keys of a group, each once, separated by blanks

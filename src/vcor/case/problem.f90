@@ -109,6 +109,10 @@ contains
       !> what has a part in it; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
+         'relaxing', 'frozen', 'hereditary', 'body']
+      integer, parameter :: waves(*) = [waves_none, waves_constant, waves_relaxing, waves_frozen, &
+         waves_hereditary, waves_body]
       character(len=:), allocatable :: text
       integer :: order
 
@@ -131,20 +135,7 @@ contains
       self%at%second_coefficient = case%address('solver', 'volterra_coefficient')
 
       call case%get('plate', 'waves', text)
-      select case (text)
-      case ('none')
-         self%waves = waves_none
-      case ('constant')
-         self%waves = waves_constant
-      case ('frozen')
-         self%waves = waves_frozen
-      case ('hereditary')
-         self%waves = waves_hereditary
-      case ('body')
-         self%waves = waves_body
-      case default
-         self%waves = waves_relaxing
-      end select
+      self%waves = waves(findloc(wave_names == text, .true., dim=1))
       call case%get('sphere', 'shape', text)
       self%shape = text
       call case%get('contact', 'law', text)

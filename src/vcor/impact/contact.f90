@@ -8,8 +8,7 @@ module vcor_impact_contact
    use vcor_material_in_series, only : new_in_series
    use vcor_material_signed_fit, only : new_signed_fit, signed_fit_t
    use vcor_material_type, only : material_t
-   use vcor_numeric_legendre, only : gauss_nodes
-   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, graded_rule
+   use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, graded_rule
    implicit none
    private
 

@@ -19,7 +19,7 @@ module vcor_impact_layer
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes
    implicit none
    private
 

@@ -11,7 +11,7 @@ module vcor_impact_validity
    use vcor_impact_trajectory, only : col_plate, trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_numeric_legendre, only : gauss_nodes
+   use vcor_numeric_quadrature, only : gauss_nodes
    implicit none
    private
 

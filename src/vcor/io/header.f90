@@ -8,9 +8,8 @@ module vcor_io_header
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
    use vcor_io_columns, only : most_columns, split
-   use vcor_words, only : nearest_name
    use vcor_text, only : lower, shortened
-   use vcor_words, only : contains_word, join_words
+   use vcor_words, only : contains_word, join_words, nearest_name
    implicit none
    private
 

@@ -180,10 +180,7 @@ contains
    !> Add a column of numbers
    pure subroutine add_real(self, name, symbol, unit, meaning, value)
       class(list_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: symbol
-      character(len=*), intent(in) :: unit
-      character(len=*), intent(in) :: meaning
+      character(len=*), intent(in) :: name, symbol, unit, meaning
       !> Value, in this unit
       real(wp), intent(in) :: value
 
@@ -196,10 +193,7 @@ contains
    !> Add a column of whole numbers
    pure subroutine add_whole(self, name, symbol, unit, meaning, value)
       class(list_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: symbol
-      character(len=*), intent(in) :: unit
-      character(len=*), intent(in) :: meaning
+      character(len=*), intent(in) :: name, symbol, unit, meaning
       !> Value, in this unit
       integer, intent(in) :: value
 
@@ -210,11 +204,8 @@ contains
    !> Add a column of texts
    pure subroutine add_label(self, name, symbol, unit, meaning, value, labels, first)
       class(list_t), intent(inout) :: self
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: symbol
-      !> Unit, empty
-      character(len=*), intent(in) :: unit
-      character(len=*), intent(in) :: meaning
+      !> The unit is empty
+      character(len=*), intent(in) :: name, symbol, unit, meaning
       !> Number of the text
       integer, intent(in) :: value
       !> All texts, each one word

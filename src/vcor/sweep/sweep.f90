@@ -168,7 +168,6 @@ contains
       call worker%problem%update(worker%case, error)
    end subroutine build_point
 
-
    !> Why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)
       integer, intent(in) :: status

@@ -16,7 +16,7 @@ module vcor_numeric_radau_collocation
    use vcor_error, only : error_internal, error_t, raise
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgeev, dgesv
-   use vcor_numeric_legendre, only : legendre, radau_nodes
+   use vcor_numeric_quadrature, only : legendre, radau_nodes
    use vcor_numeric_radau_algebra, only : pairs, width
    use vcor_numeric_radau_settling, only : new_settling, settling_t
    implicit none

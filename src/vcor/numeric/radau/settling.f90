@@ -20,7 +20,7 @@
 module vcor_numeric_radau_settling
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
-   use vcor_numeric_legendre, only : gauss_nodes, legendre
+   use vcor_numeric_quadrature, only : gauss_nodes, legendre
    implicit none
    private
 
