@@ -1,7 +1,7 @@
 """Makes data/impacts_of_*.csv: impacts of known parameters by the solver of the references.
 
 That solver shares nothing with vcor; its numbers are good to about 1e-9.
-Run by hand: python make_data.py [sls prony ...]
+Run by hand: python make_data.py [sls prony ...]; block prints examples/identification/block.csv
 """
 
 import sys
@@ -34,8 +34,26 @@ CASE = """&impact velocity = {velocity} /
 """
 
 
+def block():
+    """Impacts of examples/identification: three temperatures, shifted by hand, 1 % of noise."""
+    rng = np.random.default_rng(1)
+    for celsius in (20, 40, 60):
+        factor = 10 ** (-12 * (celsius - 20) / (80 + celsius - 20))
+        material = "model = 'mittag_leffler', equilibrium_modulus = 1e6, relaxing_modulus = 1e9, "
+        material += f"exponent = 0.4, time = {factor!r}"
+        for velocity in (1.0, 3.0, 10.0):
+            text = CASE.format(velocity=velocity, material=material, law="boltzmann")
+            out, _ = impact_solver.solve(make_impacts.case_of(text.replace("0.45", "0.4")))
+            cor, time = (out[name] * (1 + 0.01 * rng.normal()) for name in ("cor", "contact_time"))
+            print(f"{velocity},{celsius},{cor:.5f},{cor / 100:.4f},{1e3 * time:.5g}", end="")
+            print(f",{10 * time:.3g}", flush=True)
+
+
 def main():
     for name in sys.argv[1:] or MATERIALS:
+        if name == "block":
+            block()
+            continue
         material, rows = MATERIALS[name], []
         for velocity in np.geomspace(0.3, 20, 10):
             text = CASE.format(velocity=velocity, material=material, law=LAWS.get(name, "receding"))

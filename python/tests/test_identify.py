@@ -136,6 +136,72 @@ def test_impacts_and_moduli_together():
     assert (np.diag(found.covariance) < np.diag(alone.covariance)).all()
 
 
+def shifted_moduli(frequency, kelvin):
+    """Storage and loss moduli of the SLS at a temperature: WLF 12 and 80 K at 293.15 K."""
+    time = 10 ** (-12 * (kelvin - 293.15) / (80 + kelvin - 293.15)) / 1200
+    modulus = 1.5e7 * (0.25 + 0.75 * (1j * frequency * time) / (1 + 1j * frequency * time))
+    return modulus.real, modulus.imag
+
+
+def shifted_case():
+    text = guess("sls").text().replace("beta =", "shift = 'wlf', reference_temperature = 293.15,"
+                                       " wlf_c1 = 10.0, wlf_c2 = 100.0, beta =")  # fmt: skip
+    return vcor.Case(text.replace("velocity = 1.0", "velocity = 1.0, temperature = 293.15"))
+
+
+def test_moduli_at_temperatures_and_impacts_together(tmp_path):
+    kelvin = np.repeat([283.15, 293.15, 313.15], 8)
+    frequency = np.tile(np.geomspace(10, 1e3, 8), 3)
+    storage, loss = shifted_moduli(frequency, kelvin)
+    impacts = {**columns(), "temperature": np.full(10, 293.15)}
+    free = [f"rubber.{key}" for key in [*TRUTH["sls"], "wlf_c1", "wlf_c2"]]
+    errors = {"cor": 0.01, "contact_time": 0.01}
+    rows = zip(kelvin - 273.15, frequency / 2 / np.pi, storage / 1e6, loss / 1e6, strict=True)
+    body = "".join(",".join(f"{x:.12g}" for x in (*row, 0.02 * row[2], 0.05 * row[3])) + "\n"
+                   for row in rows)  # fmt: skip
+    file = tmp_path / "dma.csv"
+    units = "T [C],f [Hz],E_stor [MPa],E_loss [MPa],E_stor_sigma [MPa],E_loss_sigma [MPa]\n"
+    file.write_text(units + body)
+    found = vcor.identify(shifted_case(), [impacts, file], free, errors=errors)
+    for one, value in zip(found.estimates, [*TRUTH["sls"].values(), 12, 80], strict=True):
+        assert one.value == pytest.approx(value, rel=1e-5)
+    sigma = [row["sigma"] / row["value"] for row in found.data if "modulus" in row["quantity"]]
+    assert np.allclose(sigma, np.repeat([0.02, 0.05], 24))
+    # without columns of errors, and as another instrument writes it
+    plain = "".join(f"{line.rsplit(',', 2)[0]}\n" for line in body.splitlines())
+    file.write_text("T,f,E_stor,E_loss\nC,Hz,MPa,MPa\n" + plain)
+    again = {"storage_modulus": 0.02, "loss_modulus": 0.05, **errors}
+    found = vcor.identify(shifted_case(), [impacts, file], free, errors=again)
+    assert found["rubber.wlf_c2"] == pytest.approx(80, rel=1e-5)
+    # a material without a shift takes one temperature, but not three
+    one = {"frequency": frequency[:8], "storage_modulus": storage[8:16], "loss_modulus": loss[8:16],
+           "temperature": kelvin[8:16]}  # fmt: skip
+    found = vcor.identify(guess("sls"), one, free[:3])
+    assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
+    with pytest.raises(vcor.InputError, match="needs a shift"):
+        vcor.identify(guess("sls"), file, free[:3])
+
+
+def test_a_parameter_that_the_data_bound_on_one_side_only():
+    # a second term that is faster than the data: a dashpot of modulus times time, in the limit
+    times = np.geomspace(1e-2, 1, 20)
+    data = {"frequency": 1 / times[::-1], "storage_modulus": 0, "loss_modulus": 0}
+    x = 1j * data["frequency"]
+    modulus = 3e6 + 6e9 * x * 1e-5 / (1 + x * 1e-5) + 4e6 * x * 0.1 / (1 + x * 0.1)
+    data["storage_modulus"], data["loss_modulus"] = modulus.real, modulus.imag
+    free = [f"rubber.{key}" for key in TRUTH["prony"]]
+    case = guess("prony")
+    case["rubber.times(2)"], case["rubber.times(1)"] = 0.05, 1e-4
+    case["rubber.moduli(1)"] = 1e9
+    errors = {"storage_modulus": 0.01, "loss_modulus": 0.01}
+    found = {one.address: one for one in vcor.identify(case, data, free, errors=errors).estimates}
+    fast, slow = found["rubber.times(1)"], found["rubber.times(2)"]
+    assert fast.interval_95[0] == 0
+    assert 1e-5 < fast.interval_95[1] < 1e-2
+    assert found["rubber.moduli(1)"].interval_95[1] == math.inf
+    assert 0.09 < slow.interval_95[0] < slow.interval_95[1] < 0.11
+
+
 def test_drops_and_bounces():
     case = guess("sls")
     case["rubber.alpha"], case["rubber.beta"] = 300.0, 1200.0

@@ -85,7 +85,11 @@ class Data:
                 raise InputError(f"{self.path}: column '{name}' holds more than numbers") from None
             zero = _ZERO_C if (unit or "").strip("°") == "C" else 0.0
             size = 1.0 if zero else self._size(unit or "")
-            self.columns[_NAMES.get(name, name)] = np.array(values) * size + zero
+            what = name.removesuffix("_sigma")
+            ending = name[len(what) :]
+            self.columns[_NAMES.get(what, what) + ending] = np.array(values) * size + (
+                0.0 if ending else zero
+            )
 
     def _size(self, unit: str) -> float:
         """A unit in SI units."""

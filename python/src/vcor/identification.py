@@ -10,6 +10,7 @@ import argparse
 import json
 import math
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,16 +30,22 @@ from .observations import Block, Impacts, Record, Source, number, observations, 
 ACCURACY = 1e-9
 #: Step of the logarithms of parameters for derivatives
 STEP = 1e-3
-#: Relative response of the data to a combination of parameters below which there is none
-NO_RESPONSE = 1e-5
-#: Standard error of the logarithm of a combination above which it is not determined: a factor e
+#: Standard error of the logarithm of a combination above which it is not determined: a factor e,
+#: if its parameters have no limit on either side
 UNDETERMINED = 1.0
 #: Levels of the intervals
 LEVELS = (0.6827, 0.95)
 #: Points that a fit may start from, and how many of them do
 STARTS, REFINED = 64, 4
-#: Logarithm of the factor beyond which an interval is open
-OPEN = math.log(1e4)
+#: Logarithms of the factors from the first guess beyond which an interval is open, and the others
+#: are not followed
+OPEN, FARTHEST = math.log(1e4), math.log(1e12)
+#: Longest first step of a profile, in the logarithm
+LONGEST = 0.7
+#: Rise, in widths of the interval, from which on no straight line leads to its end
+STEEP = 3.0
+#: Part of the largest slope below which a parameter has vanished
+VANISHED = 1e-3
 #: What could be measured next, each to NEXT_ERROR
 NEXT = ("cor_sphere", "contact_time", "max_force")
 NEXT_ERROR = 0.01
@@ -218,8 +225,11 @@ class _Problem:
                              f"{name}_sigma, or --error {name}=2%")  # fmt: skip
         self.estimated = bool(missing.all())
         self.sigma = scale if self.estimated else sigma
+        guess = np.log([_positive(case, address) for address in free])
+        self.guess, self.low, self.high = guess, guess - FARTHEST, guess + FARTHEST
         if not (self.sigma > 0).all():
             raise InputError("found a standard error or a datum that is not > 0")
+        self._last = np.empty(0), np.empty(0)
         self.dof = len(self.value) - len(self.free) - sum(isinstance(b, Record) for b in blocks)
         if self.dof < (1 if self.estimated else 0):
             raise InputError(f"found {len(self.value)} data for {len(self.free)} parameters, "
@@ -227,31 +237,44 @@ class _Problem:
 
     def predict(self, x: Floats) -> Floats:
         """Data for each row of x, shape (rows, data)."""
-        values = np.exp(np.clip(x, -690, 690))
+        values = np.exp(x)
         return np.hstack([b.predict(self.case, self.free, values) for b in self.blocks])
 
     def residuals(self, x: Floats) -> Floats:
-        """Residuals at one point, shape (data,)."""
-        found: Floats = (self.predict(x[None])[0] - self.value) / self.sigma
-        return found
+        """Residuals at one point, shape (data,); the last are kept."""
+        if not np.array_equal(x, self._last[0]):
+            self._last = x.copy(), (self.predict(x[None])[0] - self.value) / self.sigma
+        return self._last[1]
 
-    def derivatives(self, x: Floats, which: Sequence[int], what: Any = None) -> Floats:
+    def derivatives(self, x: Floats, what: Any = None) -> Floats:
         """Derivatives of the data, shape (data, parameters); one-sided beside a limit."""
         predict = what or self.predict
-        steps = STEP * np.eye(len(x))[list(which)]
+        steps = STEP * np.eye(len(x))
         found = predict(np.vstack([x, x + steps, x - steps]))
-        k = len(steps)
-        above, below = found[1 : k + 1], found[k + 1 :]
+        above, below = found[1 : len(x) + 1] - found[0], found[0] - found[len(x) + 1 :]
         slope: Floats = np.where(
-            np.isnan(above),
-            found[0] - below,
-            np.where(np.isnan(below), above - found[0], (above - below) / 2),
+            np.isnan(above), below, np.where(np.isnan(below), above, (above + below) / 2)
         )
         return slope.T / STEP
 
-    def minimize(self, x: Floats, which: Sequence[int], most: int = 60) -> tuple[Floats, float]:
+    def slopes(self, x: Floats, which: Sequence[int]) -> Floats:
+        """Derivatives of the residuals by some of the parameters, one-sided: good for descent."""
+        steps = STEP * np.eye(len(x))[list(which)]
+        found = self.predict(x + steps)
+        if np.isnan(found).any():
+            steps = -steps
+            found = self.predict(x + steps)
+        change = (found - self.value) / self.sigma - self.residuals(x)
+        slope: Floats = np.nan_to_num(change / steps.sum(axis=1)[:, None]).T
+        return slope
+
+    def minimize(
+        self, x: Floats, which: Sequence[int], most: int = 60, tolerance: float = 1e-12,
+        *, again: bool = True,
+    ) -> tuple[Floats, float]:  # fmt: skip
         """Least squares over some of the parameters from x; inf where there is no result."""
         which, x = list(which), x.copy()
+        x[which] = np.clip(x, self.low + 1e-6, self.high - 1e-6)[which]
 
         def full(part: Floats) -> Floats:
             x[which] = part
@@ -263,15 +286,25 @@ class _Problem:
             found = least_squares(
                 lambda part: self.residuals(full(part)),
                 x[which],
-                lambda part: self.derivatives(full(part), which) / self.sigma[:, None],
-                xtol=1e-11, ftol=1e-12, gtol=1e-12, max_nfev=most,
+                lambda part: self.slopes(full(part), which),
+                bounds=(self.low[which], self.high[which]),
+                xtol=tolerance, ftol=tolerance, gtol=tolerance, max_nfev=most,
             )  # fmt: skip
             full(found.x)
+            lengths = np.linalg.norm(found.jac, axis=0)
+            vanished = [which[i] for i in np.flatnonzero(lengths < VANISHED * lengths.max())]
+            if again and vanished:
+                # a modulus next to 0 has no slope that leads back
+                other = x.copy()
+                other[vanished] = self.guess[vanished]
+                other, chi2 = self.minimize(other, which, most, tolerance, again=False)
+                if chi2 < 2 * found.cost:
+                    return other, chi2
         return x, float(np.sum(self.residuals(x) ** 2))
 
     def best(self, seed: int) -> tuple[Floats, float]:
         """The smallest sum of squares from several starts, the first one the case itself."""
-        x = np.log([_positive(self.case, address) for address in self.free])
+        x = self.guess
         spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
         starts = np.vstack([x, x + spread])
         sums = np.sum(((self.predict(starts) - self.value) / self.sigma) ** 2, axis=1)
@@ -280,8 +313,29 @@ class _Problem:
             raise NumericalError(f"{self.case.name}: no start of the parameters has a result for "
                                  "all data")  # fmt: skip
         every = range(len(x))
-        found = [self.minimize(starts[i], every, 30) for i in dict.fromkeys([0, *order])]
-        return self.minimize(min(found, key=lambda one: one[1])[0], every)
+        found: list[tuple[Floats, float]] = []
+        for i in dict.fromkeys([0, *order]):
+            found.append(self.minimize(starts[i], every, 30))
+            found.sort(key=lambda one: one[1])
+            # the same from two starts
+            if len(found) > 1 and found[1][1] < (1 + 1e-6) * found[0][1]:
+                break
+        return self.minimize(self.in_order(found[0][0]), every)
+
+    def in_order(self, x: Floats) -> Floats:
+        """The same with the terms of series in the order of their times in the guess."""
+        x = x.copy()
+        terms: dict[tuple[str, str], list[int]] = {}
+        for i, address in enumerate(self.free):
+            if found := re.fullmatch(r"(.+\.)(moduli|times|rates)\(\d+\)", address):
+                terms.setdefault((found[1], found[2]), []).append(i)
+        for (name, key), times in terms.items():
+            moduli = terms.get((name, "moduli"), [])
+            if key != "moduli" and len(moduli) == len(times):
+                wanted, order = np.argsort(self.guess[times]), np.argsort(x[times])
+                for places in (times, moduli):
+                    x[np.array(places)[wanted]] = x[np.array(places)[order]]
+        return x
 
 
 def identify(
@@ -355,18 +409,22 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     """What the fit says; refused if a combination is not determined."""
     case, free, dof = problem.case, problem.free, problem.dof
     every = range(len(x))
-    slopes = problem.derivatives(x, every) / problem.sigma[:, None]
+    slopes = problem.derivatives(x) / problem.sigma[:, None]
     scale = math.sqrt(chi2 / dof) if problem.estimated else 1.0
-    relative = slopes * (problem.sigma / np.abs(problem.value).clip(1e-300))[:, None]
-    relative = relative[np.isfinite(relative).all(axis=1)]
-    lost = _lost(slopes, scale, relative)
-    if lost.size:
-        raise NumericalError(_not_determined(problem, x, lost))
     eigenvalues, vectors = np.linalg.eigh(slopes.T @ slopes / scale**2)
+    eigenvalues = eigenvalues.clip(1 / OPEN**2)
     covariance = (vectors / eigenvalues) @ vectors.T
+    limits = [_intervals(problem, x, chi2, scale, covariance, i) for i in every]
+    free_of_limits = [i for i in every if limits[i][-1] == (0.0, math.inf)]
+    if free_of_limits:
+        own = slopes[:, free_of_limits] / scale
+        values, directions = np.linalg.eigh(own.T @ own)
+        if values[0] < 1 / UNDETERMINED**2:
+            directions = directions[:, values < 1 / UNDETERMINED**2]
+        lost = np.eye(len(x))[:, free_of_limits] @ directions
+        raise NumericalError(_not_determined(problem, x, lost))
     for at, value in zip(free, np.exp(x), strict=True):
         case[at] = float(value)
-    limits = [_intervals(problem, x, chi2, scale, covariance, i) for i in every]
     deviations = np.sqrt(np.diag(covariance))
     estimates = tuple(
         Estimate(
@@ -421,17 +479,6 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     )
 
 
-def _lost(slopes: Floats, scale: float, relative: Floats) -> Floats:
-    """Directions of the logarithms that the data do not determine, shape (n, directions)."""
-    _, singular, rows = np.linalg.svd(slopes / max(scale, 1e-300), full_matrices=False)
-    lost = []
-    for value, direction in zip(singular, rows, strict=True):
-        response = np.sqrt(np.mean((relative @ direction) ** 2)) if len(relative) else 1.0
-        if response < NO_RESPONSE or value * UNDETERMINED < 1:
-            lost.append(direction)
-    return np.array(lost).T
-
-
 def _not_determined(problem: _Problem, x: Floats, lost: Floats) -> str:
     """Line that says which combinations the data determine, and what would fix the rest."""
     free = problem.free
@@ -472,7 +519,7 @@ def _responds(problem: _Problem, x: Floats, lost: Floats, name: str) -> bool:
         found = block.quantities(problem.case, problem.free, np.exp(points), [name])
         return np.log(np.abs(found[:, :, 0]))
 
-    slopes = problem.derivatives(x, range(len(x)), logarithms)
+    slopes = problem.derivatives(x, logarithms)
     known = np.linalg.svd(slopes @ lost, compute_uv=False)
     return len(known) >= lost.shape[1] and bool(known.min() > NEXT_ERROR)
 
@@ -481,50 +528,58 @@ def _intervals(
     problem: _Problem, x: Floats, chi2: float, scale: float, covariance: Floats, i: int
 ) -> list[tuple[float, float]]:
     """Profile intervals of a parameter, one of each of LEVELS."""
-    intervals = []
-    for level in LEVELS:
-        half = (1 + level) / 2
-        width = stdtrit(problem.dof, half) if problem.estimated else ndtri(half)
-        ends = [
-            _end(problem, x, chi2, scale, covariance, i, side * float(width)) for side in (-1, 1)
-        ]
-        intervals.append((float(np.exp(x[i] + ends[0])), float(np.exp(x[i] + ends[1]))))
-    return intervals
+    widths = [
+        float(stdtrit(problem.dof, half) if problem.estimated else ndtri(half))
+        for half in ((1 + level) / 2 for level in LEVELS)
+    ]
+    ends = [_ends(problem, x, chi2, scale, covariance[:, i], i, side, widths) for side in (-1, 1)]
+    return [(math.exp(low), math.exp(high)) for low, high in zip(*ends, strict=True)]
 
 
-def _end(
+def _ends(
     problem: _Problem, x: Floats, chi2: float, scale: float, covariance: Floats, i: int,
-    width: float,
-) -> float:  # fmt: skip
-    """Change of a logarithm at which the smallest sum of squares is larger by width^2."""
+    side: int, widths: Sequence[float],
+) -> list[float]:  # fmt: skip
+    """Logarithms at which the smallest sum of squares is larger by width^2; inf where it never is.
+
+    The root z of the rise is next to linear: from the last point with less than the width the line
+    leads on, and a point with more closes the bracket.
+    """
     others = [j for j in range(len(x)) if j != i]
-    ratio = covariance[:, i] / covariance[i, i]
-    good, z_good, bad = 0.0, 0.0, None
-    shift = width * math.sqrt(covariance[i, i])
-    for _ in range(25):
-        if abs(shift) > OPEN:
-            return math.copysign(math.inf, width)
-        start = x + ratio * shift
-        start[i] = x[i] + shift
-        _, found = problem.minimize(start, others, 30)
-        if not math.isfinite(found):
-            bad = shift
-            if abs(bad - good) < 1e-3 * abs(bad):
-                return good
-            shift = (good + bad) / 2
-            continue
-        z = math.copysign(math.sqrt(max(found - chi2, 0.0)) / max(scale, 1e-300), width)
-        if abs(z - width) < 5e-3 * abs(width):
-            return shift
-        # on a straight line in z, but at most threefold, and never beyond what has no result
-        slope = (z - z_good) / (shift - good)
-        good, z_good, last = shift, z, good
-        shift += (width - z) / slope if slope > 0 else shift - last
-        if abs(shift) > 3 * abs(good):
-            shift = 3 * good
-        if bad is not None and abs(shift) > abs(bad):
-            shift = (good + bad) / 2
-    return good
+    reach = OPEN + max(0.0, side * (problem.guess[i] - x[i]))
+    error = math.sqrt(covariance[i])
+    slope_of_others = covariance / covariance[i]
+    inside, z, point, rate = 0.0, 0.0, x, 1 / error
+    outside: list[tuple[float, float]] = []
+    ends = []
+    for width in widths:
+        outside = [one for one in outside if one[1] > width]
+        for _ in range(25):
+            if outside and outside[-1][1] < STEEP * width:
+                far, z_far = outside[-1]
+                trial = inside + (far - inside) * max(0.05, (width - z) / (z_far - z))
+            elif outside:
+                trial = (inside + outside[-1][0]) / 2
+            else:
+                step = (width - z) / rate
+                trial = min(reach, inside + min(step, 2 * inside + LONGEST))
+            start = point + (trial - inside) * side * slope_of_others
+            start[i] = x[i] + side * trial
+            found_at, found = problem.minimize(start, others, 30, 1e-5)
+            rise = math.sqrt(max(found - chi2, 0.0)) / max(scale, 1e-300)
+            if rise < width:
+                if trial > inside and rise > z:
+                    rate = (rise - z) / (trial - inside)
+                    slope_of_others = side * (found_at - point) / (trial - inside)
+                inside, z, point = trial, rise, found_at
+            else:
+                outside.append((trial, rise))
+            if abs(rise - width) < 5e-3 * width or inside >= reach:
+                break
+            if outside and outside[-1][0] - inside < 1e-3 * outside[-1][0]:
+                break
+        ends.append(x[i] + side * trial if inside < reach else side * math.inf)
+    return ends
 
 
 def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
@@ -539,7 +594,7 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
         found = probe.quantities(case, free, np.exp(points), list(NEXT))
         return np.log(np.abs(found.reshape(len(points), -1)))
 
-    slopes = problem.derivatives(x, range(len(x)), logarithms) / NEXT_ERROR
+    slopes = problem.derivatives(x, logarithms) / NEXT_ERROR
     fisher = (vectors * eigenvalues) @ vectors.T
     now = np.sqrt(np.diag(np.linalg.inv(fisher)))
     best, where = 1.0, None
@@ -567,7 +622,7 @@ def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[fl
     def cor(points: Floats) -> Floats:
         return probe.predict(problem.case, problem.free, np.exp(points))
 
-    slopes = problem.derivatives(x, range(len(x)), cor)
+    slopes = problem.derivatives(x, cor)
     deviation = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
     middle, half = cor(x[None])[0], float(ndtri(0.975)) * deviation
     columns = {"velocity": grid, "cor": middle, "low": middle - half, "high": middle + half}
@@ -650,7 +705,7 @@ def _finite(interval: tuple[float, float]) -> list[float | None]:
 
 
 def _percent(error: float) -> str:
-    return f"{100 * error:.2g} %"
+    return f"{100 * error:.2g} %" if error < 1 else f"{100 * error:.0f} %"
 
 
 def _report(found: Identification) -> str:

@@ -195,6 +195,9 @@ def master(
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
     curves = sorted((c for name in names for c in read_curves(name)), key=lambda c: c.temperature)
+    if any(math.isnan(curve.temperature) for curve in curves):
+        raise InputError(f"{names[0]}: found no column of temperatures, expected one named T, or "
+                         f"{names[0]}@-20C for a file of one temperature")  # fmt: skip
     if len(curves) < 2 or len({curve.dynamic for curve in curves}) > 1:
         raise InputError("expected moduli of one kind at two or more temperatures")
     temperatures = np.array([curve.temperature for curve in curves])
@@ -222,7 +225,10 @@ def master(
 
 
 def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
-    """Curves of a file: one per temperature, or per set where it has a column of that name."""
+    """Curves of a file: one per temperature, or per set where it has a column of that name.
+
+    A file without temperatures is one curve at nan.
+    """
     path, _, given = os.fspath(name).partition("@")
     try:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
@@ -236,8 +242,7 @@ def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
     head = next((i for i, row in enumerate(rows) if len(row) > 2 and any(
         _TEMPERATURE.fullmatch(cell.strip()) for cell in row)), None)  # fmt: skip
     if head is None:
-        raise InputError(f"{path}: found no column of temperatures, expected one named T, or "
-                         f"{path}@-20C for a file of one temperature")  # fmt: skip
+        return [_curve(path, lines, math.nan)]
     cells = [cell.strip() for cell in rows[head]]
     place = next(i for i, cell in enumerate(cells) if _TEMPERATURE.fullmatch(cell))
     found = _TEMPERATURE.fullmatch(cells[place])
@@ -283,7 +288,8 @@ def _curve(path: str, lines: Sequence[str], temperature: float) -> Curve:
             columns = list(read_moduli(file).items())
         except Error as error:
             text = str(error).replace(str(file), path)
-            raise type(error)(f"{text} (at {temperature:.2f} K)") from None
+            at = "" if math.isnan(temperature) else f" (at {temperature:.2f} K)"
+            raise type(error)(text + at) from None
     order = slice(None) if columns[0][0] == "frequency" else slice(None, None, -1)
     moduli = np.array([column[order] for _, column in columns[1:]])
     return Curve(temperature, columns[0][0] == "frequency", columns[0][1][order], moduli)

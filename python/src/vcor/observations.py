@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 import re
@@ -17,7 +18,7 @@ from . import _library
 from ._library import Error, FileError, Floats, InputError
 from .case import Case
 from .data import Data
-from .fit import read_moduli
+from .master_curve import read_curves
 
 Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
 
@@ -30,6 +31,8 @@ SETTINGS = {
     "radius": "sphere.radius",
     "mass": "sphere.mass",
 }
+#: Difference of temperatures that is none [K]
+SAME_TEMPERATURE = 1.0
 
 
 class Block(Protocol):
@@ -176,36 +179,51 @@ class Record:
 
 
 class Moduli:
-    """Relaxation moduli, or storage and loss moduli, of a material."""
+    """Relaxation moduli, or storage and loss moduli, of a material, at one temperature or more."""
 
-    def __init__(self, source: str, columns: Mapping[str, Floats], material: str) -> None:
+    def __init__(
+        self, source: str, columns: Mapping[str, Floats], material: str, case: Case
+    ) -> None:
         self.source, self.material = source, material
         self.dynamic = "frequency" in columns
         names = ["storage_modulus", "loss_modulus"] if self.dynamic else ["relaxation_modulus"]
-        at = columns["frequency" if self.dynamic else "time"]
-        self.points = at
-        self.at = np.tile(at, len(names))
-        self.quantity = [name for name in names for _ in at]
+        across = "frequency" if self.dynamic else "time"
+        for name in (across, *names):
+            if not (columns.get(name, np.empty(0)) > 0).all() or name not in columns:
+                raise InputError(f"{source}: expected a column {name} with numbers > 0")
+        self.points = columns[across]
+        self.at = np.tile(self.points, len(names))
+        self.quantity = [name for name in names for _ in self.points]
         self.value = np.concatenate([columns[name] for name in names])
         self.sigma = np.concatenate(
-            [columns.get(f"{name}_sigma", np.full(len(at), np.nan)) for name in names]
+            [columns.get(f"{name}_sigma", np.full(len(self.points), np.nan)) for name in names]
         )
+        at = columns.get("temperature", np.full(len(self.points), np.nan))
+        if case[f"{material}.shift"] is None and np.ptp(at) < SAME_TEMPERATURE:
+            at = np.full(len(at), np.nan)
+        #: Points at each temperature [K], nan: that of the case
+        self.groups = {float(t): np.flatnonzero((at == t) | np.isnan(at)) for t in np.unique(at)}
+        self._moduli(case)
+
+    def _moduli(self, case: Case) -> Floats:
+        """Moduli of a case, which is changed."""
+        found = np.empty(len(self.points), dtype=complex)
+        for temperature, where in self.groups.items():
+            if math.isfinite(temperature):
+                case["impact.temperature"] = temperature
+            read = case._handle.complex_modulus if self.dynamic else case._handle.relaxation
+            found[where] = read(self.material, self.points[where])
+        return np.concatenate([found.real, found.imag]) if self.dynamic else found.real
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values."""
         moduli = np.full((len(values), len(self.at)), np.nan)
         changed = case.copy()
         for row, numbers in zip(moduli, values, strict=True):
-            try:
+            with contextlib.suppress(Error):
                 for address, number in zip(addresses, numbers, strict=True):
                     changed[address] = float(number)
-                if self.dynamic:
-                    found = changed._handle.complex_modulus(self.material, self.points)
-                    row[:] = np.concatenate([found.real, found.imag])
-                else:
-                    row[:] = changed._handle.relaxation(self.material, self.points)
-            except Error:
-                continue
+                row[:] = self._moduli(changed)
         return moduli
 
     def window(self, case: Case) -> tuple[float, float]:
@@ -266,21 +284,29 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
-        return Moduli(name, columns, materials[0])
+        return Moduli(name, columns, materials[0], case.copy())
     return Impacts(name, columns, case)
 
 
 def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
-    """Columns of a data file of impacts or of a record; moduli as `vcor fit` reads them."""
+    """Columns of a data file of impacts or of a record; moduli as `vcor master` reads them."""
     impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
     try:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
     head = next((line for line in lines if line.split("#")[0].strip()), "")
-    if impacts & set(re.findall(r"\w+", head)):
+    words = set(re.findall(r"\w+", head))
+    if impacts & words or any(word.endswith("_sigma") for word in words):
         return Data(path).columns
-    return read_moduli(path)
+    curves = read_curves(path)
+    names = ["frequency", "storage_modulus", "loss_modulus"]
+    if not curves[0].dynamic:
+        names = ["time", "relaxation_modulus"]
+    rows = [(curve.at, *curve.moduli) for curve in curves]
+    columns = [np.concatenate(parts) for parts in zip(*rows, strict=True)]
+    temperatures = [np.full(len(curve.at), curve.temperature) for curve in curves]
+    return {**dict(zip(names, columns, strict=True)), "temperature": np.concatenate(temperatures)}
 
 
 def number(case: Case, address: str) -> float:

@@ -159,7 +159,7 @@ def sensitivities(
 ) -> xr.DataArray:
     """Elasticities d ln q/d ln p of results, by differences of solutions at 1e-11.
 
-    At the end of a parameter's range the difference is one-sided, of second order.
+    At the end of a parameter's range the differences are one-sided.
 
     Parameters
     ----------
@@ -177,17 +177,21 @@ def sensitivities(
     """
     case = _accurate(case)
     values = np.array([_number(case, address) for address in parameters])
-    steps = np.array([-2, -1, 1, 2]) * STEP
-    table = np.tile(values, (4 * len(values) + 1, 1))
-    for i in range(len(values)):
-        table[4 * i : 4 * i + 4, i] *= np.exp(steps)
-    results = _solve(case, list(parameters), table, quantities)
-    found, middle = results[:-1].reshape(len(values), 4, -1), results[-1]
-    slope = np.einsum("ijk,j->ki", found, [1, -8, 8, -1]) / (12 * STEP)
-    # beside the end of a range, of second order
-    for side, far, near in ((1, 0, 1), (-1, 3, 2)):
-        one_sided = side * (3 * middle - 4 * found[:, near] + found[:, far]).T / (2 * STEP)
-        slope = np.where(np.isnan(slope), one_sided, slope)
+    middle = _solve(case, list(parameters), values[None], quantities)[0]
+    slope = np.full((len(quantities), len(values)), np.nan)
+    # central, and one-sided beside the end of a range
+    for steps, weights in (
+        ((-2, -1, 1, 2), (1, -8, 8, -1)),
+        ((0, 1, 2, 3, 4), (-25, 48, -36, 16, -3)),
+        ((0, -1, -2, -3, -4), (25, -48, 36, -16, 3)),
+    ):
+        rest = np.flatnonzero(np.isnan(slope).any(axis=0))
+        table = np.tile(values, (len(rest), len(steps), 1))
+        for row, i in zip(table, rest, strict=True):
+            row[:, i] *= np.exp(np.array(steps) * STEP)
+        found = _solve(case, list(parameters), table.reshape(-1, len(values)), quantities)
+        found = found.reshape(len(rest), len(steps), len(quantities))
+        slope[:, rest] = np.einsum("ijk,j->ki", found, weights) / (12 * STEP)
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = slope / middle[:, None]
     return xr.DataArray(

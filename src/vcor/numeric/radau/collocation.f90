@@ -23,12 +23,14 @@ module vcor_numeric_radau_collocation
    private
 
    public :: collocation_t, panel_map_t, new_collocation
-   public :: closing, linear
+   public :: closing, linear, most_steps
 
    !> Index of the map of a step in t
    integer, parameter :: linear = -1
    !> Index of the map of a step in the square root of the time that is left at its end
    integer, parameter :: closing = linear - 1
+   !> Most steps in x = sqrt(t), from x = 0, h, .. most_steps*h: more take memory, fewer take time
+   integer, parameter :: most_steps = 12
 
    !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
    !>
@@ -79,8 +81,9 @@ module vcor_numeric_radau_collocation
       !> What settles at the end of the map `closing`
       type(settling_t) :: settling
       !> Maps by index n >= 0, for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
-      !> `closing` for one in sqrt(time left), shape (closing:)
-      type(panel_map_t), allocatable :: map(:)
+      !> `closing` for one in sqrt(time left). (Of two allocatable ones in a solver that is copied
+      !> gfortran 12 releases one.)
+      type(panel_map_t) :: map(closing:most_steps)
    contains
       procedure :: times, interpolate, extend, slopes, crossing
       procedure, private :: powers
@@ -93,7 +96,7 @@ contains
       type(collocation_t), intent(out) :: self
       !> Number of stages, 2 .. width
       integer, intent(in) :: stages
-      !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, steps >= 0
+      !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, 0 .. most_steps
       integer, intent(in) :: steps
       type(error_t), allocatable, intent(out) :: error
 
@@ -115,7 +118,6 @@ contains
       if (allocated(error)) return
       self%weight(1:stages) = matrix(stages, :)
 
-      allocate (self%map(closing:steps))
       call diagonalise(matrix, self%node(1:stages), 2.0_wp, -1.0_wp, self%map(closing), error)
       if (allocated(error)) return
       call diagonalise(matrix, self%node(1:stages), 1.0_wp, 0.0_wp, self%map(linear), error)

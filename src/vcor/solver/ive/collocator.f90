@@ -4,8 +4,8 @@ module vcor_solver_ive_collocator
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
-   use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
-   use vcor_solver_ive_tuning, only : least_tolerance, most_steps, near_tolerance, newton_tolerance
+   use vcor_numeric_radau_collocation, only : collocation_t, most_steps, new_collocation
+   use vcor_solver_ive_tuning, only : least_tolerance, near_tolerance, newton_tolerance
    implicit none
    private
 

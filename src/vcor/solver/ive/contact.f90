@@ -14,6 +14,7 @@ module vcor_solver_ive_contact
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
+   use vcor_numeric_radau_collocation, only : most_steps
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
    use vcor_solver_ive_course, only : course_t, share
@@ -31,7 +32,7 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, &
-      most_steps, next_to_branch, panel_share, peak_share, rounding_of_force, &
+      next_to_branch, panel_share, peak_share, rounding_of_force, &
       rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
       usual_accuracy, usually_better
    implicit none

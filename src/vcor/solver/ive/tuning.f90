@@ -91,8 +91,6 @@ module vcor_solver_ive_tuning
    !> each halving from `levels_error` on
    real(wp), parameter :: levels_error = 3.3e-7_wp ! tested
    real(wp), parameter :: levels_base = 16.0_wp ! tested
-   !> Steps in x = sqrt(t) are taken from x = 0, h, .. most_steps*h
-   integer, parameter :: most_steps = 12 ! time
    !> Length over that the first step was meant to have, below which a step grows in any case
    real(wp), parameter :: owed_length = 0.6_wp ! tested
 
