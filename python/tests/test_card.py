@@ -31,6 +31,9 @@ MODELS = {
     "power_law": "model='power_law', equilibrium_modulus=2e6, coefficient=8.85e5, exponent=0.5",
     "springpot": "model='power_law', equilibrium_modulus=1e6, coefficient=5e6, exponent=0.2",
     "cerf": "model='cerf', equilibrium_modulus=2e6, relaxing_modulus=5e8, beta=500.0",
+    "exponential": "model='mittag_leffler', equilibrium_modulus=1e7, relaxing_modulus=2e9, "
+    "exponent=1.0, time=1e-4",
+    "whole_numbers": PRONY + ", shift='wlf', reference_temperature=298, wlf_c1=9, wlf_c2=200",
     "mittag_leffler": "model='mittag_leffler', equilibrium_modulus=1e7, relaxing_modulus=2e9, "
     "exponent=0.4, time=1e-5",
 }
@@ -73,6 +76,9 @@ def test_a_material_comes_back(model, tmp_path):
     case = case_of(MODELS[model])
     made = vcor.card(case, "rubber", terms=17)
     codes = ALL if len(made.moduli) == 1 else SERIES
+    if made.shift:
+        assert made.shift["wlf_c1"] == 9 and len(made.shift) == 4
+        codes = [code for code in codes if FORMATS[code].shifts]
     for units, code in zip([*UNITS] * 2, codes, strict=False):
         assert_same(back(tmp_path, made.text(code, units)), made)
     other = with_material(case, back(tmp_path, made.text("abaqus")))
@@ -92,7 +98,7 @@ def test_any_series_comes_back(code, tmp_path):
                      {"shift": "arrhenius", "reference_temperature": rng.uniform(200, 400),
                       "activation_energy": rng.uniform(1e4, 1e6)}][rng.integers(3)]  # fmt: skip
         made = Card(
-            "a name", rng.uniform(-0.4, 0.499), 10 ** rng.uniform(2, 9),
+            "a, name", rng.uniform(-0.4, 0.499), 10 ** rng.uniform(2, 9),
             tuple(10 ** rng.uniform(2, 10, n)), tuple(10 ** rng.uniform(-9, 9, n)),
             rng.uniform(10, 9000), shift,
         )  # fmt: skip
@@ -358,9 +364,12 @@ def test_what_a_card_cannot_hold_is_said():
 
     for code in ALL:
         refused("dashpot", code, "model='prony', equilibrium_modulus=1e6, viscosity=10.0")
-        refused("is elastic", code, "model='elastic', modulus=1e9")
+        refused("does not relax", code, "model='elastic', modulus=1e9")
         refused("vertical shift|shift 'wlf'", code, MODELS["sls"] + WLF + ", vertical_shift=.true.")
-    refused("is rigid", "abaqus", "model='rigid'")
+    for keys in ("model='rigid'", "model='prony', equilibrium_modulus=1e6",
+                 "model='sls', glassy_modulus=1e7, alpha=5.0, beta=5.0"):  # fmt: skip
+        refused("does not relax", "abaqus", keys)
+    refused("alpha", "abaqus", "model='sls', glassy_modulus=1e7, alpha=7.0, beta=5.0")
     many = "model='prony', equilibrium_modulus=1e6, moduli=18*1e6, times=" + ",".join(
         f"1e{i}" for i in range(-9, 9)
     )
@@ -455,6 +464,10 @@ def test_the_command_refuses_in_one_line(tmp_path, capsys):
         capsys, *words, "--poisson-ratio", "0.49", "--output", case, code=2
     )
     assert "--band" in command(capsys, *words, "--band", "1:x", code=2)
+    assert "--modulus is for reading" in command(capsys, *words, "--modulus", "1", code=2)
+    (tmp_path / "card.inp").write_text(ANSYS)
+    given = [tmp_path / "card.inp", "--accuracy", "0.01"]
+    assert "--accuracy is for writing" in command(capsys, *given, code=2)
     assert "--poisson-ratio" in command(capsys, *words, "--poisson-ratio", "0.6", code=2)
 
 

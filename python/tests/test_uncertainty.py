@@ -188,3 +188,9 @@ def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
     assert error.startswith("vcor: error: ")
     assert error.count("\n") == 1
     assert said in error
+
+
+def test_a_list_is_varied_term_by_term():
+    case = vcor.read(PAPER / "butyl_prony.nml")
+    with pytest.raises(vcor.UsageError, match=r"such as butyl.moduli\(1\)"):
+        vcor.propagate(case, {"butyl.moduli": 0.05})

@@ -322,7 +322,7 @@ def _rounded(value: str | float | tuple[float, ...]) -> str | float | tuple[floa
     """Numbers without the last digit, which conversions leave behind."""
     if isinstance(value, tuple):
         return tuple(float(f"{one:.15g}") for one in value)
-    return value if isinstance(value, str) else float(f"{value:.15g}")
+    return value if isinstance(value, (str, bool)) else float(f"{value:.15g}")
 
 
 def _row(*values: float | str | None) -> str:
@@ -349,7 +349,8 @@ def _law(law: str, *constants: float) -> dict[str, str | float]:
 def _write_abaqus(card: Card) -> list[str]:
     law, gas = str(card.shift.get("shift", "")), _number(_gas(card.units))
     lines = [f"*PHYSICAL CONSTANTS, ABSOLUTE ZERO=0., UNIVERSAL GAS={gas}"] * (law == "arrhenius")
-    lines.append(f"*MATERIAL, NAME={card.name}")
+    name = card.name if re.fullmatch(r"[A-Za-z]\w*", card.name) else f'"{card.name}"'
+    lines.append(f"*MATERIAL, NAME={name}")
     lines += [] if card.density is None else ["*DENSITY", f"{_number(card.density)},"]
     terms = zip(card.ratios, card.ratios, card.times, strict=True)
     rows = [(card.glassy_modulus, card.poisson_ratio), *terms, card.constants]
@@ -363,8 +364,9 @@ def _read_abaqus(source: Source) -> Card:
     for i, head, lines in source.blocks("*", ("**",)):
         word, *pairs = head.split(",")
         options = dict(re.sub(r"\s", "", pair).upper().partition("=")[::2] for pair in pairs)
-        title = re.search(r"(?i)\bname\s*=\s*\"?([^,\"]+)", head)
-        blocks.append((word.strip().upper(), i, options, lines, title[1].strip() if title else ""))
+        title = re.search(r'(?i)\bname\s*=\s*("[^"]*"|[^,]*)', head)
+        name = title[1].strip(' "') if title else ""
+        blocks.append((word.strip().upper(), i, options, lines, name))
     starts = [k for k, block in enumerate(blocks) if block[0] == "MATERIAL"] + [len(blocks)]
     parts = {blocks[a][4]: blocks[a:b] for a, b in itertools.pairwise(starts)}
     viscous = [n for n, part in parts.items() if any(one[0] == "VISCOELASTIC" for one in part)]

@@ -21,6 +21,8 @@ from .case import Case
 _BAND = (1e-2, 2.0)
 #: Points per decade at which a sum of exponentials is fitted and its error measured
 _POINTS = 40
+#: Relative error of a sum
+_ACCURACY = 1e-3
 #: Weight of the integral before the band, beside that of a point in it
 _AREA_WEIGHT = 10.0
 #: Most terms of a sum
@@ -29,11 +31,10 @@ _MOST_TERMS = 40
 _IMPACT = """
 &impact velocity = 1.0 /
 &sphere radius = 1.0, mass = 1.0, material = '{0}' /
-&plate material = '{0}' /
+&plate material = '{0}', waves = 'none' /
 """
-_SHIFT = (
-    "shift", "reference_temperature", "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift",
-)  # fmt: skip
+#: Numbers of a shift law
+_SHIFT = ("reference_temperature", "wlf_c1", "wlf_c2", "activation_energy")
 
 
 def card(
@@ -42,7 +43,7 @@ def card(
     *,
     poisson_ratio: float | None = None,
     band: tuple[float, float] | None = None,
-    accuracy: float = 1e-3,
+    accuracy: float = _ACCURACY,
     terms: int = _MOST_TERMS,
     use_shift: bool = True,
 ) -> Card:
@@ -79,6 +80,8 @@ def card(
         has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
         case = Case(text if has_impact else text + _IMPACT.format(material), name=os.fspath(case))
 
+    case.text()  # checks it
+
     def of(key: str) -> float:
         value = case[f"{material}.{key}"]
         return float(value) if isinstance(value, (int, float)) else 0.0
@@ -87,8 +90,6 @@ def card(
         return tuple(np.atleast_1d(case[f"{material}.{key}"] or ()).tolist())
 
     model = str(case[f"{material}.model"])
-    if model in ("rigid", "elastic"):
-        raise InputError(f"{case.name}: '{material}' is {model}, expected a material that relaxes")
     if of("viscosity") > 0:
         raise InputError(
             f"{case.name}: '{material}' has a dashpot (viscosity), which no card holds; expected "
@@ -96,9 +97,9 @@ def card(
         )
     shift: dict[str, str | float] = {}
     if case[f"{material}.shift"]:
-        found = {key: case[f"{material}.{key}"] for key in _SHIFT}
-        shift = {key: one for key, one in found.items() if isinstance(one, (str, float)) and one}
-        shift |= {"vertical_shift": "yes"} if found["vertical_shift"] else {}
+        shift = {"shift": str(case[f"{material}.shift"])}
+        shift |= {key: of(key) for key in _SHIFT if case[f"{material}.{key}"]}
+        shift |= {"vertical_shift": True} if case[f"{material}.vertical_shift"] else {}
         if case["impact.temperature"] is not None:
             case["impact.temperature"] = of("reference_temperature")
     # in tension, whatever the moduli of the case are
@@ -108,13 +109,18 @@ def card(
     remarks: tuple[str, ...] = ()
     moduli: tuple[float, ...]
     times: tuple[float, ...]
-    if model == "sls":
-        share = of("alpha") / of("beta")
-        equilibrium = of("glassy_modulus") * share
-        moduli, times = (of("glassy_modulus") * (1 - share),), (1 / of("beta"),)
+    if model in ("rigid", "elastic"):
+        equilibrium, moduli, times = 0.0, (), ()
+    elif model == "sls":
+        share = of("alpha") / of("beta") if of("beta") else 1.0
+        equilibrium, moduli = of("glassy_modulus") * share, (of("glassy_modulus") * (1 - share),)
+        times = (1 / of("beta") if of("beta") else 1.0,)
     elif model == "prony":
         equilibrium, moduli, times = of("equilibrium_modulus"), series("moduli"), series("times")
         times = times or tuple(1 / rate for rate in series("rates"))
+    elif model == "mittag_leffler" and of("exponent") == 1:
+        equilibrium, moduli = of("equilibrium_modulus"), (of("relaxing_modulus"),)
+        times = (of("time"),)
     else:
         if band is None and of("valid_from") and of("valid_to"):
             band = of("valid_from"), of("valid_to")
@@ -130,6 +136,8 @@ def card(
         remarks = (f"{len(moduli)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
                    f"from {band[0]:.3g} to {band[1]:.3g} s",)  # fmt: skip
         size = 1.0
+    if not any(moduli):
+        raise InputError(f"{case.name}: '{material}' does not relax, which needs no such card")
     ratio = of("poisson_ratio") if poisson_ratio is None else poisson_ratio
     made = Card(material, ratio, size * equilibrium, tuple(size * one for one in moduli), times,
                 of("density") or None, shift if use_shift else {}, remarks)  # fmt: skip
@@ -260,7 +268,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     what = "times [s] where a sum of exponentials follows the model; default: those of its data, "
     add("--band", metavar="FROM:TO", help=what + "or a hundredth to twice the contact time")
     what = "largest relative error of such a sum; default: 1e-3"
-    add("--accuracy", type=float, default=1e-3, metavar="ERROR", help=what)
+    add("--accuracy", type=float, default=_ACCURACY, metavar="ERROR", help=what)
     what = "reading: modulus at time zero in the units of the card, if the card has none"
     add("--modulus", type=float, metavar="E", help=what)
     with _command.one_line():
@@ -275,6 +283,7 @@ def _work(options: argparse.Namespace) -> None:
     if re.search(r"(?im)^\s*&material\b", _text(options.file)):
         if not (options.material and options.code):
             raise UsageError(f"{options.file} is a case, expected --material and --for")
+        _refuse(options, "reading a card", modulus=None)
         made = card(
             options.file, options.material, poisson_ratio=nu, band=_band(options.band),
             accuracy=options.accuracy, terms=min(FORMATS[options.code].terms, _MOST_TERMS) - 1 or 1,
@@ -282,6 +291,7 @@ def _work(options: argparse.Namespace) -> None:
         )  # fmt: skip
         text, notes = made.text(options.code, options.units or "SI"), made.notes(options.code)
     else:
+        _refuse(options, "writing a card", band=None, accuracy=_ACCURACY)
         made = read_card(
             options.file, code=options.code, material=options.material, units=options.units,
             modulus=options.modulus, poisson_ratio=nu, use_shift=not options.no_shift,
@@ -295,6 +305,13 @@ def _work(options: argparse.Namespace) -> None:
         sys.stdout.write(text)
     for note in notes:
         sys.stderr.write(f"vcor: note: {note}\n")
+
+
+def _refuse(options: argparse.Namespace, what: str, **defaults: float | None) -> None:
+    """Refuse options that would be without effect."""
+    for name, default in defaults.items():
+        if getattr(options, name) != default:
+            raise UsageError(f"--{name} is for {what}")
 
 
 def _band(word: str | None) -> tuple[float, float] | None:

@@ -323,7 +323,10 @@ def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
     best = int(np.argmin(values))
     if best in (0, len(trials) - 1):
         pair = f"{cold.temperature:.2f} and {warm.temperature:.2f} K"
-        raise NumericalError(f"the data at {pair} have no modulus in common")
+        raise NumericalError(
+            f"the data at {pair} have no modulus in common, expected more "
+            "frequencies, or temperatures between"
+        )
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
                             options={"xatol": 1e-8})  # fmt: skip

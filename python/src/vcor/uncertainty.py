@@ -53,7 +53,8 @@ class Spread:
         """Distribution from its text; a number is a relative standard deviation."""
         value = case[address]
         if not isinstance(value, (int, float)):
-            raise UsageError(f"{address}: found {value}, expected a number")
+            one = f"one of them, such as {address}(1)" if isinstance(value, list) else "a number"
+            raise UsageError(f"{address}: found {value}, expected {one}")
         if not isinstance(text, str):
             text = f"{100 * text!r}%"
         try:
