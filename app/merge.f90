@@ -16,8 +16,7 @@ module vcor_app_merge
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
    use vcor_sweep_part, only : new_part
-   use vcor_sweep_quantity, only : point_pending, status_name
-   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_quantity, only : new_summary, point_pending, status_name, summary_t
    use vcor_text, only : integer_text
    use vcor_version, only : version
    implicit none

@@ -21,8 +21,7 @@ module vcor_app_run
    use vcor_kinds, only : wp
    use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
-   use vcor_sweep_summary, only : new_summary, summary_t
-   use vcor_sweep_quantity, only : values_of
+   use vcor_sweep_quantity, only : new_summary, summary_t, values_of
    use vcor_sweep_sweep, only : solve_point, worker_t
    use vcor_verify_comparison, only : model_t
    implicit none

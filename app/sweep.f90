@@ -23,12 +23,10 @@ module vcor_app_sweep
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
-   use vcor_sweep_failures, only : failures_t
    use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
-   use vcor_sweep_points, only : clock, default_threads, monitor_t, solve_points
-   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, quantities, &
-      quantity_place, quantity_t
-   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_points, only : clock, default_threads, failures_t, monitor_t, solve_points
+   use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
+      quantities, quantity_place, quantity_t, summary_t
    implicit none
    private
 

@@ -18,8 +18,7 @@ module vcor_app_validity
    use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
       levels, surroundings_t, thresholds
    use vcor_kinds, only : wp
-   use vcor_sweep_quantity, only : quantity_place, quantity_value
-   use vcor_sweep_summary, only : summary_t
+   use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_text, only : integer_text, printable, real_text
    use vcor_verify_comparison, only : differ, model_t, solve_model
    implicit none

@@ -30,10 +30,9 @@ module vcor
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    use vcor_solver, only : solve_impact, solver_settings_t
-   use vcor_sweep_failures, only : failures_t
    use vcor_sweep_part, only : new_part
-   use vcor_sweep_points, only : solve_points
-   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_points, only : failures_t, solve_points
+   use vcor_sweep_quantity, only : new_summary, summary_t
    use vcor_sweep_sweep, only : new_sweep, sweep_t
    use vcor_version, only : version
    implicit none

@@ -22,12 +22,10 @@ module vcor_c_api
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
-   use vcor_sweep_failures, only : failures_t
    use vcor_sweep_part, only : most_threads, new_part
-   use vcor_sweep_points, only : default_threads, solve_points
-   use vcor_sweep_quantity, only : history_quantities, point_invalid, quantities, &
-      quantity_names, quantity_place, quantity_t
-   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_points, only : default_threads, failures_t, solve_points
+   use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
+      quantity_names, quantity_place, quantity_t, summary_t
    use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
    use vcor_text, only : canonical_name, integer_text, real_text, shortened
    use vcor_verify_comparison, only : compare

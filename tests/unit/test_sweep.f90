@@ -12,14 +12,12 @@ program test_sweep
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_checks, only : validate
-   use vcor_sweep_failures, only : failures_t
    use vcor_case_grid, only : axis_t, grid_t, new_grid
    use vcor_case_problem, only : problem_of_case, problem_t
-   use vcor_sweep_quantity, only : point_failed, point_invalid, point_pending, status_name, &
-      values_of
-   use vcor_sweep_summary, only : new_summary, summary_t
+   use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
+      status_name, summary_t, values_of
    use vcor_sweep_part, only : new_part, part_t
-   use vcor_sweep_points, only : default_threads, solve_points
+   use vcor_sweep_points, only : default_threads, failures_t, solve_points
    use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
    use vcor_test_watch, only : stops, watch_t
    use vcor_text, only : real_text

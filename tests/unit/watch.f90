@@ -2,7 +2,7 @@
 module vcor_test_watch
    use vcor_error, only : error_internal, error_t, raise
    use vcor_sweep_points, only : monitor_t
-   use vcor_sweep_summary, only : summary_t
+   use vcor_sweep_quantity, only : summary_t
    implicit none
    private
 

@@ -34,8 +34,7 @@ module vcor_io_checkpoint
       new_table, real_column, table_t, text_column, text_value
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
-   use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t
-   use vcor_sweep_summary, only : summary_t
+   use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t, summary_t
    use vcor_text, only : shortened
    use vcor_words, only : join_words
    implicit none

@@ -17,8 +17,8 @@ module vcor_io_results
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_case_grid, only : axis_t, grid_t
-   use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t
-   use vcor_sweep_summary, only : summary_t, values_t
+   use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t, &
+      summary_t, values_t
    use vcor_text, only : integer_text
    implicit none
    private
