@@ -3,6 +3,7 @@
 import ctypes
 import dataclasses
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -45,11 +46,10 @@ def lammps():
 
 
 def test_lammps_does_what_the_header_says(lammps, case, tmp_path):
-    found = vcor.export(case, "lammps", VELOCITIES)
-    first = next(iter(found.options))
-    assert len(found.options) == 6
-    for text, twin in found.options.items():
-        (tmp_path / "in").write_text(str(found).replace(first, text))
+    options = vcor.export(case, "lammps", VELOCITIES).options
+    assert len(options) == 6
+    for law, (text, twin) in enumerate(options.items(), 1):
+        (tmp_path / "in").write_text(str(vcor.export(case, "lammps", VELOCITIES, law=law)))
         for v, e, time in zip(VELOCITIES, twin.cor[::2], twin.time[::2], strict=True):
             words = ["-screen", "none", "-log", "none", "-var", "v", str(v)]
             engine = lammps(cmdargs=words)
@@ -213,6 +213,55 @@ def test_traps_are_named():
     text = str(vcor.export(BEADS, "mujoco", VELOCITIES))
     assert 'solimp="0.99 0.99 0.001"' in text
     assert "priority 1" in text
+
+
+def law_of(text, twin):
+    """Numbers in what is to be written, and the law that they came from."""
+    return [float(x) for x in re.findall(r"(?<![\w.])\d[\d.e+-]*", text)], twin
+
+
+def test_programs_that_are_not_run_here():
+    # MFiX, HERTZIAN: what gives 0.346, 0.540, 0.727, 0.910 is 0.3, 0.5, 0.7, 0.9
+    for e, entered in ((0.346, 0.3), (0.540, 0.5), (0.727, 0.7), (0.910, 0.9)):
+        assert exchange._entered_in_mfix(e) == pytest.approx(entered, abs=1e-3)
+    wall = vcor.pair([RUBBER, STEEL], (0.005,))
+    texts = {name: str(vcor.export(wall, name, VELOCITIES)) for name in exchange.TARGETS}
+    for name in ("mercurydpm", "mfix", "chrono"):
+        assert "was not run" in texts[name]
+    assert "des_en_wall_input(1)" in texts["mfix"]
+    assert "0.346, 0.540, 0.727, 0.910" in texts["mfix"]
+    assert "soft_particles yes" in texts["liggghts"]
+    assert "takes half of the bead's radius" in texts["yade"]
+    assert "twice the reduced mass" in texts["mercurydpm"]
+    assert "UseMaterialProperties(False)" in texts["chrono"]
+    assert "@" not in "".join(texts.values())
+    # what is clipped takes less than e, what is not takes e, and YADE knows by itself
+    entered = {
+        name: [law_of(*one) for one in vcor.export(wall, name, VELOCITIES).options.items()]
+        for name in ("liggghts", "yade", "mercurydpm", "mfix", "chrono")
+    }
+    e = entered["liggghts"][0][1].cor[0]
+    assert entered["liggghts"][0][0][0] == pytest.approx(e, rel=1e-7)
+    assert entered["liggghts"][1][0][0] < e - 0.01
+    (en, young), twin = entered["yade"][0]
+    assert (en, young) == pytest.approx((e, entered["liggghts"][1][0][1] * 2**0.5), rel=1e-6)
+    (time, cor, mass), twin = entered["mercurydpm"][1]
+    k = mass / 2 * (math.pi**2 + math.log(cor) ** 2) / time**2
+    assert (k, -2 * math.log(cor) / time) == pytest.approx(
+        (twin.stiffness, twin.damping / twin.mass), rel=1e-6
+    )
+    (kn, gn), twin = entered["chrono"][2]
+    assert (kn * 0.005, gn * 0.005 * mass / 2) == pytest.approx(
+        (twin.stiffness, twin.damping), rel=1e-6
+    )
+
+
+def test_laws_that_are_not_there():
+    # below exp(-2) a dashpot that never pulls is overdamped: there is no number to enter
+    low = np.full(3, 0.13)
+    assert math.isnan(clipped(LINEAR).fit(VELOCITIES[:3], low, np.ones(3), 1e-3).entered)
+    with pytest.raises(vcor.UsageError, match="expected 1 to 2"):
+        vcor.export(BEADS, "yade", [1.0, 2.0], law=3)
 
 
 def test_command(tmp_path, capsys):

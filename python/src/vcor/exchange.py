@@ -12,7 +12,7 @@ import os
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -37,7 +37,7 @@ MEANING = {
     "cor": "relative speed of the bodies after over before",
 }
 #: Steps of a contact that are advised, and contacts that an input runs
-STEPS, RUNS = 200, 3
+STEPS, RUNS = 400, 3
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,8 @@ class Option:
 
     law: Law
     text: str
+    #: More of its template
+    fill: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -58,14 +60,22 @@ class Target:
     options: tuple[Option, ...] = ()
     #: What to know of numbers for this program
     notes: tuple[str, ...] = ()
-    #: Versions in which the input was run; none: it was not
+    #: Version in which the input was run; none: it was not
     run: str = ""
-    comment: str = "# "
 
 
-def _both(law: Law, text: str, limited: str) -> tuple[Option, Option]:
+#: How lines of a comment begin, by the end of the file's name; others: with #
+COMMENTS = {".c": "// ", ".cpp": "// ", ".dat": "! ", ".xml": ""}
+
+
+def _clipped(law: Law) -> Law:
+    return replace(law, clipped=True)
+
+
+def _both(law: Law, text: str, limited: str, **fill: str) -> tuple[Option, Option]:
     """A law whose force may pull, and the same with forces that are cut off at 0."""
-    return Option(law, text), Option(replace(law, clipped=True), text + limited)
+    cut = {name: value + limited for name, value in fill.items()}
+    return Option(law, text, fill), Option(_clipped(law), text + limited, cut)
 
 
 TARGETS = {
@@ -96,18 +106,151 @@ TARGETS = {
         Target(
             "mujoco",
             (".xml",),
-            (
-                Option(
-                    replace(LINEAR, clipped=True),
-                    'solref="-{omega2} -{gamma}" solimp="0.99 0.99 0.001"',
-                ),
-            ),
+            (Option(_clipped(LINEAR), 'solref="-{omega2} -{gamma}" solimp="0.99 0.99 0.001"'),),
             run="MuJoCo 4.0.0",
-            comment="",
             notes=(
                 "solref is per unit of reduced mass, so that it holds for bodies of any mass; with "
                 "the default solimp e depends on the velocity.",
                 "Without a <pair>: both on both geoms, or on one with priority 1.",
+            ),
+        ),
+        Target(
+            "liggghts",
+            (".in",),
+            _both(
+                HERTZ,
+                "coefficientRestitution {e}, youngsModulus {young}, model hertz",
+                " limitForce on",
+                limit="",
+            ),
+            run="LIGGGHTS-PUBLIC 3.8.0",
+            notes=(
+                "coefficientRestitution must be larger than 0.05 and at most 1; a youngsModulus "
+                "below 5e6 Pa needs soft_particles yes.",
+                "characteristicVelocity is for model hooke only, which is not used here.",
+            ),
+        ),
+        Target(
+            "yade",
+            (".py",),
+            (
+                Option(
+                    _clipped(HERTZ),
+                    "Ip2_FrictMat_FrictMat_MindlinPhys(en={level}), FrictMat(young={young_half})",
+                    {
+                        "material": "FrictMat(young={young_half}, poisson={poisson}, "
+                        "frictionAngle=0, density=1000)",
+                        "physics": "Ip2_FrictMat_FrictMat_MindlinPhys(en={level})",
+                        "force": "Law2_ScGeom_MindlinPhys_Mindlin()",
+                    },
+                ),
+                Option(
+                    _clipped(LINEAR),
+                    "ViscElMat(kn={K_twice}, cn={C_twice})",
+                    {
+                        "material": "ViscElMat(kn={K_twice}, cn={C_twice}, ks=0, cs=0, "
+                        "frictionAngle=0, density=1000)",
+                        "physics": "Ip2_ViscElMat_ViscElMat_ViscElPhys()",
+                        "force": "Law2_ScGeom_ViscElPhys_Basic()",
+                    },
+                ),
+            ),
+            run="YADE 2023.02a",
+            notes=(
+                "Forces never pull. MindlinPhys allows for that by itself (a fit of Thornton et "
+                "al. 2013): en is e. A version without that fit takes what LIGGGHTS takes for "
+                "limitForce on.",
+                "On walls MindlinPhys takes half of the bead's radius: young is larger by sqrt(2).",
+                "kn and cn of two ViscElMat act in series: each is twice that of the contact.",
+            ),
+        ),
+        Target(
+            "mercurydpm",
+            (".cpp",),
+            (
+                Option(
+                    HERTZ,
+                    "setEffectiveElasticModulusAndRestitutionCoefficient({contact_modulus}, {e})",
+                    {"species": "HertzianViscoelastic"},
+                ),
+                Option(
+                    LINEAR,
+                    "setCollisionTimeAndRestitutionCoefficient({time}, {e}, {mass_twice})",
+                    {"species": "LinearViscoelastic"},
+                ),
+            ),
+            notes=(
+                "Forces may pull. The mass of the linear law is that of two equal beads: twice the "
+                "reduced mass.",
+                "Two species need the values of their pair on getMixedObject: means are no law.",
+            ),
+        ),
+        Target(
+            "mfix",
+            (".dat",),
+            (
+                Option(
+                    HERTZ,
+                    "HERTZIAN: e_young = {young}, des_en_input = {e_mfix}",
+                    {
+                        "collision": "HERTZIAN",
+                        "lines": "  e_young(1) = {young}\n  ew_young = {young}\n"
+                        "  v_poisson(1) = {poisson}\n  vw_poisson = {poisson}\n"
+                        "  des_en_input(1) = {e_mfix}\n  des_en_wall_input(1) = {e_mfix}",
+                    },
+                ),
+                Option(
+                    LINEAR,
+                    "LSD: kn = {K}, des_en_input = {e}",
+                    {
+                        "collision": "LSD",
+                        "lines": "  kn = {K}\n  kn_w = {K}\n"
+                        "  des_en_input(1) = {e}\n  des_en_wall_input(1) = {e}",
+                    },
+                ),
+            ),
+            notes=(
+                "Forces may pull. HERTZIAN has the damping of the linear law: 0.3, 0.5, 0.7, 0.9 "
+                "would give 0.346, 0.540, 0.727, 0.910. The value here gives e.",
+            ),
+        ),
+        Target(
+            "chrono",
+            (".py",),
+            (
+                Option(
+                    _clipped(VISCOELASTIC),
+                    "Hertz, UseMaterialProperties(False), SetKn({kn}), SetGn({gn})",
+                    {
+                        "lines": "material.SetKn({kn})\nmaterial.SetGn({gn})\n"
+                        "system.UseMaterialProperties(False)\n"
+                        "system.SetContactForceModel(chrono.ChSystemSMC.Hertz)"
+                    },
+                ),
+                Option(
+                    _clipped(HERTZ),
+                    "Hertz, SetYoungModulus({young}), SetRestitution({e})",
+                    {
+                        "lines": "material.SetYoungModulus({young})\n"
+                        "material.SetPoissonRatio({poisson})\nmaterial.SetRestitution({e})\n"
+                        "system.UseMaterialProperties(True)\n"
+                        "system.SetContactForceModel(chrono.ChSystemSMC.Hertz)"
+                    },
+                ),
+                Option(
+                    _clipped(LINEAR),
+                    "Hooke, UseMaterialProperties(False), SetKn({K}), SetGn({gamma})",
+                    {
+                        "lines": "material.SetKn({K})\nmaterial.SetGn({gamma})\n"
+                        "system.UseMaterialProperties(False)\n"
+                        "system.SetContactForceModel(chrono.ChSystemSMC.Hooke)"
+                    },
+                ),
+            ),
+            notes=(
+                "Forces never pull: the restitution entered is not e.",
+                "Kn and Gn act only with UseMaterialProperties(False). Gn is multiplied by the "
+                "reduced mass; Hertz multiplies both by R sqrt(s) of the overlap s.",
             ),
         ),
     )
@@ -214,6 +357,7 @@ def export(
     *,
     quantity: str = "cor_sphere",
     master: bool = False,
+    law: int = 1,
     threads: int | None = None,
 ) -> Export:
     """Input of another program for the impacts of a case.
@@ -230,6 +374,8 @@ def export(
         What e is: `cor_sphere` or `cor`; both are the same without waves.
     master
         e over (m/sqrt(R v))^(2/5), for a `table`: one curve for all sizes of a pair of materials.
+    law
+        Number of the law in the header of the export, by its misfit; 1: the best one.
     threads
         As for `Case.run`.
 
@@ -254,7 +400,7 @@ def export(
     chosen = TARGETS[target]
     if not chosen.options:
         return _tabulated(case, chosen, curve)
-    return _fitted(case, chosen, curve)
+    return _fitted(case, chosen, curve, law)
 
 
 def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr.Dataset:
@@ -312,20 +458,23 @@ def _finished(
     misfit: float, options: Mapping[str, Twin] | None = None,
 ) -> Export:  # fmt: skip
     """The files of a program from its templates: lines of [pair] or [wall] as the case is."""
-    surface = case["plate.surface_radius"]
-    kind = "[pair]" if surface else "[wall]"
+    kind = "[pair]" if case["plate.surface_radius"] else "[wall]"
     lines = [*_header(case, target, curve), *lines, *target.notes]
-    if target.run:
-        lines.append(f"input of this kind was run in {target.run}")
-    radius = case["sphere.radius"]
+    if target.options:
+        run = f"was run in {target.run}" if target.run else "was not run"
+        lines.append(f"input of this kind {run}")
+    radius, other = _number(case, "sphere.radius"), _number(case, "plate.surface_radius")
+    mass = curve.attrs["mass"] * (2 if other else 1)
     middle = float(np.sqrt(curve.velocity.values[0] * curve.velocity.values[-1]))
     known = {
-        "velocity": f"{middle:.6g}", "radius": radius, "radius2": surface,
+        "velocity": f"{middle:.6g}", "radius": radius, "radius2": other,
+        "diameter": f"{2 * radius:.12g}", "diameter2": f"{2 * other:.12g}",
+        "density": f"{_density(mass, radius):.12g}", "density2": f"{_density(mass, other):.12g}",
         "mass": f"{curve.attrs['mass']:.12g}", "mass2": f"{2 * curve.attrs['mass']:.12g}",
     }  # fmt: skip
     texts = {}
     for ending in target.files:
-        comment = "// " if ending == ".c" else target.comment
+        comment = COMMENTS.get(ending, "# ")
         said = [comment + _command.printable(line) for line in lines]
         if ending == ".xml":
             said = [line.replace("--", "- -") for line in said]
@@ -340,6 +489,10 @@ def _finished(
         text = _Template("\n".join(kept) + "\n")
         texts[ending] = text.substitute(known, **values, header="\n".join(said))
     return Export(target.name, curve, texts, lines, misfit, options or {})
+
+
+def _density(mass: float, radius: float) -> float:
+    return mass / (4 / 3 * math.pi * radius**3) if radius else 0.0
 
 
 class _Template(Template):
@@ -373,8 +526,8 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
     return _finished(case, target, shown, lines, values, misfit)
 
 
-def _fitted(case: Case, target: Target, curve: xr.Dataset) -> Export:
-    """A program with laws of its own; the one with the smallest misfit is in the input."""
+def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Export:
+    """A program with laws of its own, in the order of their misfits."""
     if case["sphere.shape"] != "sphere" or _number(case, "plate.surface_radius") < 0:
         raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
                          "expected --for table or rebound")  # fmt: skip
@@ -383,14 +536,16 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset) -> Export:
     found = []
     for option in target.options:
         twin = option.law.fit(velocity, e, time, curve.attrs["mass"])
-        text = option.text.format(**_numbers(case, curve, twin))
+        numbers = _numbers(case, curve, twin)
+        text = option.text.format(**numbers)
         # a program that takes e has no damping beyond the critical one
         if "nan" not in text:
-            found.append((text, twin))
-    if not found:
-        raise NumericalError(f"{case.name}: e = {e.min():.3g} is too small for {target.name}")
+            filled = {name: one.format(**numbers) for name, one in option.fill.items()}
+            found.append((text, twin, numbers | filled))
     found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
-    law, twin = found[0]
+    if not 1 <= number <= len(found):
+        raise UsageError(f"--law {number}: expected 1 to {len(found)} for {target.name}")
+    law, twin, filled = found[number - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})
     shown = shown.isel(velocity=slice(None, None, 2))
@@ -402,23 +557,24 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset) -> Export:
         f"law: {twin.law.name}; {twin.law.end}",
         f"largest misfit of that law to vcor: {twin.misfit:.2g} in e, "
         f"{100 * twin.time_misfit:.2g} % in the contact time",
-        f"time step: {STEPS} in the shortest contact are {step:.3g} s",
+        f"time step: {STEPS} in the shortest contact, {step:.3g} s, for e to 0.001; 50 for 0.01",
         "   v [m/s]       e  e of law     t_c [s]  t_c of law",
         *(f"{v:10.4g}{a:8.5f}{b:10.5f}{t:12.4g}{u:12.4g}"
           for v, a, b, t, u in zip(*(one.values for one in quantities), strict=True)),
         "what to write, by law and end of contact, with the misfits in e and contact time:",
-        *(f"  {text}  ({one.law.name}, {one.law.end}: {one.misfit:.2g}, "
-          f"{100 * one.time_misfit:.2g} %)" for text, one in found),
+        *(f"  {i}. {text}  ({one.law.name}, {one.law.end}: {one.misfit:.2g}, "
+          f"{100 * one.time_misfit:.2g} %)" for i, (text, one, _) in enumerate(found, 1)),
     ]  # fmt: skip
     size = 8 * max(_number(case, "sphere.radius"), _number(case, "plate.surface_radius"))
     values = {
-        **_numbers(case, curve, twin),
+        **filled,
         "law": law,
         "step": f"{step:.6g}",
         "duration": f"{RUNS * twin.time.max():.6g}",
         "size": f"{size:g}",
     }
-    return _finished(case, target, shown, lines, values, twin.misfit, dict(found))
+    options = {text: twin for text, twin, _ in found}
+    return _finished(case, target, shown, lines, values, twin.misfit, options)
 
 
 def _numbers(case: Case, curve: xr.Dataset, twin: Twin) -> dict[str, str]:
@@ -434,11 +590,25 @@ def _numbers(case: Case, curve: xr.Dataset, twin: Twin) -> dict[str, str]:
         "eta": twin.damping / mass / root,
         "e": twin.entered,
         "contact_modulus": contact_modulus,
-        "young": 2 * (1 - poisson**2) * contact_modulus,
+        "young": (young := 2 * (1 - poisson**2) * contact_modulus),
+        "young_half": young * (1 if case["plate.surface_radius"] else math.sqrt(2)),
+        "level": twin.cor[0],
+        "e_mfix": _entered_in_mfix(twin.entered),
+        "kn": twin.stiffness / curve.attrs["radius"],
+        "gn": twin.damping / mass / curve.attrs["radius"],
+        "K_twice": 2 * twin.stiffness,
+        "C_twice": 2 * twin.damping,
+        "mass_twice": 2 * mass,
         "poisson": poisson,
         "time": math.sqrt(twin.time.min() * twin.time.max()),
     }
     return {name: f"{value:.9g}" for name, value in found.items()}
+
+
+def _entered_in_mfix(e: float) -> float:
+    """What HERTZIAN takes for e: it has the factor 2 of a linear dashpot, not sqrt(5)."""
+    share = math.sqrt(5) / 2 * math.log(e) / math.hypot(math.pi, math.log(e)) if e > 0 else math.nan
+    return math.exp(math.pi * share / math.sqrt(1 - share**2)) if share > -1 else math.nan
 
 
 def _number(case: Case, address: str) -> float:
@@ -496,6 +666,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         help="what e is; default: cor_sphere")  # fmt: skip
     add("--master", action="store_true",
         help="table of e over (m/sqrt(R v))^(2/5), for all sizes of a pair")  # fmt: skip
+    add("--law", metavar="N", type=int, default=1, help="law of the header; default: the best, 1")
     add("--threads", metavar="N", type=int)
     parser.add_outputs()
     parser.set_defaults(output=None)
@@ -515,7 +686,7 @@ def _work(options: argparse.Namespace) -> None:
             f"--velocities {options.velocities}: expected such as 0.05:5:20, from small to large"
         ) from None
     found = export(options.case, options.target, velocities, quantity=options.quantity,
-                   master=options.master, threads=options.threads)  # fmt: skip
+                   master=options.master, law=options.law, threads=options.threads)  # fmt: skip
     if options.output is None:
         sys.stdout.write(str(found))
         return
