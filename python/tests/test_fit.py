@@ -103,6 +103,7 @@ def test_json_of_the_program(program, tmp_path, model):
     text = text.replace("name = 'soft rubber'", "density = 1100, name = 'soft rubber'")
     case = vcor.Case(text.replace("'rubber'", "'soft rubber'"))
     (tmp_path / "case.nml").write_text(case.text())
+    pytest.importorskip("SALib", reason="vcor uncertainty needs it, vcor.fit does not")
     uncertainty.main(
         [str(tmp_path / "case.nml"), "--covariance", str(tmp_path / "a" / "fit.json")]
         + ["--samples", "64", "--quantity", "cor", "--output", str(tmp_path), "--quiet"]
