@@ -7,7 +7,7 @@ import itertools
 import math
 import re
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn
@@ -174,31 +174,30 @@ class Format:
         return ""
 
 
+@dataclass
 class Source:
     """A file that holds a card, and what the user says of it."""
 
-    def __init__(
-        self,
-        path: str,
-        lines: Iterable[str],
-        *,
-        material: str | None = None,
-        units: str | None = None,
-        modulus: float | None = None,
-        poisson_ratio: float | None = None,
-        use_shift: bool = True,
-    ) -> None:
-        self.path, self.lines = path, [(i, line.rstrip()) for i, line in enumerate(lines, 1)]
-        self.material, self.modulus, self.poisson_ratio = material, modulus, poisson_ratio
-        self.use_shift = use_shift
+    path: str
+    text: str
+    material: str | None = None
+    units: str = ""
+    modulus: float | None = None
+    poisson_ratio: float | None = None
+    use_shift: bool = True
+
+    def __post_init__(self) -> None:
+        self.lines = [(i, line.rstrip()) for i, line in enumerate(self.text.splitlines(), 1)]
         heads = [re.search(r"vcor card '(.*)', units (\S+):", line) for _, line in self.lines]
         made = next(filter(None, heads), None)
-        self.name, given = (made[1], made[2]) if made else (Path(path).stem, "SI")
-        if made and units not in (None, given):
-            raise InputError(f"{path}: the card is in units {given}, found --units {units}")
-        self.units = units or given
+        self.name, given = (made[1], made[2]) if made else (Path(self.path).stem, "SI")
+        if made and self.units not in ("", given):
+            self.fail(0, f"the card is in units {given}, found --units {self.units}")
+        self.units = self.units or given
         if self.units not in UNITS:
-            raise UsageError(f"{path}: unknown units '{self.units}', known: {', '.join(UNITS)}")
+            raise UsageError(
+                f"{self.path}: unknown units '{self.units}', known: {', '.join(UNITS)}"
+            )
         self.remarks = [] if made else [f"the card is read in units {self.units}, and kelvin"]
 
     def fail(self, line: int, message: str) -> NoReturn:

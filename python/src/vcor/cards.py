@@ -177,7 +177,8 @@ def _sum(
         best = min(best, error)
         if error <= accuracy:
             used = found[1:] > 0
-            return float(found[0]), tuple(found[1:][used]), tuple(times[used]), error
+            moduli = found[1:][used].tolist()
+            return float(found[0]), tuple(moduli), tuple(times[used].tolist()), error
     raise InputError(
         f"{case.name}: sums of {most} exponentials follow '{material}' to {best:.1g} from "
         f"{first:.3g} to {last:.3g} s, wanted {accuracy:g}; expected a shorter --band, another "
@@ -219,15 +220,13 @@ def read_card(
     Card
         The material in SI units; `str` of it is a &material group.
     """
-    lines = _text(path).splitlines()
+    text = _text(path)
     if code is None:
-        text = "\n".join(lines)
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
         what = f"unknown program '{code}'" if code else f"{path}: found no card"
         raise UsageError(f"{what}, expected --for, one of {', '.join(FORMATS)}")
-    source = Source(os.fspath(path), lines, material=material, units=units, modulus=modulus,
-                    poisson_ratio=poisson_ratio, use_shift=use_shift)  # fmt: skip
+    source = Source(os.fspath(path), text, material, units or "", modulus, poisson_ratio, use_shift)
     return FORMATS[code].read(source)
 
 
