@@ -777,7 +777,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     error = "relative error of a column that has none, such as cor=1%%"
     add("--error", metavar="NAME=VALUE", action="append", default=[], help=error)
     model = "another model of the material, such as sls or prony:2; several are compared"
-    add("--model", action="append", default=[], help=model)
+    add("--model", metavar="NAME,NAME", action="append", default=[], help=model)
     add("--seed", type=int, default=1, help="seed of the starts")
     with _command.one_line():
         _work(parser.options(arguments))
@@ -789,7 +789,8 @@ def _work(options: argparse.Namespace) -> None:
     fix, errors = _pairs(options.fix, "--fix"), _pairs(options.error, "--error")
     found: list[Identification] = []
     refused: list[Error] = []
-    for model in options.model or [None]:
+    models = [word.strip() for words in options.model for word in words.split(",")]
+    for model in models or [None]:
         try:
             found.append(
                 identify(options.case, options.data, free, fix=fix, errors=errors, model=model,
@@ -801,7 +802,7 @@ def _work(options: argparse.Namespace) -> None:
         raise refused[0]
     best = min(found, key=lambda one: one.aic)
     report, written = str(best), best.as_dict()
-    if len(options.model) > 1:
+    if len(models) > 1:
         order = sorted(found, key=lambda one: one.aic)
         keys = ("model", "chi2", "aic", "bic")
         written["models"] = [{key: getattr(one, key) for key in keys} for one in order]
