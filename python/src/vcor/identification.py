@@ -172,7 +172,9 @@ class Identification:
                 known = _library.columns(0)
                 unit = known[name].unit if name in known else "N" if name == "force" else "Pa"
                 factor, unit = _scale(unit, value)
-                if name == "cor" and self.band["velocity"]:
+                # at several temperatures, say, no line leads through all
+                apart = len(set(at)) < len(at)
+                if name == "cor" and self.band["velocity"] and not apart:
                     band = {key: np.array(column) for key, column in self.band.items()}
                     above.fill_between(
                         band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1"
@@ -180,7 +182,10 @@ class Identification:
                     line, text = (band["velocity"], band["cor"]), "model, 95 % band"
                 else:
                     line, text = (at, factor * model), "model"
-                above.plot(*line, marker="", color="C1", label=text)
+                above.plot(
+                    *line, marker="x" if apart else "", ls="" if apart else "-", color="C1",
+                    zorder=3, label=text,
+                )  # fmt: skip
                 above.errorbar(
                     at, factor * value, factor * sigma, fmt="o", ms=3, color="black",
                     mfc="white", label="data",
