@@ -136,6 +136,25 @@ def test_a_map(results):
     assert narrow.axes[0].get_xlim()[0] == 5.0
 
 
+def test_a_map_with_a_hole(results):
+    """A point without a result is grey, and the lines and labels of the others are there."""
+    data = vcor.open(results / "cube.h5")
+    whole = figure([data])
+    data.cor[1, 1] = np.nan
+    made = figure([data])
+    assert len(made.axes[0].texts) >= 0.7 * len(whole.axes[0].texts) > 0
+    assert texts(made)[0] == "no result" and "no result" not in texts(whole)
+
+
+def test_the_legend_leaves_out_what_a_case_has_not(results, tmp_path):
+    """A unit of 1, and keys that only another case has."""
+    plate = vcor.read(SWEEPS / "sls_velocity.nml")
+    text = re.sub(r"half_thickness = .*\n", "", str(plate)).replace("'relaxing'", "'none'")
+    made = figure([plate.run(), vcor.Case(text).run()])
+    found = texts(made)
+    assert "half thickness = 0.02 m, waves = 'relaxing'" in found and "waves = 'none'" in found
+
+
 def test_where_the_model_does_not_hold(results):
     data = vcor.open(results / "sweep.h5")
     made = figure([results / "sweep.h5"])

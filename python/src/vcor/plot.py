@@ -41,8 +41,14 @@ COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
 #: Results or curves that can be told apart
 MOST = 8
 _SCALED = ("m", "s", "N", "Pa", "J", "kg", "W")
-_WORDS = {"cor": "coefficient of restitution", "min_frequency": "lowest frequency of interest"}
+_WORDS = {
+    "cor": "coefficient of restitution",
+    "min_frequency": "lowest frequency of interest",
+    "resilience": "rebound resilience",
+}
 _OUTSIDE = "outside of the model's validity"
+#: Colour of the points of a map without a result: grey, which is no level
+_NOTHING = "0.8"
 _Range = tuple[float | None, float | None]
 
 
@@ -417,13 +423,16 @@ def _map(wishes: _Wishes) -> Figure:
         levels = _levels(wishes, float(z.min()), float(z.max()))
         extend = ("min" if z.min() < levels[0] else "") + ("max" if z.max() > levels[-1] else "")
         norm = (LogNorm if "z" in (wishes.log or "") else Normalize)(levels[0], levels[-1])
+        if np.ma.getmaskarray(z).any():
+            axis.set_facecolor(_NOTHING)
+            axis.fill([], [], color=_NOTHING, label="no result")
         filled = axis.contourf(fx * x, fy * y, z, levels=levels, norm=norm,
                                extend={"": "neither", "minmax": "both"}.get(extend, extend)
                                )  # fmt: skip
         for values, setter in ((x, axis.set_xscale), (y, axis.set_yscale)):
             if _is_geometric(values.values):
                 setter("log")
-        if np.ptp(z) > 0:
+        if z.max() > z.min():
             drawn = axis.contour(fx * x, fy * y, z, levels=levels, colors="0.1")
             for text in axis.clabel(drawn, fontsize=7, inline=False, fmt="%.4g", colors="k"):
                 text.set_path_effects([withStroke(linewidth=1.6, foreground="w")])

@@ -136,12 +136,14 @@ def legends_of(results: list[Result]) -> list[str]:
         units = {}
         for key in keys:
             with contextlib.suppress(Error):
-                units[key] = Handle(results[0].case, results[0].path).describe(key).unit
+                unit = Handle(results[0].case, results[0].path).describe(key).unit
+                units[key] = unit if unit != "1" else ""
         words = [
             ", ".join(
                 f"{key.rpartition('.')[2].replace('_', ' ')} = "
-                f"{one.get(key, '').removesuffix('.0')} {units.get(key, '')}".strip()
+                f"{one[key].removesuffix('.0')} {units.get(key, '')}".strip()
                 for key in keys
+                if key in one
             )
             for one in values
         ]
