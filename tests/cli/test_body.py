@@ -121,6 +121,23 @@ def test_an_end_before_the_sum_holds_is_refused(vcor):
     assert done.err.count("\n") == 1
 
 
+def test_exact_mechanics(vcor):
+    """mechanics = 'exact' is receding, series and body, but for keys that the case sets itself."""
+    exact = "&contact mechanics = 'exact' /\n"
+    names = ("--quiet", "--print", "cor,cor_sphere")
+    plain = text("pmma").replace(" waves = 'body',", "")
+    vcor.write(text("pmma") + "&contact law = 'receding', pair = 'series' /\n")
+    expected = vcor.succeeds("run", "case.nml", *names)
+    vcor.write(exact + plain)
+    assert vcor.succeeds("run", "case.nml", *names) == expected
+    checked = vcor.succeeds("check", "case.nml")
+    assert all(word in checked for word in ("waves = 'body'", "law = 'receding'", "pair = 'series'"))
+    vcor.write(plain.replace("material = 'plate',", "material = 'plate', waves = 'hereditary',").replace(
+        ", footprint = 0.00018507566307094617", "") + exact.replace("'exact'", "'exact', law = 'boltzmann'"))
+    checked = vcor.succeeds("check", "case.nml")
+    assert all(word in checked for word in ("waves = 'hereditary'", "law = 'boltzmann'", "pair = 'series'"))
+
+
 def test_screen(vcor):
     """Thin plates are no better mechanics than a layer, and a layer is what a short wave asks for."""
     vcor.write(text("layer of glass"))

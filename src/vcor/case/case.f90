@@ -509,7 +509,28 @@ contains
          end if
          call note_change(item, address%row, entry%given)
       end associate
+      if (address == self%address('contact', 'mechanics')) call choose_mechanics(self, entry%text)
    end subroutine set_entry
+
+   !> Give keys of the mechanics that the user has not given what goes with `mechanics`
+   pure subroutine choose_mechanics(self, mechanics)
+      type(case_t), intent(inout) :: self
+      !> `paper`, the defaults of the keys, or `exact`
+      character(len=*), intent(in) :: mechanics
+
+      character(len=*), parameter :: groups_of(3) = [character(len=7) :: 'contact', 'contact', &
+         'plate'], keys(3) = [character(len=5) :: 'law', 'pair', 'waves'], &
+         exact(3) = [character(len=8) :: 'receding', 'series', 'body']
+      type(address_t) :: address
+      integer :: i
+
+      do i = 1, size(keys)
+         address = self%address(trim(groups_of(i)), trim(keys(i)))
+         if (self%given(trim(groups_of(i)), trim(keys(i)))) cycle
+         call self%unset(address)
+         if (mechanics == 'exact') call self%set(address, trim(exact(i)), given=.false.)
+      end do
+   end subroutine choose_mechanics
 
    !> Set a number as it is: cheap, for a sweep
    pure subroutine set_number(self, address, number)

@@ -142,6 +142,9 @@ module vcor_case_catalogue
          "Distance to the nearest edge of the plate, for the measure needed_extent", "m", &
          positive), &
       !
+      key_t("contact", "mechanics", text_key, &
+         "Law, pair and waves not given: the paper's, or receding, series and body", &
+         choices="paper exact", default="paper"), &
       key_t("contact", "law", text_key, "Law of the force while the contact shrinks", &
          choices="boltzmann receding", default="boltzmann"), &
       key_t("contact", "pair", text_key, "Rule that combines the moduli of two bodies", &

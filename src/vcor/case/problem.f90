@@ -140,6 +140,9 @@ contains
       self%shape = text
       call case%get('contact', 'law', text)
       self%impact%law%receding = text == 'receding'
+      ! the contact of a punch does not; who asks for it is told so
+      if (self%shape == 'punch' .and. .not. case%given('contact', 'law')) &
+         self%impact%law%receding = .false.
       call case%get('contact', 'pair', text)
       self%pair = merge(pair_series, pair_eq1, text == 'series')
 

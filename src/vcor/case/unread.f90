@@ -132,6 +132,10 @@ contains
             call case%get('plate', 'waves', method)
             reason = why_plate_rests(case)
             if (reason == '' .and. method /= 'body') reason = "it is for plate.waves = 'body'"
+         case ('contact.mechanics')
+            if (case%given('contact', 'law') .and. case%given('contact', 'pair') &
+                .and. case%given('plate', 'waves')) &
+               reason = 'contact.law, contact.pair and plate.waves are all given'
          case ('contact.law')
             if (case%model(find_group('sphere'), 1) == 'punch') &
                reason = 'the contact of a flat punch does not recede'
