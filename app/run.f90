@@ -46,7 +46,7 @@ contains
       type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
-      character(len=:), allocatable :: files
+      character(len=:), allocatable :: files, words
       logical :: is_finished
 
       identity = identity_of(job%case, job%part)
@@ -77,7 +77,9 @@ contains
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, tables(1), trouble)
-         if (.not. request%quiet) call remark(about_numbers(job, inexact(outcome), &
+         words = beyond_data(job, outcome)
+         if (words /= '' .and. outcome%misses()) words = words//'; '
+         if (.not. request%quiet) call remark(about_numbers(job, words//inexact(outcome), &
             measures_remark(outcome, worker%problem%around)))
       else if (.not. request%quiet) then
          call write_screen()
@@ -146,13 +148,35 @@ contains
          call add('solver.time_step is without effect: method ive takes its own steps')
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it')
-      call remark_on_data('sphere')
-      call remark_on_data('plate')
+      if (len(beyond_data(job, outcome)) > 0) call add(beyond_data(job, outcome))
 
    contains
 
-      !> Data that do not cover the contact
-      subroutine remark_on_data(body)
+      !> One line
+      subroutine add(line)
+         character(len=*), intent(in) :: line
+
+         text = text//as_line('note: '//line)
+      end subroutine add
+   end function remarks_on
+
+   !> What is said of data that do not cover the contact
+   function beyond_data(job, outcome) result(text)
+      type(job_t), intent(in) :: job
+      type(outcome_t), intent(in) :: outcome
+      !> Words; nothing where they do
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (outcome%status /= contact_separated) return
+      call add_body('sphere')
+      call add_body('plate')
+      if (len(text) > 0) text = text(3:)
+
+   contains
+
+      !> Those of a body
+      subroutine add_body(body)
          !> Group of the body
          character(len=*), intent(in) :: body
 
@@ -172,23 +196,16 @@ contains
             if (allocated(error)) return
             times = times*time_factor_of(material)
          end if
-         name = 'the data of the '//body//' ('//data_file(job%case, item)//') '
-         if (times(1) > early*outcome%contact_time) call add(name//'begin at ' &
+         name = '; the data of the '//body//' ('//data_file(job%case, item)//') '
+         if (times(1) > early*outcome%contact_time) text = text//name//'begin at ' &
             //short(times(1))//' s: '//percent(times(1)/outcome%contact_time, 'all') &
-            //' of the contact lies before, where the modulus is taken as constant')
-         if (times(size(times)) < outcome%contact_time) call add(name//'end at ' &
+            //' of the contact lies before, where the modulus is taken as constant'
+         if (times(size(times)) < outcome%contact_time) text = text//name//'end at ' &
             //short(times(size(times)))//' s: '//percent(1.0_wp - times(size(times)) &
             /outcome%contact_time)//' of the contact lies after, where the modulus is taken as ' &
-            //'constant')
-      end subroutine remark_on_data
-
-      !> One line
-      subroutine add(line)
-         character(len=*), intent(in) :: line
-
-         text = text//as_line('note: '//line)
-      end subroutine add
-   end function remarks_on
+            //'constant'
+      end subroutine add_body
+   end function beyond_data
 
    !> What is said of a result that is less accurate than asked for
    pure function inexact(outcome) result(text)

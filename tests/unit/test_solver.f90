@@ -43,6 +43,7 @@ program test_solver
    call test_two_maxima()
    call test_beside_a_fluid()
    call test_fluid_plates()
+   call test_immense_rate()
    call test_product_order()
    call test_product_accuracy()
    call test_trajectory()
@@ -205,6 +206,30 @@ contains
          end do
       end do
    end subroutine test_fluid_plates
+
+   !> A mode that relaxes at once changes nothing, not at the end of a receding contact either,
+   !> where time stands still in the panel
+   subroutine test_immense_rate()
+      real(wp), parameter :: rate(2) = [1.0e24_wp, 1.0e60_wp]
+      type(prony_t) :: material
+      type(impact_t) :: problem
+      type(ive_t) :: solver
+      type(outcome_t) :: without, outcome
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call make_ive(1.0e-9_wp, solver)
+      do i = 0, size(rate)
+         call new_prony(material, 3.0e6_wp, spread(1.0e6_wp, 1, min(i, 1) + 1), &
+            [1.0e3_wp, rate(max(i, 1):i)], 0.0_wp, error)
+         call success(error, "a mode that relaxes at once")
+         call rigid_on_plate(material, waves_none, 10.0_wp, problem)
+         problem%law%receding = .true.
+         call run(solver, problem, outcome)
+         if (i == 0) without = outcome
+         call check_close(outcome%cor, without%cor, 1.0e-9_wp, "a mode that relaxes at once")
+      end do
+   end subroutine test_immense_rate
 
    !> Eq. (1) beside a fluid, whose modulus is nothing long before its sum ends: both methods see
    !> it stick, or come back all the same
