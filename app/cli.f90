@@ -1,7 +1,7 @@
 !> The command line as a request
 module vcor_app_cli
    use, intrinsic :: iso_fortran_env, only : int8
-   use vcor_app_commands, only : commands, missing_package, options_of
+   use vcor_app_commands, only : commands, missing_package, options_of, package_names
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
    use vcor_kinds, only : wp
@@ -127,7 +127,7 @@ contains
       if (.not. contains_word(commands, request%command)) then
          name = missing_package(request%command)
          if (name == '') name = "unknown command '"//printable(request%command)//"'; " &
-            //suggestion(request%command, commands//' --help --version')
+            //suggestion(request%command, commands//package_names()//' --help --version')
          call raise(error, error_usage, name)
          return
       end if

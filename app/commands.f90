@@ -5,7 +5,7 @@ module vcor_app_commands
    private
 
    public :: entry_t, commands, command_count, package_commands, get_page, options_of, texts_of
-   public :: missing_package
+   public :: missing_package, package_names
 
    !> Known commands
    character(len=*), parameter :: commands = "run merge check material fit verify help"
@@ -211,6 +211,19 @@ module vcor_app_commands
       entry_t("master", "make master curves of moduli at several temperatures")]
 
 contains
+
+   !> Names of the commands of the Python package
+   pure function package_names() result(names)
+      !> A blank before each
+      character(len=:), allocatable :: names
+
+      integer :: i
+
+      names = ""
+      do i = 1, size(package_commands)
+         names = names//" "//trim(package_commands(i)%term)
+      end do
+   end function package_names
 
    !> What to do about a command of the Python package that is not there
    pure function missing_package(word) result(text)

@@ -174,7 +174,7 @@ contains
                   //'too high; take a slower impact'
             case default
                words = 'a thick plate takes up '//percent(value) &
-                  //' of the energy more than is computed; cor may be too high'
+                  //" of the energy more than is computed; compare waves = 'body'"
             end select
          end associate
       end function sentence

@@ -136,6 +136,17 @@ def test_numbers_that_are_set_in_a_loop(sls, program):
     assert sls.points({"rubber.beta": [2400.0]}).cor[0] == float(cor)
 
 
+def test_a_height_in_place_of_a_velocity(sls):
+    """The last one set counts, and one that varies before both."""
+    sls["impact.drop_height"] = 0.5
+    assert sls["impact.velocity"] is None
+    cor = sls.solve()["cor"]
+    sls["impact.velocity"] = np.sqrt(9.80665)
+    assert sls["impact.drop_height"] is None
+    assert sls.solve()["cor"] == cor
+    assert sls.points({"impact.drop_height": [0.1, 0.5]}).cor[1] == cor
+
+
 def test_a_value_that_is_set_and_not_read(sls, program):
     sls["solver.form"] = "b"
     with pytest.raises(vcor.InputError) as caught:

@@ -555,6 +555,7 @@ contains
          if (any(own == address)) cycle
          ! a value that was set, or a list of them, has no say in a point that brings its own
          address%element = 0
+         call case%oust(address, always=.true.)
          entry = case%entry(address)
          if (allocated(entry%origin)) then
             deallocate (entry%origin)

@@ -90,17 +90,19 @@ contains
       character(len=*), intent(in) :: known
       !> The nearest, empty when none is near
       character(len=:), allocatable :: word
-      integer :: first, last, distance, least
+      integer :: first, last, distance, least, most
 
       word = ""
       if (len_trim(name) == 0 .or. len_trim(name) > longest) return
       ! One slip in a short name, one in three letters of a long one
-      least = max(1, (len_trim(name) + 1)/3) + 1
+      most = max(1, (len_trim(name) + 1)/3)
+      least = most + 1
       first = 1
       do while (first <= len_trim(known))
          last = first + index(known(first:)//" ", " ") - 2
          distance = edit_distance(lower(trim(name)), lower(known(first:last)))
          if (is_beginning(name, known(first:last))) distance = min(distance, 1)
+         if (is_beginning(known(first:last), name)) distance = min(distance, most)
          if (distance < least) then
             least = distance
             word = known(first:last)

@@ -25,7 +25,10 @@ def test_no_command(vcor):
     vcor.refuses(code=USAGE, says=["no command", "run", "check", "verify", "help"])
 
 
-@pytest.mark.parametrize("word, nearest", [("runn", "run"), ("chek", "check"), ("hlep", "help")])
+@pytest.mark.parametrize(
+    "word, nearest",
+    [("runn", "run"), ("chek", "check"), ("hlep", "help"), ("uncertanty", "uncertainty")],
+)
 def test_unknown_command(vcor, word, nearest):
     vcor.refuses(word, "case.nml", code=USAGE, says=[f"'{word}'", f"'{nearest}'"])
 

@@ -306,6 +306,10 @@ BAD = {
     "two of one name": ("t,E,E\n1,5,5\n2,4,4\n", 1, "2 columns of relaxation modulus"),
     "no loss modulus": ("f,E_stor\n1,5\n2,6\n", 1, "no loss modulus"),
     "unit in capitals": ("t [s],E [MPA]\n1,5\n2,4\n", 1, ["'MPA'", "did you mean 'MPa'?"]),
+    "temperatures": (
+        "f [Hz],T [C],E_stor [Pa],E_loss [Pa]\n1,0,5,1\n2,0,6,1\n1,5,4,1\n2,5,5,1\n",
+        4, "found several temperatures, 0 and 5, expected one; vcor master makes one curve of them",
+    ),
     "too small": ("1e-200,5\n1,4\n", 1, "1.0e-30"),
 }
 

@@ -122,6 +122,10 @@ REFUSED = {
     "overflow": (["parameter = 'impact.velocity'", "values = 1e400"], 2, ["values"]),
     "empty list": (["parameter = 'impact.velocity'", "values ="], 2, ["values"]),
     "texts": (["parameter = 'impact.velocity'", "values = 'a'"], 2, ["text in quotes"]),
+    "word too long": (
+        ["parameter = 'impact.velocity'", "start = 1, stop = 2, count = 2, spacing = 'logarithmic'"],
+        2, ["'logarithmic'", "did you mean 'log'?"],
+    ),
     "unknown word": (["parameter = 'impact.velocity'", "step = 1"], 2, ["'step'", "did you mean"]),
 }
 

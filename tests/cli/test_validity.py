@@ -99,11 +99,23 @@ def test_drop_height(vcor):
 
 
 def test_drop_height_or_velocity(vcor):
-    vcor.write(DROPPED)
     both = "found both velocity and drop_height, expected one of them"
-    vcor.refuses("run", "case.nml", "--set", "impact.velocity=1", code=INPUT, says=both)
-    vcor.write(GLASS + "&sweep parameter = 'impact.drop_height', values = 1, 2 /\n")
+    vcor.write(GLASS.replace("velocity = 1.0", "velocity = 1.0, drop_height = 0.05"))
     vcor.refuses("run", "case.nml", code=INPUT, says=both)
+    # what is set or swept replaces what the file gives
+    v, h = "impact.velocity=1", "impact.drop_height=0.05"
+    names = ["--print", "cor,rebound_height", "--quiet"]
+    for text, other, setting, against in (GLASS, DROPPED, v, h), (DROPPED, GLASS, h, v):
+        vcor.write(text)
+        expected = vcor.numbers("case.nml")
+        shown = vcor.succeeds("run", "case.nml", *names)
+        vcor.refuses("run", "case.nml", "--set", v, "--set", h, code=INPUT, says=both)
+        vcor.write(other)
+        assert vcor.numbers("case.nml", "--set", setting) == expected
+        key, value = setting.split("=")
+        vcor.write(other + f"&sweep parameter = '{key}', values = {value} /\n")
+        assert vcor.succeeds("run", "case.nml", *names) == shown
+        vcor.refuses("run", "case.nml", "--set", against, code=INPUT, says=both)
     vcor.write(DROPPED.replace("drop_height = 0.05", ""))
     neither = "key 'velocity' is missing in &impact, expected a number > 0 [m/s], or drop_height"
     vcor.refuses("run", "case.nml", code=INPUT, says=neither)
@@ -306,10 +318,13 @@ def test_results_of_a_former_version(vcor, shard):
 
 SLIPS = [
     ("impact.velocity=2", None),
+    ("impact.drop_height=29", None),
+    ("impact.drop_height=40", "is it in cm or mm?"),
     ("sphere.radius=4", "is it in mm?"),
     ("bearing_steel.density=7.8", "is it in g/cm3?"),
     ("bearing_steel.density=7.8e6", "is it in g/m3?"),
     ("bearing_steel.modulus=210", "is it in kPa, MPa or GPa?"),
+    ("float_glass.modulus=1.9e12", None),
     ("float_glass.modulus=70e12", "has it a power of ten too many?"),
     ("float_glass.poisson_ratio=-0.2", "is the sign right?"),
 ]

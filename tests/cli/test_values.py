@@ -257,6 +257,7 @@ def test_unknown_key(vcor, group, key, nearest):
         ("rubber.model='mittag-leffler'", "mittag_leffler"),
         ("plate.waves='relaxng'", "relaxing"),
         ("contact.law='receeding'", "receding"),
+        ("plate.waves='bodywaves'", "body"),
         ("solver.method='drect'", "direct"),
         ("solver.form='c'", ""),
         ("solver.method='best'", ""),

@@ -78,7 +78,7 @@ module vcor_case_case
       type(items_t), allocatable, private :: group(:)
    contains
       procedure :: start, add, adopt, is_materials, source_of, revision, model, find_material
-      procedure :: material_of, address, path, row, number, given, put, unset, refuse
+      procedure :: material_of, address, path, row, number, given, put, unset, oust, refuse
       procedure :: count => count_items
       procedure :: line => line_of_item
       procedure :: entry => entry_at
@@ -623,6 +623,7 @@ contains
          if (is_sound .and. key%value_kind == integer_key) &
             is_sound = .not. abs(number - anint(number)) > 0.0_wp
          if (is_sound) then
+            call self%oust(address, always=.true.)
             call self%set(address, number)
          else
             call raise(error, error_input, self%path(address)//': found '//real_text(number) &
@@ -641,6 +642,27 @@ contains
          item%revision = item%revision + 1
       end associate
    end subroutine unset
+
+   !> Take back what is given in place of a key, as drop_height for velocity or the other way round
+   pure subroutine oust(self, address, always)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+      !> Whether that is taken back, too, which was set and does not stand in the case file
+      logical, intent(in) :: always
+
+      type(entry_t) :: entry
+      type(address_t) :: other
+      integer :: row
+
+      do row = first_row(address%group), last_row(address%group)
+         if (catalogue(row)%instead /= catalogue(address%row)%name &
+             .and. catalogue(address%row)%instead /= catalogue(row)%name) cycle
+         other = self%address(trim(groups(address%group)%name), trim(catalogue(row)%name), &
+            address%item)
+         entry = self%entry(other)
+         if (entry%given .and. (always .or. .not. allocated(entry%origin))) call self%unset(other)
+      end do
+   end subroutine oust
 
    !> Raise an error about a key
    pure subroutine refuse(self, group, key, item, message, error)

@@ -258,7 +258,7 @@ contains
             if (entry%given) message = "key '"//key//"' does not belong to "//trim(group%selector) &
                //" '"//model &
                //"', its keys are: "//join_words(keys_of(address%group, model))
-         else if (is_there(key) .and. is_there(other)) then
+         else if (is_there(key) .and. is_there(other) .and. .not. is_ousted()) then
             call self%refuse(group%name, other, address%item, 'found both '//key//' and '//other &
                //', expected one of them', error)
          else if (entry%present) then
@@ -288,6 +288,20 @@ contains
          yes = self%given(groups(address%group)%name, name, address%item) .or. name /= '' &
             .and. any(swept == self%address(groups(address%group)%name, name, address%item))
       end function is_there
+
+      !> Whether a sweep varies one of both keys, and the case file alone gives the other
+      pure function is_ousted() result(yes)
+         logical :: yes
+
+         type(address_t) :: place
+         type(entry_t) :: fixed
+
+         place = self%address(groups(address%group)%name, other, address%item)
+         fixed = entry
+         if (any(swept == address)) fixed = self%entry(place)
+         yes = (any(swept == address) .neqv. any(swept == place)) &
+            .and. .not. allocated(fixed%origin)
+      end function is_ousted
    end subroutine check_entry
 
 end module vcor_case_checks

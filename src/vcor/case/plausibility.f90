@@ -40,6 +40,7 @@ module vcor_case_plausibility
    !> times from that of an atom's vibration on
    type(limits_t), parameter :: limits(*) = [ &
       limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
+      limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
       limits_t('sphere', 'radius', 'm', -endless, 1.0_wp, '', 'is it in mm?'), &
       limits_t('material', 'reference_temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('material', 'valid_temperature_from', 'K', 100.0_wp, endless, celsius, ''), &

@@ -234,6 +234,8 @@ contains
          call raise(error, error_input, entry%origin//": "//message)
          return
       end if
+      ! two options for one thing are left to the check; a program that sets both means the last
+      call case%oust(address, always=.not. present(option))
       call case%set(address, entry)
    end subroutine override
 

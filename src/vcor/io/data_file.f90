@@ -13,7 +13,7 @@ module vcor_io_data_file
    use vcor_io_file, only : read_text_file
    use vcor_io_header, only : check_unit, header_t, longest_word, name_of, names_tensile, &
       note_comment, read_names, read_units, role_none, role_of, role_relaxation, role_time, &
-      unit_size
+      temperature_names, unit_size
    use vcor_io_path, only : folder_of, join_path
    use vcor_kinds, only : wp
    use vcor_material_table, only : modulus_rounding
@@ -33,8 +33,7 @@ module vcor_io_data_file
 
    !> Zero of the Celsius scale [K]
    real(wp), parameter :: ice_point = 273.15_wp
-   !> Names of a temperature, and of its units
-   character(len=*), parameter :: temperature_names = 't T temp temp. temperature'
+   !> Names of the units of a temperature
    character(len=*), parameter :: kelvin_names = 'k kelvin'
    character(len=*), parameter :: celsius_names = 'c degc deg_c celsius'
    !> What a file should have
@@ -341,7 +340,7 @@ contains
          return
       end if
       call read_names(names, trim(content//comment), line)
-      if (names%count == 2 .and. contains_word(temperature_names, names%columns(1)%name) &
+      if (names%count == 2 .and. contains_word('t '//temperature_names, names%columns(1)%name) &
           .and. index(names%columns(2)%name, 'log') == 1) then
          header = names
       else if (content /= '') then

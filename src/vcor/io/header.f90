@@ -16,7 +16,7 @@ module vcor_io_header
    public :: header_t, column_name_t, roles, name_of, role_of, names_columns, names_tensile
    public :: read_names, read_units, note_comment
    public :: check_unit, unit_size, time_units, frequency_units, angular_units, modulus_units
-   public :: longest_word
+   public :: longest_word, temperature_names
    public :: role_none, role_time, role_frequency, role_relaxation, role_storage, role_loss, &
       role_tangent, role_complex
 
@@ -26,6 +26,8 @@ module vcor_io_header
    !> Units of frequency, angular or not
    character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
    character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
+   !> Names of a temperature
+   character(len=*), parameter :: temperature_names = "T temp temp. temperature"
    !> Letters of the longest name or unit
    integer, parameter :: longest_word = 40
    !> Unit of a pure number

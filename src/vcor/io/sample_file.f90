@@ -14,7 +14,7 @@ module vcor_io_sample_file
    use vcor_io_header, only : angular_units, check_unit, header_t, known_roles => roles, &
       longest_word, name_of, names_columns, note_comment, read_names, read_units, &
       role_complex, role_frequency, role_loss, role_none, role_of, role_relaxation, role_storage, &
-      role_tangent, role_time, time_units, unit_size
+      role_tangent, role_time, temperature_names, time_units, unit_size
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
    use vcor_text, only : has_control, integer_text, printable, real_text, shortened
@@ -143,13 +143,17 @@ contains
 
       type(header_t) :: header
       type(row_t) :: row
-      character(len=:), allocatable :: message
+      character(len=:), allocatable :: message, temperature
       integer :: i, names_line
+      !> Column of the temperature, 0: none
+      integer :: warm
       logical :: falls
 
       allocate (points(3, lines_in(text)))
       names_line = line_of_names(text)
       falls = .false.
+      warm = 0
+      temperature = ""
       lines = 0
       n = 0
       do
@@ -198,6 +202,11 @@ contains
                   //real_text(points(1, n + 1))//" after "//real_text(points(1, n))//" in line " &
                   //integer_text(lines(2))//", expected them to " &
                   //trim(merge("decrease as before", "increase          ", falls))
+               if (allocated(message) .and. warm > 0) then
+                  if (row%cell(warm) /= temperature) message = "found several temperatures, " &
+                     //temperature//" and "//row%cell(warm)//", expected one; vcor master makes " &
+                     //"one curve of them"
+               end if
             end if
          end if
          if (allocated(message)) then
@@ -207,6 +216,9 @@ contains
          n = n + 1
          if (n == 1) lines(1) = row%line
          lines(2) = row%line
+         if (n == 1) warm = findloc([(contains_word(temperature_names, header%columns(i)%name) &
+            .and. all(plan%places /= i), i=1, header%count)], .true., dim=1)
+         if (warm > 0) temperature = row%cell(warm)
       end do
       plan%decimals = row%so_far
       if (falls) points(:, :n) = points(:, n:1:-1)
