@@ -194,3 +194,13 @@ def test_a_list_is_varied_term_by_term():
     case = vcor.read(PAPER / "butyl_prony.nml")
     with pytest.raises(vcor.UsageError, match=r"such as butyl.moduli\(1\)"):
         vcor.propagate(case, {"butyl.moduli": 0.05})
+
+
+def test_any_thickness_and_what_no_column_has(sls):
+    """With waves = 'body' the accuracy is what can be had."""
+    sls["plate.waves"], sls["rubber.poisson_ratio"] = "body", 0.48
+    found = vcor.propagate(sls, {"rubber.beta": 0.05}, samples=32, quantities=["cor"])
+    row = found.table.sel(quantity="cor")
+    assert 0 < float(row.numerical) < 1e-3 and np.isfinite(row.elasticity).all()
+    assert (found.validity, found.validity_cause) == ("caution", "contact_ratio")
+    assert "validity: caution by contact_ratio" in str(found)
