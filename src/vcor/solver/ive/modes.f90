@@ -45,20 +45,23 @@ contains
       !> c, the vector of ones in it
       real(wp), intent(out) :: past(width)
 
-      real(wp) :: a, d, share, r(width), c(width), product(pairs)
+      real(wp) :: a, d, share, r(width), c(width), square(pairs)
+      logical :: regular(pairs)
       integer :: k, m
 
       r = constant(terms%equilibrium)
       c = 0.0_wp
-      ! with the product of both eigenvalues, (1 + l a)(1 + l b) has no differences: one is zero
-      ! where time stands still at the end of a panel, and l may be immense
-      product = lambda(:pairs)**2 - map%square*lambda(pairs + 1:)**2
+      square = map%square
+      ! one eigenvalue of a pair is zero where time stands still at the end of a panel, and the
+      ! difference of squares is no number for an immense rate
+      regular = abs(lambda(:pairs)**2 - square*lambda(pairs + 1:)**2) > 0.0_wp
       do k = 1, size(terms%rates)
          associate (rate => terms%rates(k), modulus => terms%moduli(k))
             do m = 1, pairs
                a = 1.0_wp + rate*lambda(m)
                d = rate*lambda(pairs + m)
-               share = modulus/(1.0_wp + rate*(2.0_wp*lambda(m) + rate*product(m)))
+               share = modulus/merge(a*a - square(m)*(d*d), 1.0_wp + 2.0_wp*rate*lambda(m), &
+                  regular(m))
                a = a*share
                d = d*share
                r(m) = r(m) + a
@@ -68,9 +71,9 @@ contains
             end do
          end associate
       end do
-      if (allocated(terms%pair_rates)) call resolve_pairs(terms, p, map%square, lambda, r, c)
+      if (allocated(terms%pair_rates)) call resolve_pairs(terms, p, square, lambda, r, c)
       response = r
-      past = times(map%square, c, map%left_one)
+      past = times(square, c, map%left_one)
    end subroutine resolve
 
    !> The same of pairs of conjugate terms: with 1/(1 + l H) = (1 + conjg(l) H)/n the real part of
