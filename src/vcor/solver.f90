@@ -190,6 +190,8 @@ contains
       type(error_t), allocatable :: failure
 
       call self%ive%solve(impact, trajectory, error)
+      ! a layer takes product integration seconds, with an estimate that says less
+      if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
          call move_alloc(error, failure)
@@ -198,11 +200,7 @@ contains
       end if
       call self%product%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
-      if (allocated(error)) then
-         ! on a layer product integration makes few steps, and that says little
-         if (impact%plate%layered()) call move_alloc(failure, error)
-         return
-      end if
+      if (allocated(error)) return
       ! that equal steps run out says nothing about a contact whose end nobody has set
       if (trajectory%status == contact_lasting .and. &
           .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
