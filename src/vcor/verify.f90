@@ -2,6 +2,7 @@
 !> law says and expects stands under verify/
 module vcor_verify
    use vcor_error, only : error_internal, error_t, raise
+   use vcor_verify_body, only : thick_body, thin_body
    use vcor_verify_closed_forms, only : hertz, limits, mittag_leffler, power_law, scaling, &
       weak_maxwell, zener
    use vcor_verify_golden, only : beyond, golden, printed
@@ -13,7 +14,7 @@ module vcor_verify
    public :: law_count, law_t, verdict_t, evaluate_law, build_law
 
    !> Number of laws
-   integer, parameter :: law_count = 14
+   integer, parameter :: law_count = 16
 
 contains
 
@@ -51,6 +52,10 @@ contains
          call golden(law)
       case (13)
          call beyond(law)
+      case (14)
+         call thick_body(law)
+      case (15)
+         call thin_body(law)
       case (law_count)
          call printed(law)
       case default

@@ -75,7 +75,7 @@ def test_nothing_left_is_shown_as_zero(vcor):
     assert values[1:4] == ["0", "0", "0"]
     first = next(i for i, line in enumerate(lines) if "residual_indentation [m]" in line)
     shown = [line.split()[-1] for line in lines[first + 1 :] if line]
-    assert len(shown) == 10 and set(shown) == {"0"}
+    assert len(shown) == 12 and set(shown) == {"0"}
 
 
 def mechanics(out):
@@ -94,7 +94,7 @@ def test_the_other_pair_is_shown_where_it_matters(vcor):
     soft = ["--set", "sphere.material=ball", "--set", "ball.beta=900.0"]
     (eq1, series), heading = mechanics(vcor.succeeds("verify", "case.nml", *soft))
     assert heading == ["  the same with pair = 'series'"]
-    assert len(eq1) == len(series) == 10
+    assert len(eq1) == len(series) == 12
     (first, second), heading = mechanics(
         vcor.succeeds("verify", "case.nml", *soft, "--set", "contact.pair=series")
     )

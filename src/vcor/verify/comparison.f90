@@ -139,7 +139,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       ! steps per contact
-      real(wp), parameter :: per_contact = 1000.0_wp
+      real(wp) :: per_contact
       type(solver_settings_t) :: direct
       integer :: i
 
@@ -147,6 +147,8 @@ contains
       direct%method = 'direct'
       ! the steps are given
       direct%accuracy = 0.0_wp
+      ! each takes two values of the compliance of a layer
+      per_contact = merge(200.0_wp, 1000.0_wp, impact%plate%layered())
       if (attempts(attempt_first)%separated()) then
          direct%time_step = attempts(attempt_first)%outcome%contact_time/per_contact
       else if (allocated(attempts(attempt_first)%failure)) then
@@ -172,8 +174,8 @@ contains
       !> The table
       type(model_t), allocatable, intent(out) :: models(:)
 
-      character(len=*), parameter :: plates(5) = [character(len=10) :: 'none', 'constant', &
-         'relaxing', 'frozen', 'hereditary']
+      character(len=*), parameter :: plates(6) = [character(len=10) :: 'none', 'constant', &
+         'relaxing', 'frozen', 'hereditary', 'body']
       character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
       type(model_t) :: all(2*size(plates)*size(laws))
       character(len=:), allocatable :: waves, law, pair

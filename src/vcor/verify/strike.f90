@@ -16,6 +16,7 @@ module vcor_verify_strike
    private
 
    public :: strike_t, time_scale, zener_plate, hertz_duration, elastic, sls, kelvin_voigt
+   public :: density
 
    !> Duration of Hertz's impact in units of T, (4/5) B(2/5, 1/2) (5/4)^(2/5) = 3.2180654597190435;
    !> anew, not the constant that the solvers use [-]
