@@ -254,7 +254,7 @@ class Memory:
         small, large = t < 2 * self.start, t >= self.start / 2
         if small.any():
             weight = 1 - np.where(large[small], self.step(np.maximum(t[small], 1e-290), 0), 0.0)
-            value[small] = weight * self.early(t[small])
+            value[small] = weight * self.early(np.maximum(t[small], 1e-200))
         if large.any():
             x = t[large]
             i = np.searchsorted(self.left, x, side="right") - 1

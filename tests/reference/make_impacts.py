@@ -417,7 +417,7 @@ def body_impact(materials, law, thickness, velocity, radius, pair="eq1"):
                 plate=dict(material=names[-1], waves="none"), contact=dict(law=law, pair=pair),
                 materials=list(materials))
     one = impact_solver.Impact(case)
-    contact = math.sqrt(one.radius * 1.0936 * velocity * one.time_scale() / 3.218)
+    contact = math.sqrt((0.75 * one.c) ** 2 * 1.0936 * velocity * one.time_scale() / 3.218)
     plate = dict(material=names[-1], waves="body", footprint=float(f"{1.6 * contact:.6g}"))
     if isinstance(thickness, str):
         plate["half_thickness"] = float(thickness) / 2
