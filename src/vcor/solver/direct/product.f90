@@ -151,6 +151,12 @@ contains
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
                trajectory%cor_sphere_error = found%error
+               ! the face of a layer rings: what the order of three runs says is chance
+               if (impact%plate%layered()) then
+                  trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)))
+                  trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
+                     abs(cor_sphere(3) - cor_sphere(2)))
+               end if
                if (time_step > 0.0_wp) return
                if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
                    .and. trajectory%steps > enough &
