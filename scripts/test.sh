@@ -117,7 +117,7 @@ begin "Python environments"
 make_venv "$venv" python3 -r tests/requirements.txt
 # The package is tested with Debian's Python, with this one, and with the newest one that is here
 make_venv build/newest "$(newest_python)" -c tests/requirements.txt \
-   numpy xarray h5py h5netcdf tqdm matplotlib pytest
+   numpy xarray h5py h5netcdf tqdm matplotlib scipy pytest
 
 with_cmake release
 with_cmake debug -DVCOR_BENCHMARKS=OFF

@@ -302,3 +302,16 @@ def test_the_table_of_rebound():
         for law, wanted in (("receding", exact), ("boltzmann", boltzmann)):
             case["contact.law"] = law
             assert case.solve()["cor"] == pytest.approx(float(wanted), abs=6e-6)
+
+
+def test_where_the_model_does_not_hold_is_said(sls):
+    """Coefficients alone, of a plate that a fast sphere is too large for."""
+    sls["plate.waves"] = "none"
+    velocity = [0.5, 10.0]
+    cor = sls.points({"impact.velocity": velocity}).cor
+    sls["rubber.alpha"] = 250.0
+    found = vcor.identify(sls, {"velocity": velocity, "cor": cor}, ["rubber.alpha"])
+    assert found["rubber.alpha"] == pytest.approx(300.0, rel=1e-5)
+    words = [f"{kind} at 1 of 2 impacts, by half_space_loss" for kind in ("outside", "caution")]
+    assert found.validity == "; ".join(words)
+    assert "coefficients only" in str(found) and f"validity: {found.validity}" in str(found)

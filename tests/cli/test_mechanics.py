@@ -41,7 +41,7 @@ def test_exact_models_of_the_paper(vcor):
     out = vcor.succeeds("verify", PAPER / "sls.nml", *EXACT)
     assert "verified: " in out and "TOO LOW" not in out
     found = models(out)
-    assert len(found) == 10
+    assert len(found) == 12
     assert float(found["hereditary", "receding"][0]) == pytest.approx(0.48758244, abs=2e-8)
     assert float(found["relaxing", "boltzmann"][0]) == pytest.approx(0.43198690, abs=2e-8)
     assert float(found["none", "receding"][2]) == pytest.approx(1.3913613e-3, rel=1e-7)
@@ -66,6 +66,8 @@ def test_table_without_a_plate(vcor):
     assert set(models(vcor.succeeds("verify", "case.nml"))) == {
         ("none", "boltzmann"),
         ("none", "receding"),
+        ("body", "boltzmann"),
+        ("body", "receding"),
     }
 
 

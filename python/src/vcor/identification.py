@@ -24,7 +24,16 @@ from . import _command, _library
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, read
 from .fit import fit
-from .observations import Block, Impacts, Record, Source, number, observations, velocity_of
+from .observations import (
+    Block,
+    Impacts,
+    Record,
+    Source,
+    number,
+    observations,
+    sharpen,
+    velocity_of,
+)
 
 #: Accuracy of the impacts; derivatives are differences of them
 ACCURACY = 1e-9
@@ -49,6 +58,8 @@ VANISHED = 1e-3
 #: What could be measured next, each to NEXT_ERROR
 NEXT = ("cor_sphere", "contact_time", "max_force")
 NEXT_ERROR = 0.01
+#: Data that say nothing about the scale of times
+COEFFICIENTS = {"cor", "cor_sphere", "resilience", "rebound_height"}
 #: Abscissae of data that are no impacts
 _ACROSS = {
     "force": "time [s]",
@@ -102,6 +113,8 @@ class Identification:
     #: Prediction of cor: velocity, cor, and the ends of its 95 % band
     band: dict[str, list[float]] = field(repr=False)
     model: str = ""
+    #: Where the model of the impact does not hold, in words
+    validity: str = "good"
 
     def __getitem__(self, address: str) -> float:
         """Value of a parameter."""
@@ -141,6 +154,7 @@ class Identification:
             "aic": self.aic,
             "bic": self.bic,
             "window": list(self.window),
+            "validity": self.validity,
             "next": self.advice,
             "data": list(self.data),
             "band": self.band,
@@ -404,7 +418,7 @@ def identify(
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
     if case["solver.method"] != "direct":
-        case["solver.accuracy"] = min(ACCURACY, number(case, "solver.accuracy"))
+        sharpen(case, ACCURACY)
     problem = _Problem(case, free, blocks, errors or {})
     x, chi2 = problem.best(seed)
     return _judged(problem, x, chi2, model or "")
@@ -481,7 +495,21 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
         advice=_next(problem, x, eigenvalues, vectors),
         band=_band(problem, x, covariance),
         model=model,
+        validity=_validity(problem, case),
     )
+
+
+def _validity(problem: _Problem, case: Case) -> str:
+    """Where the model of the impact does not hold for measured impacts, in words."""
+    impacts = [block for block in problem.blocks if isinstance(block, Impacts)]
+    found = [pair for block in impacts for pair in block.validity(case)]
+    words = [
+        f"{kind} at {sum(one == kind for one, _ in found)} of {len(found)} impacts, by "
+        + ", ".join(sorted({cause for one, cause in found if one == kind}))
+        for kind in ("outside", "caution")
+        if any(one == kind for one, _ in found)
+    ]
+    return "; ".join(words) or "good"
 
 
 def _not_determined(problem: _Problem, x: Floats, lost: Floats) -> str:
@@ -740,7 +768,9 @@ def _report(found: Identification) -> str:
     ]
     low, high = found.window
     lines += ["", f"the data see the material from {low:.2g} to {high:.2g} s"]
-    lines += [f"what would help most: {found.advice}", ""]
+    if {row["quantity"] for row in found.data} <= COEFFICIENTS:
+        lines += ["these are coefficients only: the scale of times rests on what is not free"]
+    lines += [f"validity: {found.validity}", f"what would help most: {found.advice}", ""]
     lines.append(f"{'datum':20s}{'at':>12s}{'value':>13s}{'model':>13s}{'residual/error':>16s}")
     shown = sorted(found.data, key=lambda row: -abs(row["residual"]))[:20]
     lines += [

@@ -113,6 +113,14 @@ class Impacts:
         results, _ = case._handle.solve([*self.settings, *addresses], table, names, threads)
         return results.reshape(m, n, len(names))
 
+    def validity(self, case: Case) -> list[tuple[str, str]]:
+        """Whether the model holds, and the column that decides, of each impact."""
+        found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
+        return [
+            (str(one), str(cause))
+            for one, cause in zip(found.validity.values, found.validity_cause.values, strict=True)
+        ]
+
     def window(self, case: Case) -> tuple[float, float]:
         """Times of the material that the data see [s]."""
         times = self.quantities(case, [], np.empty((1, 0)), ["contact_time"])
@@ -326,3 +334,9 @@ def velocity_of(case: Case) -> float:
     if case["impact.drop_height"] is None:
         return number(case, "impact.velocity")
     return math.sqrt(2 * gravity_of(case) * number(case, "impact.drop_height"))
+
+
+def sharpen(case: Case, accuracy: float) -> None:
+    """Solve a case to an accuracy; a plate with waves = 'body' does not reach any but its own."""
+    if case["plate.waves"] != "body":
+        case["solver.accuracy"] = min(accuracy, number(case, "solver.accuracy"))

@@ -18,11 +18,10 @@ from scipy.special import ndtri
 from . import _command, _library
 from ._library import FileError, Floats, InputError, NumericalError, UsageError
 from .case import Case, read
+from .observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
 ACCURACY = 1e-11
-#: That of a plate with waves = 'body', whose compliance is a fitted sum
-ACCURACY_OF_BODY = 1e-6
 #: Step of the logarithms for differences of fourth order: errors 1e-9 of the step and the solution
 STEP = 5e-3
 #: Quantities that are shown if none are asked for
@@ -430,7 +429,7 @@ def _exact(case: Case, quantities: list[str]) -> Floats:
 def _accurate(case: Case | str | os.PathLike[str]) -> Case:
     """A copy of the case that is solved to ACCURACY."""
     case = (case if isinstance(case, Case) else read(case)).copy()
-    case["solver.accuracy"] = ACCURACY_OF_BODY if case["plate.waves"] == "body" else ACCURACY
+    sharpen(case, ACCURACY)
     return case
 
 
