@@ -308,26 +308,40 @@ contains
       !> Set if it cannot be made
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: template
+      character(len=:), allocatable :: name
       integer(c_int) :: reason
+      integer :: at
+      logical :: made
 
-      template = c_text(path(:index(path, '/', back=.true.))//'.vcor-XXXXXX')
-      if (c_associated(c_mkdtemp(template))) then
-         folder = template(:len(template) - 1)
-         call remember(folder)
-      else
+      name = c_text(path(:index(path, '/', back=.true.))//'.vcor-XXXXXX')
+      ! remembered while it is made: mkdtemp writes each name that it tries over the X
+      call remember(name(:len(name) - 1), at)
+      if (at > 0) then
+         made = c_associated(c_mkdtemp(places(at)%path))
          reason = last_errno()
+         name = transfer(places(at)%path(:len(name)), name)
+         if (.not. made) places(at)%path(1) = c_null_char
+      else
+         made = c_associated(c_mkdtemp(name))
+         reason = last_errno()
+      end if
+      if (made) then
+         folder = name(:len(name) - 1)
+      else
          call raise_system(error, 'cannot write '//quoted_path(path), reason)
       end if
    end subroutine make_scratch
 
    !> Remember a path: a signal that ends the process removes what has it
-   subroutine remember(path)
+   subroutine remember(path, at)
       !> Path of a file in a private folder, or of such a folder
       character(len=*), intent(in) :: path
+      !> Its place; 0 where there is no room for it
+      integer, intent(out), optional :: at
 
       integer :: i, j
 
+      if (present(at)) at = 0
       if (len(path) >= longest) return
       do i = 1, most
          if (places(i)%path(1) /= c_null_char) cycle
@@ -336,6 +350,7 @@ contains
             places(i)%path(j) = c_null_char
             if (j <= len(path)) places(i)%path(j) = path(j:j)
          end do
+         if (present(at)) at = i
          return
       end do
    end subroutine remember
