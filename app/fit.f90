@@ -112,7 +112,7 @@ contains
       if (wish%reading%poisson_ratio < no_ratio) poisson_ratio = wish%reading%poisson_ratio
       remarks = fit_remarks(fit, source, samples)
       group = material_text(fit%data, density, poisson_ratio, samples%first_time(), &
-         samples%last_time())
+         samples%last_time(), samples%keys)
       path = ''
       if (allocated(request%directory)) then
          call choose_path(request%directory, source, sampled, path, error)

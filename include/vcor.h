@@ -130,6 +130,9 @@ int vcor_complex_modulus(const vcor_case *self, const char *material, int n,
                          const double *frequencies, double *storage, double *loss,
                          vcor_error *error);
 
+/* Shift factor a_T of a material at impact.temperature, 1 for one without a shift */
+int vcor_time_factor(const vcor_case *self, const char *material, double *factor, vcor_error *error);
+
 /* The case by all methods: for each row of VCOR_COMPARED the most accurate value, that by internal
  * variables (nan if they cannot solve it), that by product integration extrapolated to steps of no
  * length, and the number of digits that can be trusted: 4 numbers a row, nan where the bodies do not

@@ -1,5 +1,6 @@
 """Master curves: shift factors of moduli that were made with known ones."""
 
+import dataclasses
 import json
 
 import numpy as np
@@ -84,7 +85,24 @@ def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     assert "wlf_c1" in capsys.readouterr().out
     written = json.loads((tmp_path / "raw_master.json").read_text())
     assert written["laws"][0]["law"] == "WLF"
-    assert vcor.fit(tmp_path / "raw_master.csv", model="prony", name="rubber").rms < 0.02
+    fit = vcor.fit(tmp_path / "raw_master.csv", model="prony", name="rubber")
+    assert fit.rms < 0.02
+    # the shift goes on into the material, and into an impact at another temperature
+    program("fit", "raw_master.csv", "--name", "rubber", "--quiet", "--output", "rubber.nml")
+    (tmp_path / "drop.nml").write_text(
+        "&impact velocity = 2, temperature = 303.15 /\n"
+        "&sphere radius = 0.01, material = 'steel' /\n"
+        "&plate material = 'rubber', waves = 'none' /\n"
+        "&material name = 'steel', model = 'rigid', density = 7800 /\n"
+    )
+    cor = program("run", "drop.nml", "rubber.nml", "--print", "cor", "--quiet")
+    assert "shift = 'wlf'" in (tmp_path / "rubber.nml").read_text()
+    drop = vcor.Case((tmp_path / "drop.nml").read_text() + fit.group)
+    assert drop.solve()["cor"] == pytest.approx(float(cor.split()[-1]), abs=1e-6)
+    found = vcor.master(path, reference_temperature=293.15)
+    assert drop["rubber.wlf_c1"] == pytest.approx(found.laws[0].values["wlf_c1"], rel=1e-6)
+    without = dataclasses.replace(found, laws=())
+    assert without.keys("raw.csv")["shift_file"] == "raw.csv"
     case = vcor.Case(
         "&impact velocity = 2, temperature = 303.15 /\n"
         "&sphere radius = 0.01, material = 'steel' /\n"

@@ -118,7 +118,7 @@ def test_small_spreads_are_linear(sls):
     assert np.allclose(row["first"], share, atol=0.05)
     assert np.allclose(row["total"], share, atol=0.05)
     assert float(row.numerical) < 1e-6
-    below, above = row.swing.sel(parameter="rubber.beta").values
+    below, above = row.swing.sel(source="rubber.beta").values
     assert below > float(row["value"]) > above
     assert (row.percentiles.diff("percent") > 0).all()
 
@@ -143,6 +143,18 @@ def test_covariance_counts_as_one_parameter(half_space, tmp_path):
     total = found.table.total.sel(quantity="cor").values
     assert total[1] == pytest.approx(0, abs=1e-6)
     assert float(found.table.total.sel(quantity="max_force", source="covariance")) > 0.3
+    # the bar of the tornado: all of them moved together by one standard deviation
+    ends = [
+        half_space.solve(
+            dict(zip(MATERIAL, values * np.exp(side * size * direction), strict=True)),
+            ["cor", "max_force"],
+        )
+        for side in (-1, 1)
+    ]
+    swing = found.table.swing.sel(source="covariance")
+    for name in ("cor", "max_force"):
+        wanted = [end[name] for end in ends]
+        assert swing.sel(quantity=name).values == pytest.approx(wanted, rel=1e-6)
 
 
 def test_model_error_is_the_distance_to_the_exact_mechanics(half_space):

@@ -21,6 +21,7 @@ module vcor_c_api
    use vcor_io_data_file, only : read_data
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
+   use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
    use vcor_sweep_part, only : most_threads, new_part
    use vcor_sweep_points, only : default_threads, failures_t, solve_points
@@ -38,7 +39,7 @@ module vcor_c_api
    public :: c_error_t, c_column_t, c_text, c_numbers, told
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
       vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
-      vcor_relaxation, vcor_complex_modulus, vcor_verify
+      vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
 
    !> `vcor_error`
    type, bind(c) :: c_error_t
@@ -466,6 +467,21 @@ contains
       end if
       code = told(trouble, error)
    end function vcor_complex_modulus
+
+   !> What the temperature of the impact multiplies all times of a material by
+   function vcor_time_factor(self, material, factor, error) bind(c) result(code)
+      type(c_ptr), value :: self, material
+      real(c_double), intent(inout) :: factor
+      type(c_ptr), value :: error
+      integer(c_int) :: code
+
+      class(material_t), allocatable :: body
+      type(error_t), allocatable :: trouble
+
+      call find_body(self, material, body, trouble)
+      if (.not. allocated(trouble)) factor = time_factor_of(body)
+      code = told(trouble, error)
+   end function vcor_time_factor
 
    !> The case by all methods
    function vcor_verify(self, results, error) bind(c) result(code)

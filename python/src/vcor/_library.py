@@ -133,6 +133,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_history": [c_void_p, POINTER(c_int), POINTER(c_void_p)],
     "vcor_relaxation": [c_void_p, c_char_p, c_int, _doubles, _doubles],
     "vcor_complex_modulus": [c_void_p, c_char_p, c_int, _doubles, _doubles, _doubles],
+    "vcor_time_factor": [c_void_p, c_char_p, POINTER(c_double)],
     "vcor_verify": [c_void_p, _doubles],
     "vcor_fit_data": [c_void_p],
     "vcor_read_moduli": [
@@ -279,6 +280,12 @@ class Handle:
         n = frequencies.size
         _call("vcor_complex_modulus", self._case, material.encode(), n, frequencies, storage, loss)
         return storage + 1j * loss
+
+    def time_factor(self, material: str) -> float:
+        """Shift factor of a material at the temperature of the impact."""
+        factor = c_double()
+        _call("vcor_time_factor", self._case, material.encode(), byref(factor))
+        return factor.value
 
     def verify(self) -> Floats:
         """Best value, internal variables, product integration, digits; shape (quantities, 4)."""

@@ -430,6 +430,10 @@ class Material:
         w = np.asarray(frequencies, dtype=float)
         return self._case._handle.complex_modulus(self.name, w.ravel()).reshape(w.shape)
 
+    def time_factor(self) -> float:
+        """Shift factor a_T at `impact.temperature` [1]; 1 for a material without a shift."""
+        return self._case._handle.time_factor(self.name)
+
 
 def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> Case:
     """A case from its pickle; data files are found from the folder where it was."""

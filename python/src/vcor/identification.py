@@ -25,14 +25,17 @@ from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, read
 from .fit import fit
 from .observations import (
+    COEFFICIENTS,
     Block,
     Impacts,
     Record,
     Source,
+    materials_of,
     number,
     observations,
     sharpen,
     velocity_of,
+    window,
 )
 
 #: Accuracy of the impacts; derivatives are differences of them
@@ -58,8 +61,12 @@ VANISHED = 1e-3
 #: What could be measured next, each to NEXT_ERROR
 NEXT = ("cor_sphere", "contact_time", "max_force")
 NEXT_ERROR = 0.01
-#: Data that say nothing about the scale of times
-COEFFICIENTS = {"cor", "cor_sphere", "resilience", "rebound_height"}
+#: Factor from the measured velocities to those that may be measured next
+NEXT_REACH = 3.0
+#: Keys of a material that stay with another model
+KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_temperature",
+        "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
+        "valid_temperature_to")  # fmt: skip
 #: Abscissae of data that are no impacts
 _ACROSS = {
     "force": "time [s]",
@@ -106,7 +113,7 @@ class Identification:
     bic: float
     #: A row per datum: source, quantity, at, value, sigma, model, residual
     data: tuple[dict[str, Any], ...]
-    #: Times that the data see [s]
+    #: Times that the data see [s], of a material with a shift at its reference temperature
     window: tuple[float, float]
     #: The measurement that would help most: quantity, velocity [m/s], and by how much
     advice: str
@@ -168,7 +175,7 @@ class Identification:
         from matplotlib import style
         from matplotlib.figure import Figure
 
-        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _scale, _with_unit
+        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _label_short_decades, _legend, _panel_label
 
         names = list(dict.fromkeys(row["quantity"] for row in self.data))
         width = COLUMN if len(names) == 1 else PAGE
@@ -183,29 +190,27 @@ class Identification:
                     np.array([row[key] for row in rows])
                     for key in ("at", "value", "sigma", "model", "residual")
                 )
-                known = _library.columns(0)
-                unit = known[name].unit if name in known else "N" if name == "force" else "Pa"
-                factor, unit = _scale(unit, value)
+                unit = {"force": "N"}.get(name, "Pa" if "modulus" in name else "")
+                factor, label = _panel_label(name, unit, value)
                 # at several temperatures, say, no line leads through all
                 apart = len(set(at)) < len(at)
+                line = at, factor * model
                 if name == "cor" and self.band["velocity"] and not apart:
                     band = {key: np.array(column) for key, column in self.band.items()}
+                    line = band["velocity"], band["cor"]
                     above.fill_between(
-                        band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1"
-                    )
-                    line, text = (band["velocity"], band["cor"]), "model, 95 % band"
-                else:
-                    line, text = (at, factor * model), "model"
+                        band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1",
+                        label="95 % band",
+                    )  # fmt: skip
                 above.plot(
                     *line, marker="x" if apart else "", ls="" if apart else "-", color="C1",
-                    zorder=3, label=text,
+                    zorder=3, label="model",
                 )  # fmt: skip
                 above.errorbar(
                     at, factor * value, factor * sigma, fmt="o", ms=3, color="black",
                     mfc="white", label="data",
                 )  # fmt: skip
-                above.set_ylabel(_with_unit(name.replace("_", " "), unit))
-                above.legend()
+                above.set_ylabel(label)
                 below.axhline(0, lw=0.5, color="grey", marker="")
                 below.plot(at, residual, "o", ms=3, color="black")
                 below.set_ylabel("residual/error")
@@ -214,6 +219,9 @@ class Identification:
                     above.set_xscale("log")
                 if "modulus" in name:
                     above.set_yscale("log")
+                for axis in (above.xaxis, above.yaxis):
+                    _label_short_decades(axis)
+            _legend(made, *axes[0])
         return made
 
 
@@ -457,8 +465,8 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     )
     n, k = len(problem.value), len(x) + int(problem.estimated)
     likelihood = n * math.log(max(chi2, 1e-300) / n) if problem.estimated else chi2
-    windows = [block.window(case) for block in problem.blocks]
     found = problem.predict(x[None])[0]
+    materials = materials_of(free)
     rows = tuple(
         {
             "source": block.source,
@@ -491,7 +499,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
         aic=likelihood + 2 * k,
         bic=likelihood + k * math.log(n),
         data=rows,
-        window=(min(one[0] for one in windows), max(one[1] for one in windows)),
+        window=window(problem.blocks, case, materials[0] if len(materials) == 1 else ""),
         advice=_next(problem, x, eigenvalues, vectors),
         band=_band(problem, x, covariance),
         model=model,
@@ -619,9 +627,11 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
     """The measurement that would bring the worst combination down most."""
     block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
     speeds = block.velocity if block else np.array([velocity_of(problem.case)])
-    grid = np.geomspace(speeds.min() / 10, speeds.max() * 10, 13)
+    grid = np.geomspace(speeds.min() / NEXT_REACH, speeds.max() * NEXT_REACH, 13)
     case, free = problem.case, problem.free
     probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
+    measured = (grid >= speeds.min()) & (grid <= speeds.max())
+    feasible = measured | [kind != "outside" for kind, _ in probe.validity(case)]
 
     def logarithms(points: Floats) -> Floats:
         found = probe.quantities(case, free, np.exp(points), list(NEXT))
@@ -632,7 +642,7 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
     now = np.sqrt(np.diag(np.linalg.inv(fisher)))
     best, where = 1.0, None
     for j, row in enumerate(slopes):
-        if not np.isfinite(row).all():
+        if not (np.isfinite(row).all() and feasible[j // len(NEXT)]):
             continue
         then = np.sqrt(np.diag(np.linalg.inv(fisher + np.outer(row, row))))
         if then.max() / now.max() < best:
@@ -667,16 +677,17 @@ def _with_model(
     case: Case, free: Sequence[str], model: str, fix: Mapping[str, float], sources: Sequence[Source]
 ) -> tuple[Case, list[str]]:
     """The case with another model for the material of the free parameters, all of it free."""
-    names = list(dict.fromkeys(address.rpartition(".")[0] for address in free))
-    if len(names) != 1:
+    names = materials_of(free)
+    if len(names) != 1 or not all(address.startswith(f"{names[0]}.") for address in free):
         raise UsageError("--model: the free parameters must be those of one material")
     name = names[0]
     kind, _, terms = model.partition(":")
-    probe = [observations(case, source, free) for source in sources]
-    first = min(block.window(case)[0] for block in probe)
-    last = max(block.window(case)[1] for block in probe)
+    first, last = window([observations(case, one, free) for one in sources], case, name)
     times = np.geomspace(first, last, 60)
-    moduli = case.material(name).relaxation(times)
+    reference = case.copy()
+    if case[f"{name}.shift"] is not None:
+        reference["impact.temperature"] = number(case, f"{name}.reference_temperature")
+    moduli = reference.material(name).relaxation(times)
     keys: dict[str, list[float]] = {}
     if kind == "prony":
         # equal moduli and times that are apart, also where one term would do
@@ -687,29 +698,25 @@ def _with_model(
     else:
         for one in fit((times, moduli), model=kind, name=name).parameters:
             keys[one.name] = [one.value]
-    groups = [group for group in case.text().split("\n&") if group.strip()]
-    kept, old = [], ""
-    for group in groups:
-        if f"name = '{name}'" in group.replace('"', "'"):
-            old = group
-        else:
-            kept.append("&" + group.lstrip("&"))
-    common = [
-        line for line in old.splitlines()
-        if line.split("=")[0].strip() in ("density", "poisson_ratio")
-    ]  # fmt: skip
-    lines = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
-    rest = [f"&material\n   name = '{name}'\n   model = '{kind}'", *lines, *common, "/\n"]
-    changed = Case("\n".join([*kept, *rest]), name=case.name)
+
+    def other(old: re.Match[str]) -> str:
+        kept = [line for line in old[0].splitlines() if line.split("=")[0].strip() in KEPT]
+        rows = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
+        return "\n".join(["&material", f"   model = '{kind}'", *kept, *rows, "/"])
+
+    title = re.escape(f"name = '{case[f'{name}.name']}'")
+    group = re.compile(rf"^&material\n   {title}\n.*?^/$", re.MULTILINE | re.DOTALL)
+    changed = Case(group.sub(other, case.text()), name=case.name)
     addresses = [
         f"{name}.{key}({i + 1})" if key in ("moduli", "times") else f"{name}.{key}"
         for key, row in keys.items()
         for i, x in enumerate(row)
         if x > 0
     ]
-    for address, value in fix.items():
+    addresses += [address for address in free if address.rpartition(".")[2] in KEPT]
+    for address in fix:
         if address in addresses:
-            changed[address] = float(value)
+            changed[address] = float(fix[address])
             addresses.remove(address)
     return changed, addresses
 
@@ -767,8 +774,13 @@ def _report(found: Identification) -> str:
         for (text, error), value in zip(found.combinations, found.eigenvalues, strict=True)
     ]
     low, high = found.window
-    lines += ["", f"the data see the material from {low:.2g} to {high:.2g} s"]
-    if {row["quantity"] for row in found.data} <= COEFFICIENTS:
+    seen = f"the data see the material from {low:.2g} to {high:.2g} s"
+    materials = materials_of([one.address for one in found.estimates])
+    if len(materials) == 1 and found.case[f"{materials[0]}.shift"] is not None:
+        kelvin = number(found.case, f"{materials[0]}.reference_temperature")
+        seen += f" at its reference temperature, {kelvin:.2f} K"
+    lines += ["", seen]
+    if {row["quantity"] for row in found.data} <= {*COEFFICIENTS}:
         lines += ["these are coefficients only: the scale of times rests on what is not free"]
     lines += [f"validity: {found.validity}", f"what would help most: {found.advice}", ""]
     lines.append(f"{'datum':20s}{'at':>12s}{'value':>13s}{'model':>13s}{'residual/error':>16s}")

@@ -34,6 +34,8 @@ GAS, ZERO_C = 8.31446261815324, 273.15
 DEGREE = 4
 #: Smallest scatter of a curve that is believed, relative
 LEAST_SCATTER = 1e-3
+#: Largest misfit of the steps, in standard errors, of a law that stands for the table
+FOLLOWS = 2.0
 _TEMPERATURE = re.compile(r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(]\s*\W*([CK])\b.*)?")
 
 
@@ -72,6 +74,8 @@ class Law:
     errors: dict[str, float]
     #: Root of the mean square of the misfit of the steps of log10 a_T
     rms: float
+    #: The same of the misfit in standard errors, by the degrees of freedom
+    misfit: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -96,6 +100,19 @@ class Master:
         moduli = np.hstack([one.moduli for one in self.curves])
         order = np.argsort(at, kind="stable")
         return at[order], *moduli[:, order]
+
+    def keys(self, table: str) -> dict[str, str | float]:
+        """Keys of a &material: the law that the shift factors follow, else their table, a file."""
+        law = min(self.laws, key=lambda one: one.misfit, default=None)
+        found: dict[str, str | float] = {"shift": "table", "shift_file": table}
+        if law and law.misfit < FOLLOWS:
+            found = {"shift": law.name.lower(), **law.values}
+        return {
+            **found,
+            "reference_temperature": self.reference_temperature,
+            "valid_temperature_from": float(self.temperatures.min()),
+            "valid_temperature_to": float(self.temperatures.max()),
+        }
 
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
@@ -374,7 +391,9 @@ def _laws(temperatures: Floats, steps: Floats, errors: Floats, reference: float)
         deviations = values * np.sqrt(np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * scale)
         rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
         law = law_of(found.x)
-        laws.append(Law(name, law.values, dict(zip(keys, deviations.tolist(), strict=True)), rms))
+        found_errors = dict(zip(keys, deviations.tolist(), strict=True))
+        misfit_of_law = math.sqrt(2 * found.cost / dof)
+        laws.append(Law(name, law.values, found_errors, rms, misfit_of_law))
     return tuple(laws)
 
 
@@ -407,13 +426,15 @@ def _work(options: argparse.Namespace) -> None:
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
     reference = found.reference_temperature
+    stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
+    keys = "".join(f"# &material {name} = {value!r}\n"
+                   for name, value in found.keys(f"{stem}_shift.csv").items())  # fmt: skip
     texts = {
-        ".csv": f"# master curve at {reference:.6g} K\n{head}\n" + _rows(found.curve()),
+        ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),
         "_shift.csv": f"# reference temperature {reference:.6g} K\nT [K],log10 a_T\n"
         + _rows((found.temperatures, found.log_shift)),
         ".json": json.dumps(found.as_dict(), indent=1) + "\n",
     }
-    stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
     _command.finish(options, str(found), stem, texts, found.figure())
 
 

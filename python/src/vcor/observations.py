@@ -31,6 +31,8 @@ SETTINGS = {
     "radius": "sphere.radius",
     "mass": "sphere.mass",
 }
+#: Quantities that are at most 1, and say nothing about the scale of times
+COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Difference of temperatures that is none [K]
 SAME_TEMPERATURE = 1.0
 
@@ -50,8 +52,8 @@ class Block(Protocol):
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
         """Data for each row of values at the addresses, shape (rows, n); nan without result."""
 
-    def window(self, case: Case) -> tuple[float, float]:
-        """First and last time of the material that the data see [s]."""
+    def windows(self, case: Case) -> Floats:
+        """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
 
 
 class Impacts:
@@ -72,8 +74,11 @@ class Impacts:
             if name not in known or known[name].labels:
                 raise InputError(f"{source}: found column '{name}', expected a column of the "
                                  f"summary, {', '.join(SETTINGS)} or an address")  # fmt: skip
-            if (column <= 0).any():
-                raise InputError(f"{source}: found a {name} that is not > 0")
+            most = 1.0 if name in COEFFICIENTS else math.inf
+            if (bad := np.flatnonzero((column <= 0) | (column > most))).size:
+                limit = " and <= 1" if most == 1 else ""
+                raise InputError(f"{source}: row {bad[0] + 1}: found a {name} of "
+                                 f"{column[bad[0]]:.6g}, expected one > 0{limit}")  # fmt: skip
             sigma = columns.get(f"{name}_sigma", np.full(len(column), np.nan))
             for i in np.flatnonzero(np.isfinite(column)):
                 self.quantity.append(name)
@@ -121,10 +126,11 @@ class Impacts:
             for one, cause in zip(found.validity.values, found.validity_cause.values, strict=True)
         ]
 
-    def window(self, case: Case) -> tuple[float, float]:
-        """Times of the material that the data see [s]."""
-        times = self.quantities(case, [], np.empty((1, 0)), ["contact_time"])
-        return float(np.nanmin(times)) / 100, float(np.nanmax(times))
+    def windows(self, case: Case) -> Floats:
+        """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
+        times = self.quantities(case, [], np.empty((1, 0)), ["contact_time"])[0, :, 0]
+        kelvin = self.settings.get("impact.temperature", np.full(len(times), np.nan))
+        return np.stack([times / 100, times, kelvin], axis=1)[np.isfinite(times)]
 
 
 class Record:
@@ -179,11 +185,10 @@ class Record:
                 break
         return model
 
-    def window(self, case: Case) -> tuple[float, float]:
-        """Times of the material that the data see [s]."""
-        inside = self.at[self.value > 0.01 * self.scale[0]]
-        length = float(inside[-1] - inside[0])
-        return length / 100, length
+    def windows(self, case: Case) -> Floats:
+        """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
+        length = float(np.ptp(self.at[self.value > 0.01 * self.scale[0]]))
+        return np.array([[length / 100, length, self.settings.get("impact.temperature", np.nan)]])
 
 
 class Moduli:
@@ -234,10 +239,23 @@ class Moduli:
                 row[:] = self._moduli(changed)
         return moduli
 
-    def window(self, case: Case) -> tuple[float, float]:
-        """Times of the material that the data see [s]."""
-        low, high = float(self.points.min()), float(self.points.max())
-        return (1 / high, 1 / low) if self.dynamic else (low, high)
+    def windows(self, case: Case) -> Floats:
+        """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
+        times = 1 / self.points if self.dynamic else self.points
+        return np.array([[times[i].min(), times[i].max(), t] for t, i in self.groups.items()])
+
+
+def window(blocks: Sequence[Block], case: Case, material: str) -> tuple[float, float]:
+    """Times of a material that data see [s], at its reference temperature if it has a shift."""
+    rows = np.vstack([block.windows(case) for block in blocks])
+    if material and case[f"{material}.shift"] is not None:
+        case, own = case.copy(), number(case, "impact.temperature")
+        for row in rows:
+            kelvin = float(row[2]) if math.isfinite(row[2]) else own
+            if math.isfinite(kelvin):
+                case["impact.temperature"] = kelvin
+            row[:2] /= case.material(material).time_factor()
+    return float(rows[:, 0].min()), float(rows[:, 1].max())
 
 
 def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[str, Floats]:
@@ -287,8 +305,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     if "force" in columns and "time" in columns:
         return Record(name, columns, case)
     if any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
-        names = list(dict.fromkeys(address.rpartition(".")[0] for address in free))
-        materials = [one for one in names if one not in ("impact", "sphere", "plate", "contact")]
+        materials = materials_of(free)
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
@@ -315,6 +332,12 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
     columns = [np.concatenate(parts) for parts in zip(*rows, strict=True)]
     temperatures = [np.full(len(curve.at), curve.temperature) for curve in curves]
     return {**dict(zip(names, columns, strict=True)), "temperature": np.concatenate(temperatures)}
+
+
+def materials_of(addresses: Sequence[str]) -> list[str]:
+    """Names of the materials that addresses belong to."""
+    names = dict.fromkeys(address.rpartition(".")[0] for address in addresses)
+    return [name for name in names if name not in ("impact", "sphere", "plate", "contact")]
 
 
 def number(case: Case, address: str) -> float:

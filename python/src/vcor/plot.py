@@ -27,7 +27,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from . import _command
+from . import _command, _library
 from ._command import printable
 from ._library import Floats, InputError, UsageError
 from .data import PREFIXES, Data
@@ -581,6 +581,14 @@ def _label(array: xr.DataArray, unit: str) -> str:
     name = str(array.name)
     text = _WORDS.get(name) or printable(str(array.attrs.get("long_name") or name))
     return _with_unit(_name_of(name) if "." in name else text, unit)
+
+
+def _panel_label(name: str, unit: str, values: Floats) -> tuple[float, str]:
+    """Factor for the values of a quantity, and its name in words with the unit that they have."""
+    column = _library.columns(0).get(name)
+    text = _WORDS.get(name) or (column.meaning if column else name.replace("_", " "))
+    factor, unit = _scale(column.unit if column else unit, values)
+    return factor, _with_unit(text, unit)
 
 
 def _is_geometric(values: Floats) -> bool:

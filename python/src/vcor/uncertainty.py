@@ -99,7 +99,8 @@ class Uncertainty:
     """What is known of the results of an impact; `str` is the report of the command."""
 
     #: Over `quantity`: value, numerical, material and model error, standard deviation, percentiles;
-    #: over `parameter` too: elasticity, first and total Sobol' index and their 95 % half widths
+    #: over `parameter` too: elasticity; over `source`, a parameter or the covariance as one: first
+    #: and total Sobol' index, their 95 % half widths, and swing, the ends of one deviation
     table: xr.Dataset
     #: Samples, and how many of them have no result
     samples: int
@@ -136,7 +137,7 @@ class Uncertainty:
         from matplotlib import style
         from matplotlib.figure import Figure
 
-        from .plot import COLUMN, STYLE
+        from .plot import COLUMN, STYLE, _name_of, _panel_label
 
         row = self.table.sel(quantity=quantity)
         below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
@@ -145,16 +146,18 @@ class Uncertainty:
             made = Figure(figsize=(COLUMN / 2.54, (2.5 + 0.6 * len(order)) / 2.54),
                           layout="constrained")  # fmt: skip
             axis = made.subplots()
-            names = [str(name) for name in row.parameter.values[order]]
+            joint = f"{row.parameter.size - row.source.size + 1} parameters together"
+            names = [_name_of(str(name)) if "." in str(name) else joint
+                     for name in row.source.values[order]]  # fmt: skip
+            factor, label = _panel_label(quantity, "", row["value"].values)
             for color, side, text in (
                 ("0.75", below[order], "one standard deviation less"),
                 ("C1", above[order], "one more"),
             ):
-                start = float(row["value"])
-                axis.barh(names, side - start, left=start, label=text, color=color)
+                start = factor * float(row["value"])
+                axis.barh(names, factor * side - start, left=start, label=text, color=color)
             axis.axvline(start, color="black", lw=0.8, marker="")
-            unit = str(row.units.item())
-            axis.set_xlabel(quantity.replace("_", " ") + (f" [{unit}]" if unit != "1" else ""))
+            axis.set_xlabel(label)
             made.legend(loc="outside upper center", ncols=2)
         return made
 
@@ -337,12 +340,6 @@ class _Joint:
         found: Floats = self.values * np.exp(ndtri(share) @ self.root.T)
         return found
 
-    @property
-    def deviations(self) -> Floats:
-        """Standard deviations of the logarithms."""
-        found: Floats = np.sqrt(np.sum(self.root**2, axis=1))
-        return found
-
 
 def _put_together(
     case: Case,
@@ -362,17 +359,24 @@ def _put_together(
     accurate = np.array(list(_accurate(case).solve(quantities=quantities).values()), dtype=float)
     shown = found[np.isfinite(found).all(axis=1)]
     exact = _exact(case, quantities)
-    deviations = np.array([spread.deviation for spread in spreads] + [
-        *(joint.values * joint.deviations)])  # fmt: skip
     middle = np.array([_number(case, address, zero=True) for address in parameters])
-    ends = np.tile(middle, (2 * len(parameters), 1))
-    for i, deviation in enumerate(deviations):
-        ends[2 * i : 2 * i + 2, i] += [-deviation, deviation]
-    swing = _solve(case, parameters, ends, quantities).reshape(len(parameters), 2, -1)
     elastic = np.full((len(quantities), len(parameters)), np.nan)
     apart = [i for i, number in enumerate(middle) if number != 0]
     if apart:
         elastic[:, apart] = sensitivities(case, [parameters[i] for i in apart], quantities)
+    n = len(spreads)
+    ends = np.tile(middle, (len(quantities), len(names), 2, 1))
+    for i, spread in enumerate(spreads):
+        ends[:, i, :, i] += spread.deviation * np.array([-1, 1])
+    if joint.addresses:
+        # correlated parameters move together, as they do where the quantity is off by one deviation
+        pull = np.nan_to_num(elastic[:, n:]) * np.sign(value)[:, None] @ joint.root
+        pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
+        steps = (pull @ joint.root.T)[:, None] * np.array([[-1], [1]])
+        ends[:, n, :, n:] *= np.exp(steps)
+    swing = _solve(case, parameters, ends.reshape(-1, len(parameters)), quantities)
+    swing = swing.reshape(len(quantities), -1, len(quantities))
+    swing = np.stack([part[:, k] for k, part in enumerate(swing)]).reshape(len(quantities), -1, 2)
     columns = _library.columns(0)
     over, both = ("quantity",), ("quantity", "parameter")
     table = xr.Dataset(
@@ -384,7 +388,7 @@ def _put_together(
             "mean": (over, shown.mean(axis=0)),
             "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
             "elasticity": (both, elastic),
-            "swing": (("quantity", "parameter", "side"), swing.transpose(2, 0, 1)),
+            "swing": (("quantity", "source", "side"), swing),
             "first": (("quantity", "source"), first[0]),
             "first_error": (("quantity", "source"), first[1]),
             "total": (("quantity", "source"), total[0]),

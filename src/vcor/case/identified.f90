@@ -89,7 +89,7 @@ contains
    end subroutine take_as_is
 
    !> A material as a &material group
-   function material_text(data, density, poisson_ratio, valid_from, valid_to) result(text)
+   function material_text(data, density, poisson_ratio, valid_from, valid_to, keys) result(text)
       !> The material, with its name
       type(material_data_t), intent(in) :: data
       !> Density [kg/m3]; 0: not known
@@ -100,6 +100,8 @@ contains
       real(wp), intent(in) :: valid_from
       !> Last time that the model was fitted to [s]
       real(wp), intent(in) :: valid_to
+      !> Lines of further keys; absent: none
+      character(len=*), intent(in), optional :: keys
       !> The group, each key with its unit and meaning
       character(len=:), allocatable :: text
 
@@ -115,6 +117,7 @@ contains
       call case%set(case%address('material', 'valid_from'), valid_from)
       call case%set(case%address('material', 'valid_to'), valid_to)
       text = case_text(case, complete=.false., remarks=.true.)
+      if (present(keys)) text = text(:index(text, '/', back=.true.) - 1)//keys//'/'//new_line('a')
    end function material_text
 
    !> Find out how much an impact leans on a material beyond its data

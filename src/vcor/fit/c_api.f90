@@ -93,7 +93,7 @@ contains
          fit%data%name = fortran(c_fit%name)
          c_fit%json = c_text(fit_json(fit, samples, material_text(fit%data, &
             real(c_fit%density, wp), min(0.5_wp, real(c_fit%poisson_ratio, wp)), &
-            samples%first_time(), samples%last_time())))
+            samples%first_time(), samples%last_time(), samples%keys)))
       end if
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)

@@ -21,6 +21,8 @@ module vcor_fit_samples
       real(wp), allocatable :: modulus(:)
       !> Loss moduli [Pa], > 0, shape (points); of relaxation data shape (0)
       real(wp), allocatable :: loss(:)
+      !> Lines of keys that the head of the file gives for the &material group; may be unallocated
+      character(len=:), allocatable :: keys
    contains
       !> Number of moduli
       procedure :: count => count_moduli

@@ -107,7 +107,28 @@ contains
       end if
       note = described(plan, n)
       place = name//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
+      samples%keys = keys_in(text)
    end subroutine read_samples
+
+   !> Keys of a &material group that remarks of a file give, `# &material shift = 'wlf', ...`
+   function keys_in(text) result(keys)
+      character(len=*), intent(in) :: text
+      !> A line for each of these remarks
+      character(len=:), allocatable :: keys
+
+      character(len=*), parameter :: mark = "&material "
+      character(len=:), allocatable :: remark
+      type(row_t) :: row
+
+      keys = ""
+      do
+         call row%take(text)
+         if (.not. row%is_there) exit
+         remark = adjustl(row%comment)
+         if (index(remark, mark) == 1) &
+            keys = keys//"   "//printable(trim(remark(len(mark) + 1:)))//new_line("a")
+      end do
+   end function keys_in
 
    !> How a file was understood
    pure function described(plan, n) result(text)
