@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Spoil the tuning constants of the internal-variable method one by one.
+"""Spoil the tuning constants of the solvers one by one.
 
-Builds a copy of the tree in which the constants of src/vcor/solver/ive/tuning.f90 are variables read
+Builds a copy of the tree in which the constants of src/vcor/solver/tuning.f90 are variables read
 from a file, solves the reference impacts of tests/reference and counts instructions with each constant
 multiplied by each factor, and prints a table: instructions per impact of the paper's cases over those
 without a change, impacts that miss the reference as tests/unit/test_impacts.f90 counts them, and
-impacts whose contact time or residual indentation misses where that test does not look (receding).
+impacts whose contact time or residual indentation misses where that test does not look (receding);
+last, impacts on layers that miss it as tests/cli/test_body_reference.py counts them, and impacts by
+product integration. With --tests it runs these tests of CTest, too, and names those that fail.
 
     benchmarks/tuning.py [--factors 0.5,2] [--only REGEX] [--build DIR] [--accuracies 1e-6,1e-8,1e-10]
+                         [--cases REGEX] [--tests REGEX]
 
-Needs the compiler, CMake and valgrind; half an hour for all constants.
+Needs the compiler, CMake and valgrind; an hour for all constants.
 """
 
 import argparse
@@ -22,7 +25,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TUNING = "src/vcor/solver/ive/tuning.f90"
+TUNING = "src/vcor/solver/tuning.f90"
 CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
                       re.MULTILINE)
 SETS = {"practical": 1.0e-11, "random": 1.0e-12, "designed": 3.0e-12, "found": 1.0e-12}
@@ -31,16 +34,17 @@ COLUMNS = ("cor cor_sphere contact_time max_indentation max_force residual_inden
 SHARE = (1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 2.0, 2.0)
 """Error of the first eight columns over the accuracy, as tests/unit/test_impacts.f90 has it."""
 CASES = {
-    "sls": ("sls", ()),
-    "prony": ("butyl_prony", ()),
-    "cerf": ("butyl_cerf", ()),
-    "power": ("butyl_power_law", ()),
-    "exact": ("butyl_prony", ("contact.law=receding", "plate.waves=hereditary")),
-    "exact cerf": ("butyl_cerf", ("contact.law=receding", "plate.waves=hereditary")),
+    "sls": ("sls", (), 40),
+    "prony": ("butyl_prony", (), 40),
+    "cerf": ("butyl_cerf", (), 40),
+    "power": ("butyl_power_law", (), 40),
+    "exact": ("butyl_prony", ("contact.law=receding", "plate.waves=hereditary"), 40),
+    "exact cerf": ("butyl_cerf", ("contact.law=receding", "plate.waves=hereditary"), 40),
+    "body": ("sls", ("plate.waves=body",), 2),
+    "direct": ("sls", ("solver.method=direct",), 2),
+    "receding": ("sls", ("solver.method=direct", "contact.law=receding"), 2),
 }
-"""Impacts whose instructions are counted: example and settings."""
-POINTS = 40
-"""Velocities that they are counted for."""
+"""Impacts whose instructions are counted: example, settings, and number of velocities."""
 
 READER = """
 contains
@@ -85,49 +89,53 @@ def build(folder):
                       + ("nint(value)" if kind == "integer" else "value") for name, kind, _ in found)
     text = CONSTANT.sub(r"   \1, protected :: \2 = \3\4", text)
     tuning.write_text(text.replace("\nend module", READER % cases + "\nend module"))
-    solver = folder / "src/vcor/solver/ive.f90"
+    solver = folder / "src/vcor/solver.f90"
     text = solver.read_text()
-    text = text.replace("      self%accuracy = min(", "      call read_tuning()\n      self%accuracy = min(", 1)
-    text = text.replace("   use vcor_solver_ive_tuning, only : ", "   use vcor_solver_ive_tuning, only : "
-                        "read_tuning, ", 1)
-    solver.write_text(re.sub(r"(only : read_tuning,) (.*) &\n", r"\1 &\n      \2 &\n", text, count=1))
-    subprocess.run(["cmake", "--preset", "release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-    subprocess.run(["cmake", "--build", "build/release", "--target", "vcor_program"], cwd=folder, check=True,
-                   stdout=subprocess.DEVNULL)
+    text = text.replace("      if (settings%method == 'ive') then\n", "      call read_tuning()\n"
+                        "      if (settings%method == 'ive') then\n", 1)
+    text = text.replace("   implicit none\n", "   use vcor_solver_tuning, only : read_tuning\n   implicit none\n", 1)
+    solver.write_text(text)
+    subprocess.run(["cmake", "--preset", "release", f"-DVCOR_PYTHON={ROOT / 'build/venv/bin/python'}"],
+                   cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", "build/release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
     return folder / "build/release/vcor"
 
 
-def references(folder):
-    """The reference impacts as case files beside their data: name, file, expected numbers, accuracy."""
+def references(folder, sets):
+    """The reference impacts as case files beside their data: name, file, expected numbers, accuracies."""
     impacts = []
-    for name, accuracy in SETS.items():
+    for name, accuracy in sets.items():
         for part in (folder / f"tests/reference/{name}.txt").read_text().split("! impact ")[1:]:
             title = part.split("\n", 1)[0]
             expect = [float(x) for x in re.search(r"! expect (.*)", part)[1].split()]
             file = folder / f"tests/reference/{name}_{title.split()[0]}.nml"
             file.write_text("! " + part)
-            impacts.append((f"{name} {title}", file, expect, accuracy, "'receding'" in part))
+            own = re.search(r"; accuracy (.*)", title) if name == "body" else None
+            accuracies = [float(x) for x in own[1].split()] if own else accuracy
+            impacts.append((f"{name} {title}", file, expect, accuracies, "'receding'" in part))
     return impacts
+
+
+def results(program, impacts, environment, *settings):
+    """Name, columns, expected numbers, accuracies, and whether receding; no columns without a result."""
+    run = subprocess.run([program, "run", *(file.name for _, file, *_ in impacts), "--quiet", "--print",
+                          ",".join(COLUMNS), *(word for setting in settings for word in ("--set", setting))],
+                         cwd=impacts[0][1].parent, env=environment, text=True, capture_output=True, check=False)
+    rows = run.stdout.strip().split("\n")
+    for row, (name, _, *rest) in zip(rows if len(rows) == len(impacts) else [""] * len(impacts), impacts):
+        words = row.replace(",", " ").split()
+        if " table" not in name:
+            yield name, [float(x) for x in words[:-1]] if "separated" in words else None, *rest
 
 
 def misses(program, impacts, accuracy, environment):
     """What the impacts miss, by name and column."""
-    run = subprocess.run([program, "run", *(file.name for _, file, *_ in impacts), "--quiet", "--print",
-                          ",".join(COLUMNS), "--set", "solver.method=ive", "--set",
-                          f"solver.accuracy={accuracy:g}"], cwd=impacts[0][1].parent, env=environment,
-                         text=True, capture_output=True, check=False)
-    rows = run.stdout.strip().split("\n")
-    if len(rows) != len(impacts):
-        return {("all", "no result")}
     missed = set()
-    for row, (name, _, expect, reference, receding) in zip(rows, impacts):
-        words = row.replace(",", " ").split()
-        if " table" in name:
-            continue
-        if words[-1] != "separated":
+    settings = ("solver.method=ive", f"solver.accuracy={accuracy:g}")
+    for name, found, expect, reference, receding in results(program, impacts, environment, *settings):
+        if not found:
             missed.add((name, "status"))
             continue
-        found = [float(word) for word in words[:-1]]
         scale = [1.0, 1.0, *expect[2:5], expect[3], expect[8], expect[8]]
         error = [abs(f - e) / s for f, e, s in zip(found, expect, scale)]
         for i, share in enumerate(SHARE):
@@ -140,14 +148,41 @@ def misses(program, impacts, accuracy, environment):
     return missed
 
 
-def instructions(program, folder, environment, points):
-    """Instructions of sweeps of the cases over so many velocities."""
+def misses_on_layers(program, impacts, environment):
+    """The same of impacts on layers, with the default accuracy."""
+    missed = set()
+    for name, found, expect, (sphere, relative, rest), _ in results(program, impacts, environment):
+        if not found:
+            missed.add((name, "status"))
+            continue
+        allowed = {0: 3.0 * found[8] + relative, 1: min(1.0e-7, 3.0 * found[9]) + sphere,
+                   6: (1.0e-7 + rest) * expect[8], 7: (1.0e-7 + rest) * expect[8]}
+        missed |= {(name, COLUMNS[i]) for i, most in allowed.items() if not abs(found[i] - expect[i]) <= most}
+    return missed
+
+
+def misses_by_product(program, impacts, accuracy, environment):
+    """The same of product integration, whose accuracy is that of the coefficients of restitution."""
+    missed = set()
+    settings = ("solver.method=direct", f"solver.accuracy={accuracy:g}")
+    for name, found, expect, reference, _ in results(program, impacts, environment, *settings):
+        if not found:
+            missed.add((name, "status"))
+            continue
+        for i in (0, 1):
+            if not abs(found[i] - expect[i]) <= min(accuracy, 3.0 * found[8 + i]) + reference:
+                missed.add((name, COLUMNS[i]))
+    return missed
+
+
+def instructions(program, folder, environment, cases, times):
+    """Instructions of sweeps of the cases over so many times their number of velocities."""
     counts = []
-    for example, settings in CASES.values():
+    for example, settings, points in cases.values():
         text = (ROOT / f"examples/paper/{example}.nml").read_text()
         case = folder / "instructions.nml"
         case.write_text(text + "&sweep parameter = 'impact.velocity', start = 1.0, stop = 12.0, "
-                        f"count = {points}, spacing = 'log' /\n")
+                        f"count = {times * points}, spacing = 'log' /\n")
         command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", program, "run", case,
                    "--threads", "1", "--quiet", "--print", "cor"]
         for setting in settings:
@@ -164,34 +199,48 @@ def main():
     parser.add_argument("--only", default="")
     parser.add_argument("--build", type=Path)
     parser.add_argument("--accuracies", default="1e-6,1e-8,1e-10")
+    parser.add_argument("--cases", default="")
+    parser.add_argument("--tests", default="")
     options = parser.parse_args()
     accuracies = [float(x) for x in options.accuracies.split(",")]
     folder = (options.build or Path(tempfile.mkdtemp(prefix="vcor_tuning_"))).resolve()
     program = folder / "build/release/vcor"
     if not program.exists():
         program = build(folder)
-    impacts = references(folder)
+    impacts = references(folder, SETS)
+    layers = references(folder, {"body": 0.0})
+    practical = references(folder, {"practical": SETS["practical"]})
+    cases = {name: case for name, case in CASES.items() if re.search(options.cases, name)}
     values = folder / f"values_{os.getpid()}.txt"
     environment = dict(os.environ, VCOR_TUNING=str(values), OMP_NUM_THREADS="1")
 
     def measure(line):
         values.write_text(line)
         missed = [misses(program, impacts, accuracy, environment) for accuracy in accuracies]
-        return [(n - i) / 1000.0 / POINTS for n, i in
-                zip(instructions(program, folder, environment, POINTS), idle)], missed
+        missed.append(misses_on_layers(program, layers, environment))
+        missed.append(misses_by_product(program, practical, 1.0e-6, environment))
+        return [(n - i) / 1000.0 / points for n, i, (*_, points) in
+                zip(instructions(program, folder, environment, cases, 1), idle, cases.values())], missed
+
+    def failed_tests():
+        if not options.tests:
+            return ""
+        run = subprocess.run(["ctest", "--test-dir", folder / "build/release", "-R", options.tests],
+                             env=environment, text=True, capture_output=True, check=False)
+        return "   failed: " + (" ".join(re.findall(r"- (\w+) \(", run.stdout)) or "none")
 
     # what a run costs without an impact
     values.write_text("")
-    few, many = (instructions(program, folder, environment, n) for n in (POINTS, 3 * POINTS))
+    few, many = (instructions(program, folder, environment, cases, times) for times in (1, 3))
     idle = [n - (m - n) / 2 for n, m in zip(few, many)]
     usual, known = measure("")
+    sets = [f"{accuracy:g}" for accuracy in accuracies] + ["body", "direct"]
     print("usual: instructions per impact [1000]",
-          ", ".join(f"{name} {count:.0f}" for name, count in zip(CASES, usual)))
-    for accuracy, missed in zip(accuracies, known, strict=True):
-        print(f"missed at {accuracy:g}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
-    print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in CASES)
-          + " ".join(f"{accuracy:>9.0e}" for accuracy in accuracies) + "   new misses (mended) at each accuracy",
-          flush=True)
+          ", ".join(f"{name} {count:.0f}" for name, count in zip(cases, usual)), failed_tests())
+    for name, missed in zip(sets, known, strict=True):
+        print(f"missed at {name}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
+    print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in cases)
+          + " ".join(f"{name:>9}" for name in sets) + "   new misses + receding (mended) of each set", flush=True)
     for name, kind, value in constants((ROOT / TUNING).read_text()):
         if not re.search(options.only, name):
             continue
@@ -204,7 +253,7 @@ def main():
             for now, before in zip(missed, known):
                 tested = {m for m in now - before if not m[1].endswith("receding")}
                 row += f" {len(tested):>3}+{len(now - before) - len(tested)}({len(before - now)})"
-            print(row, flush=True)
+            print(row + failed_tests(), flush=True)
     if not options.build:
         shutil.rmtree(folder)
 

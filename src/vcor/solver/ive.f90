@@ -14,10 +14,10 @@ module vcor_solver_ive
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_ive_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_start, loosest_accuracy, no_sum, plate_share, window_growth, &
-      window_margin
-   use vcor_solver_type, only : default_accuracy, layer_reach, solver_settings_t, solver_t
+   use vcor_solver_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
+      layer_growth, layer_reach, layer_start, loosest_accuracy, no_sum, plate_share, second_look, &
+      window_growth, window_margin
+   use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
 
@@ -137,9 +137,7 @@ contains
       !> Relative error
       real(wp) :: error
 
-      ! the error oscillates in the logarithm of the time
-      real(wp), parameter :: part(2) = [1.0_wp, 1.5_wp]
-      real(wp) :: t, lost
+      real(wp) :: part(2), t, lost
       integer :: i, node
 
       error = contact%error
@@ -148,6 +146,7 @@ contains
          if (trajectory%state(col_time, node) >= trajectory%time_of_max_force) exit
       end do
       lost = trajectory%state(col_impulse, node)/(impact%mass*impact%velocity)
+      part = [1.0_wp, second_look]
       do i = 1, size(part)
          t = part(i)*trajectory%time_of_max_force
          error = max(error, lost*abs(contact%integral(t) &

@@ -9,12 +9,8 @@ module vcor_solver_type
    implicit none
    private
 
-   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, layer_reach, &
-      refuse_growth, method_for
-
-   !> Accuracy of `cor` on a layer where none is asked for, or a better one than product integration
-   !> has: the velocity of its face at the end is another matter than the sphere's
-   real(wp), parameter :: layer_reach = 3.0e-4_wp
+   public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth, &
+      method_for
 
    !> Letters of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')

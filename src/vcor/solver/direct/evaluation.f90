@@ -7,6 +7,7 @@ module vcor_solver_direct_evaluation
       trajectory_t
    use vcor_kinds, only : wp
    use vcor_solver_equal_steps, only : add_last_step, parabola
+   use vcor_solver_tuning, only : next_to_integer
    implicit none
    private
 
@@ -212,12 +213,11 @@ contains
       !> Weights of nodes 0 .. 3
       real(wp) :: weight(4)
 
-      real(wp), parameter :: smooth = 1.0e-3_wp
       real(wp) :: p, a, b, c, d(2)
 
       p = law%exponent - 1.0_wp
       weight = [-1.0_wp, 1.0_wp, 0.0_wp, 0.0_wp]/12.0_wp
-      if (abs(p - anint(p)) < smooth) return
+      if (abs(p - anint(p)) < next_to_integer) return
       ! with v_j = w_j j^p: sum v_j = a, sum v_j j^(1-p) = a + b, sum v_j j = a + c
       a = -zeta(-p)
       b = 1.0_wp/12.0_wp - a

@@ -17,6 +17,7 @@ module vcor_solver_direct_motion
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
    use vcor_solver_direct_weights, only : layer_weights, memory_weights
+   use vcor_solver_tuning, only : near_drift, stiff_step
    implicit none
    private
 
@@ -119,10 +120,6 @@ contains
       ! rules for the integral over a step, from its end, its start and the node before
       real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
-      ! Adams and Moulton's rule is stable up to 6 for a decay rate times the step
-      real(wp), parameter :: stiff = 2.0_wp
-      ! steps next to t = 0 on which the rate of the drift is no parabola
-      integer, parameter :: near_start = 16
       real(wp) :: response
 
       self%t = self%dt*real(n, wp)
@@ -132,14 +129,14 @@ contains
       response = self%alpha
       if (.not. self%layered) response = response + self%dt*self%memory%newest
       self%rule = self%dt*adams_moulton
-      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > stiff) &
+      if (n == 1 .or. self%dt*(response*stiffness + viscosity/impact%mass) > stiff_step) &
          self%rule = self%dt*trapezoid
       self%weight = self%rule(1)
       call go_on(self%force, self%rule)
       call go_on(self%whole, self%rule)
       if (.not. self%frozen) return
       self%drift_rule = self%rule
-      if (n <= near_start) self%drift_rule = self%dt*power_rule(n, self%power)
+      if (n <= near_drift) self%drift_rule = self%dt*power_rule(n, self%power)
       call go_on(self%push, self%rule)
       call go_on(self%drift, self%drift_rule)
       call go_on(self%lag, self%rule)

@@ -30,15 +30,13 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_type, only : default_accuracy, layer_reach, refuse_growth, solver_settings_t, &
-      solver_t
+   use vcor_solver_tuning, only : beyond_all_motion, enough_steps, first_steps, last_part, &
+      layer_reach, least_order, least_part, most_for_all, most_for_layers
+   use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    implicit none
    private
 
    public :: product_t, new_product
-
-   !> A run of more steps is given up: its sums take seconds, or the compliance of a layer does
-   integer, parameter :: most_for_all = 60000, most_for_layers = 8000
 
    !> Product integration
    type, extends(solver_t) :: product_t
@@ -97,10 +95,7 @@ contains
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
-      integer, parameter :: first_steps = 64, spare = 8
-      ! steps beyond which the face of a layer is not followed for the sake of `cor` alone
-      integer, parameter :: enough = 1000
-      real(wp), parameter :: least_part = 32.0_wp
+      integer, parameter :: spare = 8
       real(wp) :: dt, span, reach, cor(3), cor_sphere(3), depth(3), force(3)
       type(richardson_t) :: found
       integer :: level, room
@@ -159,7 +154,7 @@ contains
                end if
                if (time_step > 0.0_wp) return
                if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
-                   .and. trajectory%steps > enough &
+                   .and. trajectory%steps > enough_steps &
                    .or. trajectory%cor_error <= trajectory%accuracy)) then
                   ! the steps were not chosen for the maxima
                   trajectory%max_indentation = extrapolated(depth)
@@ -193,7 +188,6 @@ contains
       !> Their limit
       real(wp) :: extrapolated
 
-      real(wp), parameter :: least_order = 1.5_wp
       type(richardson_t) :: found
 
       extrapolated = value(3)
@@ -217,10 +211,6 @@ contains
       logical, intent(out) :: crude
       type(error_t), allocatable, intent(out) :: error
 
-      ! rate of the indentation over the velocity of a free fall
-      real(wp), parameter :: beyond_all_motion = 1.0e10_wp
-      ! part of the approach that the last step of a rebound may take back
-      real(wp), parameter :: last_part = 0.125_wp
       type(run_t) :: run
       real(wp) :: end_time, node(columns), alpha
       integer :: n, room, turn

@@ -12,6 +12,7 @@ module vcor_solver_direct_receding
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_weights, only : contact_kernel_t
+   use vcor_solver_tuning, only : error_of_t1, noticeable_growth
    implicit none
    private
 
@@ -84,8 +85,6 @@ contains
       !> v_0 [m/s] and b [m/(N s)]
       real(wp), intent(in) :: velocity(2)
 
-      ! growth that is more than rounding, over the time step
-      real(wp), parameter :: noticeable = 1.0e-6_wp
       real(wp) :: viscosity, known, per_force, force, condition, earlier, earlier_force
       integer :: m
 
@@ -125,7 +124,7 @@ contains
          self%force = force
          call find_in_step(self, impact, kernel, n, m, du, known, per_force)
       end if
-      self%regrows = self%t1(3) > self%t1(2) + noticeable
+      self%regrows = self%t1(3) > self%t1(2) + noticeable_growth
    end subroutine find_force
 
    !> Find t1 in step m by the Illinois method, and the force with it
@@ -145,7 +144,6 @@ contains
       !> What the condition loses per force
       real(wp), intent(in) :: per_force
 
-      real(wp), parameter :: tolerance = 1.0e-13_wp
       real(wp) :: lower, upper, f_lower, f_upper, f, x, force, end_u
       integer :: iteration
 
@@ -159,7 +157,7 @@ contains
          if (.not. f_lower > f_upper) exit
          x = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)
          call evaluate(x, f, force)
-         if (abs(f) <= tolerance*abs(known) .or. .not. abs(upper - lower) > tolerance) exit
+         if (abs(f) <= error_of_t1*abs(known) .or. .not. abs(upper - lower) > error_of_t1) exit
          if ((f > 0.0_wp) .neqv. (f_upper > 0.0_wp)) then
             lower = upper
             f_lower = f_upper

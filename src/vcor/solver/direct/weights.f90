@@ -7,13 +7,14 @@ module vcor_solver_direct_weights
    use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    use vcor_solver_convolution, only : convolution_t
+   use vcor_solver_tuning, only : aliased, near => near_kernel, near_part
    implicit none
    private
 
    public :: contact_kernel_t, layer_weights, memory_weights, square_weights
 
-   !> Steps next to t = 0 that are integrated in parts, and the parts of each
-   integer, parameter :: near = 16, parts = ubound(newton_cotes, 1)
+   !> Parts of a step next to t = 0
+   integer, parameter :: parts = ubound(newton_cotes, 1)
 
    !> Kernel of the contact: weights W_i = w_i + v_i - v_{i-1} with w_i the mean of the kernel over
    !> step i and v_i = int_0^1 k((i + 1 - theta) dt) (theta - 1/2) dtheta
@@ -64,9 +65,7 @@ contains
       !> Integral [N/m^1.5]
       real(wp) :: integral
 
-      integer, parameter :: exact = 12
-
-      if (i < exact) then
+      if (i < near_part) then
          integral = (impact%kernel_integral((real(i + 1, wp) - position)*self%dt) &
             - impact%kernel_integral(real(i, wp)*self%dt))/self%dt
       else
@@ -116,9 +115,7 @@ contains
       !> Weights [m/(N s)], shape (0:n-1)
       real(wp) :: weight(0:n - 1)
 
-      ! Cauchy's integral by twice as many points as weights: what comes after them is added to
-      ! them times this
-      real(wp), parameter :: aliased = 1.0e-10_wp
+      ! Cauchy's integral by twice as many points as weights
       complex(wp) :: turn(0:2*n - 1), zeta, lambda(2), f(2), slope, value
       real(wp) :: radius
       integer :: i, k, at

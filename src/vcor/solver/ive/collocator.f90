@@ -5,7 +5,7 @@ module vcor_solver_ive_collocator
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
    use vcor_numeric_radau_collocation, only : collocation_t, most_steps, new_collocation
-   use vcor_solver_ive_tuning, only : least_tolerance, near_tolerance, newton_tolerance
+   use vcor_solver_tuning, only : least_tolerance, near_tolerance, newton_tolerance
    implicit none
    private
 

@@ -27,21 +27,17 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_ive_tuning, only : cut_at_end, error_of_kernel, fast, &
+   use vcor_solver_tuning, only : cut_at_end, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
-      levels_error, most_ahead, &
-      next_to_branch, panel_share, peak_share, rounding_of_force, &
-      rounding_per_panel, shallow_end, shallow_factor, solution_share, tolerable, &
-      usual_accuracy, usually_better
+      levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, solution_share, &
+      tolerable, usual_accuracy, usually_better
    implicit none
    private
 
    public :: follow
-
-   !> Trials of panels after which it is given up
-   integer, parameter :: most_trials = 20000
 
    !> The contact until it ends
    type, extends(course_t) :: contact_t
@@ -104,7 +100,7 @@ contains
       call start(contact)
       call begin(collocator%rule, impact, trajectory)
       complete = .true.
-      do trial = 1, most_trials
+      do trial = 1, most_panels
          call solve_panel(contact, trajectory)
          if (.not. (contact%panel%converged .and. contact%coarse%converged)) then
             call contact%step%shorten(0.5_wp*contact%step%duration())

@@ -6,7 +6,7 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_ive_tuning, only : best_time, enough_closings, longest_growth, &
+   use vcor_solver_tuning, only : best_time, enough_closings, longest_growth, &
       time_share, time_share_continuous, time_share_power, time_share_receding, tolerable_end, &
       usual_accuracy
    implicit none

@@ -5,12 +5,12 @@ module vcor_solver_ive_landing
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t
-   use vcor_solver_ive_newton, only : guess, most_iterations, solve, solve_near
+   use vcor_solver_ive_newton, only : guess, solve, solve_near
    use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_ive_tuning, only : landing_share, noticeable_fall, noticeable_time, &
-      share_of_square
+   use vcor_solver_tuning, only : landing_share, most_iterations, no_better, noticeable_fall, &
+      noticeable_time, peak_guess, roughly, share_of_square
    implicit none
    private
 
@@ -48,7 +48,6 @@ contains
       !> Inverse of its Jacobian
       real(wp), intent(inout) :: inverse(width, width)
 
-      real(wp), parameter :: closest = 1.0e-8_wp
       type(panel_t) :: last
       real(wp) :: velocity(0:width), theta, time, fall
       integer :: j, iteration
@@ -60,7 +59,7 @@ contains
          if (velocity(j) < 0.0_wp) exit
       end do
       associate (rule => problem%collocator%rule)
-         theta = rule%crossing(velocity, rule%point(j - 1), rule%point(j), closest)
+         theta = rule%crossing(velocity, rule%point(j - 1), rule%point(j), peak_guess)
          time = theta*(panel%map(1) + panel%map(2)*theta)
          do iteration = 1, most_iterations
             last = panel
@@ -164,7 +163,7 @@ contains
                tolerance, panel%indentation(n) >= shallow)) return
             ! rounding in the force of a dashpot or of stiff internal variables ends it, too
             if (iteration > 3 .and. abs(correction) <= noticeable_time*(start%time + time) &
-                .and. abs(correction) >= 0.25_wp*abs(last_correction)) return
+                .and. abs(correction) >= no_better*abs(last_correction)) return
             time = time + correction
          end do
       end associate
@@ -226,7 +225,7 @@ contains
          if (.not. slope < 0.0_wp) return
          correction = (memory + rate*x - kappa*law%u(s + v*x))/slope
          x = x + correction
-         found = abs(correction) <= 1.0e-3_wp*abs(x)
+         found = abs(correction) <= roughly*abs(x)
          if (found) return
       end do
    end subroutine look_ahead

@@ -7,16 +7,13 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_ive_tuning, only : farthest_closing, farthest_rebound, newton_close, &
-      newton_wildest, noticeable_time, shortest_panel, slowest_contraction
+   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, newton_close, &
+      most_iterations, newton_wildest, no_better, noticeable_time, shortest_panel, &
+      slowest_contraction
    implicit none
    private
 
-   public :: most_iterations
    public :: guess, solve, solve_near, improve, accompany, close_contact
-
-   !> Maximum iterations
-   integer, parameter :: most_iterations = 40
 
    !> State of the iteration
    type :: newton_t
@@ -316,7 +313,7 @@ contains
                <= time_tolerance*(start%time + length) &
                ! rounding in the condition of stiff internal variables ends it, too
                .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
-               .and. abs(correction) >= 0.25_wp*abs(last_correction))
+               .and. abs(correction) >= no_better*abs(last_correction))
             if (panel%converged) exit
             length = length + correction
             ! the motion does not know how long the panel is

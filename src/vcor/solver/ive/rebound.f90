@@ -17,20 +17,18 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_panel, only : plate_gains
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
-   use vcor_solver_ive_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
-      cut_most, end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, &
-      end_slow, expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
-      margin_of_rest, near_vertex, order_at_end, panel_share, rebound_fast, rebound_growth, &
-      rebound_hereditary, rebound_slow, rounding_per_panel, shortest_panel, slowest_fall, &
-      smallest_share, solution_share, sure_growth, tolerable, unreliable_kernel, usual_accuracy
+   use vcor_solver_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, cut_most, &
+      end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, end_slow, &
+      expected_rebound, farthest_end, farthest_rebound, fast, first_rate, largest_share, &
+      least_end, margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
+      rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
+      shortest_panel, slowest_fall, smallest_rest, smallest_share, solution_share, sure_growth, &
+      tolerable, unreliable_kernel, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
    private
 
    public :: follow_rebound
-
-   !> Trials of panels after which it is given up
-   integer, parameter :: most_trials = 400
 
    !> The rebound until the contact ends
    type, extends(course_t) :: rebound_t
@@ -72,7 +70,7 @@ contains
 
       rebound%course_t = course
       call start(rebound, approach)
-      do trial = 1, most_trials
+      do trial = 1, most_rebound_panels
          call choose_length(rebound)
          if (.not. rebound%taken > shortest_panel*rebound%start%time) exit
          call solve_panel(rebound)
@@ -146,7 +144,7 @@ contains
       if (.not. self%ends) then
          part = largest_share
          left = margin_of_rest*self%end_length/self%rest
-         if (left > 1.0e-3_wp) then
+         if (left > smallest_rest) then
             panels = ceiling(log(left)/log(1.0_wp - largest_share))
             part = max(smallest_share, 1.0_wp - left**(1.0_wp/real(panels, wp)))
          end if
@@ -175,7 +173,7 @@ contains
          call guess(self)
          if (self%ends) then
             call close_contact(problem, self%start, max(closest_end &
-               *min(self%accuracy, usual_accuracy), 1.0e-13_wp), self%taken, panel, self%inverse)
+               *min(self%accuracy, usual_accuracy), least_end), self%taken, panel, self%inverse)
             self%step = step_of(closing, self%taken)
          else
             call solve(problem, rule, self%step, self%start, panel, self%inverse)
@@ -191,7 +189,7 @@ contains
          else if (panel%condition(n) <= 0.0_wp) then
             ! the end is closer than expected
             j = findloc(panel%condition(1:n) <= 0.0_wp, .true., 1)
-            theta = rule%crossing(panel%condition, rule%point(j - 1), rule%point(j), 1.0e-3_wp)
+            theta = rule%crossing(panel%condition, rule%point(j - 1), rule%point(j), roughly)
             self%rest = theta*(panel%map(1) + panel%map(2)*theta)
             self%refused = huge(1.0_wp)
             self%refused_length = huge(1.0_wp)
@@ -298,7 +296,6 @@ contains
       type(rebound_t), intent(in) :: self
       logical :: grows
 
-      real(wp), parameter :: roughly = 1.0e-3_wp
       real(wp), dimension(0:width) :: slope, bend, other
       real(wp) :: same(width), theta, doubt
       integer :: n, j, points
@@ -382,7 +379,7 @@ contains
          call end_rates(panel%condition, fall, fall_rate)
          fall = -fall
          self%rest = huge(1.0_wp)
-         if (panel%condition(n) < 1.0e3_wp*self%approach%end*fall) self%rest = &
+         if (panel%condition(n) < farthest_end*self%approach%end*fall) self%rest = &
             2.0_wp*panel%condition(n)/(fall + sqrt(max(0.0_wp, &
             fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
          call self%problem%advance(rule, self%step, panel, self%start)
