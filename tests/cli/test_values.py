@@ -2,7 +2,7 @@
 
 import pytest
 from cases import MODELS, SLS, add_line, case_text, edit, without
-from program import INPUT, PAPER, complaint
+from program import INPUT, NUMERICAL, PAPER, SUCCESS, complaint
 
 # Model, group and key, for each key that has to be a positive number
 POSITIVE = [
@@ -419,3 +419,111 @@ def test_name_with_a_control_character(vcor, sign, says):
     vcor.write(text)
     done = vcor("run", "case.nml")
     complaint(done, INPUT, says)
+
+
+# Impacts far beyond all that is real, each of which made some number leave its range
+EXTREMES = [
+    """
+&impact velocity = 0.002762, gravity = 9.81 /
+&sphere radius = 1.866e-08, material = 'a', mass = 1.648e-18 /
+&plate half_thickness = 9.306e-14, material = 'b', waves = 'constant' /
+&contact law = 'boltzmann', pair = 'series' /
+&material name = 'a', model = 'rigid', density = 7800 /
+&material name = 'b', density = 2.435e+04, poisson_ratio = 0.0, model = 'sls', glassy_modulus = 1.916e+05,
+    beta = 296.3, alpha = 2.963e-16 /
+&solver method='ive', accuracy=1e-10 /
+""",
+    """
+&impact velocity = 0.001687, gravity = 100000.0 /
+&sphere radius = 6.272e-07, material = 'a' /
+&plate half_thickness = 1.469e-07, material = 'b', waves = 'hereditary' /
+&contact law = 'receding', pair = 'eq1' /
+&material name = 'a', model = 'rigid', density = 7800 /
+&material name = 'b', density = 0.1576, poisson_ratio = 0.0, model = 'prony', equilibrium_modulus = 2.272e+06,
+    viscosity = 3.035e+04 /
+&solver method='ive', accuracy=1e-10 /
+""",
+    """
+&impact velocity = 1608, gravity = 9.81 /
+&sphere radius = 120.3, material = 'a' /
+&plate half_thickness = 0.0003161, material = 'b', waves = 'hereditary' /
+&contact law = 'boltzmann', pair = 'series' /
+&material name = 'a', density = 5.09e+04, poisson_ratio = 0.5, model = 'cerf', equilibrium_modulus = 1.767e-07,
+    relaxing_modulus = 1.767e+05, beta = 743.7 /
+&material name = 'b', density = 326.8, poisson_ratio = 0.5, model = 'prony', equilibrium_modulus = 2.235e-15,
+    moduli = 0.002235, 1.164e-07, times = 1.066e-11, 1.432e-07 /
+&solver method='ive', accuracy=1e-06 /
+""",
+    """
+&impact velocity = 1.533, gravity = 1e-06 /
+&sphere radius = 0.0007186, material = 'a', mass = 2.64e-08 /
+&plate half_thickness = 7.823e-05, material = 'b', waves = 'relaxing' /
+&contact law = 'boltzmann', pair = 'series' /
+&material name = 'a', density = 9.139, poisson_ratio = 0.5, model = 'sls', glassy_modulus = 1.864e-05,
+    beta = 0.2399, alpha = 2.399e-19 /
+&material name = 'b', density = 0.0777, poisson_ratio = 0.0, model = 'mittag_leffler',
+    equilibrium_modulus = 1.132e-29, relaxing_modulus = 11.32, exponent = 1.758158196819191e-06, time = 80.45 /
+&solver method='ive', accuracy=1e-10 /
+""",
+    """
+&impact velocity = 1.905e-08, gravity = 1e-06 /
+&sphere radius = 0.001343, material = 'a' /
+&plate half_thickness = 1.527e-05, material = 'b', waves = 'none' /
+&contact law = 'boltzmann', pair = 'eq1' /
+&material name = 'a', model = 'rigid', density = 7800 /
+&material name = 'b', density = 0.02728, poisson_ratio = 0.45, model = 'power_law',
+    equilibrium_modulus = 1.787e-12, coefficient = 2.296e+05, exponent = 0.9343229990955173 /
+&solver method='ive', accuracy=1e-06 /
+""",
+    """
+&impact velocity = 0.02747 /
+&sphere radius = 5.264e-08, material = 'a' /
+&plate half_thickness = 2.708e-12, material = 'b', waves = 'hereditary' /
+&contact law = 'boltzmann', pair = 'series' /
+&material name = 'a', model = 'elastic', density = 1100, modulus = 5000000.0, poisson_ratio = 0.5 /
+&material name = 'b', density = 0.7347, poisson_ratio = 0.0, model = 'mittag_leffler',
+    equilibrium_modulus = 2.313e-08, relaxing_modulus = 2.313e+04, exponent = 0.998581562376, time = 3.462e-09 /
+&solver method='ive', accuracy=1e-10 /
+""",
+    """
+&impact velocity = 0.1685 /
+&sphere radius = 8.461e-07, material = 'a', mass = 1.063e-16 /
+&plate half_thickness = 1.135e-11, material = 'b', waves = 'hereditary' /
+&contact law = 'boltzmann', pair = 'eq1' /
+&material name = 'a', model = 'rigid', density = 7800 /
+&material name = 'b', density = 1593, poisson_ratio = 0.0, model = 'prony', equilibrium_modulus = 24.58,
+    moduli = 2458, times = 4.509e-15, viscosity = 5.927e-06 /
+&solver method='direct', accuracy=1e-08 /
+""",
+    """
+&impact velocity = 2.14e-10 /
+&sphere radius = 1.012e-07, material = 'a' /
+&plate half_thickness = 1.106e-10, material = 'b', waves = 'frozen' /
+&contact law = 'receding', pair = 'series' /
+&material name = 'a', model = 'rigid', density = 7800 /
+&material name = 'b', density = 3.744e+04, poisson_ratio = 0.45, model = 'prony',
+    equilibrium_modulus = 2.09e-12, viscosity = 2.652 /
+&solver method='ive', accuracy=0.001 /
+""",
+    """
+&impact velocity = 1.724e-12 /
+&sphere radius = 0.02221, material = 'a' /
+&plate half_thickness = 2.001, material = 'b', waves = 'hereditary' /
+&contact law = 'boltzmann', pair = 'series' /
+&material name = 'a', density = 0.2495, poisson_ratio = 0.3, model = 'prony', equilibrium_modulus = 3.175e-26,
+    viscosity = 1498 /
+&material name = 'b', density = 64.12, poisson_ratio = 0.45, model = 'power_law', equilibrium_modulus = 37.45,
+    coefficient = 3.427e+15, exponent = 0.9999999980894608 /
+&solver method='ive', accuracy=0.001 /
+""",
+]
+
+
+@pytest.mark.parametrize("case", EXTREMES)
+def test_extreme_impacts(vcor, case):
+    """They end with numbers or with a line, in debug builds too."""
+    vcor.write(case)
+    done = vcor("run", "case.nml", "--print", "cor", "--quiet")
+    assert done.code in (SUCCESS, NUMERICAL), done.err
+    if done.code == NUMERICAL:
+        assert done.err.count("vcor: error: ") == 1

@@ -131,6 +131,8 @@ contains
       outcome%max_force = trajectory%max_force
       outcome%time_of_max_force = trajectory%time_of_max_force
       outcome%residual_indentation = trajectory%state(col_indentation, n)
+      ! bodies that part at once have touched each other, and that is all
+      if (.not. outcome%max_indentation > 0.0_wp) return
       outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
       if (outcome%status == contact_resting) return
 

@@ -74,7 +74,7 @@ contains
       real(wp), intent(in), optional :: above
 
       ! beyond all rates that can be computed with
-      real(wp), parameter :: farthest = 650.0_wp, fewest_digits = 1.0e-2_wp
+      real(wp), parameter :: farthest = 600.0_wp, fewest_digits = 1.0e-2_wp
       ! what the last node adds to the dashpot, over the dashpot and the accuracy
       real(wp), parameter :: negligible = 1.0e-3_wp
       real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail

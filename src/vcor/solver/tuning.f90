@@ -76,7 +76,9 @@ module vcor_solver_tuning
    real(wp), parameter :: newton_wildest = 1.0e6_wp ! guard
    !> What rounding leaves of a correction of the condition, over the largest one
    real(wp), parameter :: rounding_of_condition = 1.0e-9_wp ! guard
-   !> Polynomials run away beyond their own panel: end of their use in a guess of the rebound
+   !> Polynomials run away beyond their own panel: end of their use in a guess, and in one of the
+   !> rebound
+   real(wp), parameter :: farthest_guess = 10.0_wp ! guard
    real(wp), parameter :: farthest_rebound = 1.2_wp ! tested
 
    ! First panel, in x over the square root of the expected contact time
@@ -173,16 +175,12 @@ module vcor_solver_tuning
 
    ! Maxima
 
-   !> Slope by theta at the end, over the value, of a panel that ends at its maximum
-   real(wp), parameter :: flat_end = 1.0e-6_wp ! time
    !> Error of the position of the largest indentation, by polynomials, that it is looked for from
    real(wp), parameter :: peak_guess = 1.0e-8_wp
    !> Error of the position of a maximum: its square is what the maximum feels
    real(wp), parameter :: peak_position = 1.0e-6_wp ! tested
    !> The force is better than that of the companion by this factor at least
    real(wp), parameter :: force_better = 3.0_wp ! tested
-   !> Share of a panel in which the force may be that of the panel before
-   real(wp), parameter :: next_to_start = 0.1_wp ! tested
 
    ! Rebound: times over that of the approach
 
@@ -257,6 +255,8 @@ module vcor_solver_tuning
    integer, parameter :: most_for_layers = 8000
    !> Steps beyond which the face of a layer is not followed for the sake of `cor` alone
    integer, parameter :: enough_steps = 1000
+   !> Error of the largest force over the accuracy
+   real(wp), parameter :: share_of_force = 10.0_wp
    !> Order of three runs from which on their limit is better than the last one
    real(wp), parameter :: least_order = 1.5_wp
    !> Part of the approach that the last step of a rebound may take back

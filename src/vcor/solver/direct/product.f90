@@ -31,7 +31,7 @@ module vcor_solver_direct_product
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
    use vcor_solver_tuning, only : beyond_all_motion, enough_steps, first_steps, last_part, &
-      layer_reach, least_order, least_part, most_for_all, most_for_layers
+      layer_reach, least_order, least_part, most_for_all, most_for_layers, share_of_force
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    implicit none
    private
@@ -153,9 +153,11 @@ contains
                      abs(cor_sphere(3) - cor_sphere(2)))
                end if
                if (time_step > 0.0_wp) return
+               found = richardson(force)
                if (trajectory%cor_sphere_error <= accuracy .and. (reach > 0.0_wp &
                    .and. trajectory%steps > enough_steps &
-                   .or. trajectory%cor_error <= trajectory%accuracy)) then
+                   .or. trajectory%cor_error <= trajectory%accuracy &
+                   .and. found%error <= share_of_force*accuracy*force(3))) then
                   ! the steps were not chosen for the maxima
                   trajectory%max_indentation = extrapolated(depth)
                   trajectory%max_force = extrapolated(force)

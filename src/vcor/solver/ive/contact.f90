@@ -14,7 +14,7 @@ module vcor_solver_ive_contact
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_numeric_radau_collocation, only : most_steps
+   use vcor_numeric_radau_collocation, only : collocation_t, most_steps
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
    use vcor_solver_ive_course, only : course_t, share
@@ -32,8 +32,8 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, solution_share, &
-      tolerable, usual_accuracy, usually_better
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, shortest_panel, &
+      solution_share, tolerable, usual_accuracy, usually_better
    implicit none
    private
 
@@ -101,6 +101,11 @@ contains
       call begin(collocator%rule, impact, trajectory)
       complete = .true.
       do trial = 1, most_panels
+         ! a panel that has been cut to nothing: no other one does better
+         if (.not. contact%step%duration() > shortest_panel**2*time_scale) then
+            if (trajectory%has_died_out(impact, .true.)) return
+            exit
+         end if
          call solve_panel(contact, trajectory)
          if (.not. (contact%panel%converged .and. contact%coarse%converged)) then
             call contact%step%shorten(0.5_wp*contact%step%duration())
@@ -240,6 +245,8 @@ contains
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) &
             self%excess = self%growth/(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
+         if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
+            self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
          force_error = max(0.0_wp, min(self%growth_of(panel%force, coarse%force), self%doubt) &
             - rounding_of_force*self%largest_force)
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
@@ -271,6 +278,35 @@ contains
          end do
       end associate
    end subroutine judge
+
+   !> What the panel adds to the error of the energy that the plate takes, int alpha F^2, over that
+   !> of the impact: forces inside a panel are less accurate than the motion, and their square keeps
+   !> that
+   pure function work_error(self) result(error)
+      type(contact_t), intent(in) :: self
+      !> Error [-]
+      real(wp) :: error
+
+      associate (collocator => self%problem%collocator, impact => self%problem%impact)
+         error = abs(work(collocator%rule, self%panel) - work(collocator%coarse, self%coarse)) &
+            /impact%initial_energy()
+      end associate
+
+   contains
+
+      !> int alpha F^2 over a panel [J]
+      pure function work(rule, panel)
+         type(collocation_t), intent(in) :: rule
+         type(panel_t), intent(in) :: panel
+         !> Energy [J]
+         real(wp) :: work
+
+         associate (n => panel%stages, map => panel%map)
+            work = sum(rule%weight(1:n)*(map(1) + 2.0_wp*map(2)*rule%node(1:n)) &
+               *panel%alpha(1:n)*panel%force(1:n)**2)
+         end associate
+      end function work
+   end function work_error
 
    !> Whether the panel is refused; it is shortened then
    function is_refused(self)

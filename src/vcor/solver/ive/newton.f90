@@ -7,9 +7,9 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, newton_close, &
-      most_iterations, newton_wildest, no_better, noticeable_time, shortest_panel, &
-      slowest_contraction
+   use vcor_solver_tuning, only : farthest_closing, farthest_guess, farthest_rebound, &
+      most_iterations, newton_close, newton_wildest, no_better, noticeable_time, &
+      shortest_panel, slowest_contraction
    implicit none
    private
 
@@ -46,7 +46,7 @@ contains
             panel%indentation(1:) = problem%impact%free_path(time)
          else
             panel%indentation(1:) = &
-               rule%extend(previous%indentation, previous%theta(time))
+               rule%extend(previous%indentation, min(previous%theta(time), farthest_guess))
          end if
       end associate
    end subroutine guess

@@ -223,8 +223,7 @@ contains
       end associate
    end subroutine guess
 
-   !> Error of the panel over what it may be: that of the motion and, at the end, that of the
-   !> contact time
+   !> Error of the panel over what it may be: that of the motion, and of the contact time
    subroutine judge(self)
       type(rebound_t), intent(inout) :: self
 
@@ -248,10 +247,15 @@ contains
             self%error(1) = self%error(1) + time_error*(plate_gains(panel, alpha_rate) &
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity
+         else if (self%rest < self%end_time) then
+            ! by a line from here to the end
+            time_error = max(0.0_wp, abs(panel%condition(n) - coarse%condition(n - 1)) &
+               - self%problem%noise*self%problem%largest_condition)/panel%condition(n) &
+               *max(0.0_wp, self%rest - self%taken)
          end if
-         self%excess = self%motion_error()/(panel_share*self%accuracy)
-         if (self%ends) self%excess = max(self%excess, self%error(1)/self%accuracy, &
+         self%excess = max(self%motion_error()/(panel_share*self%accuracy), &
             share(time_error, panel%time(n)*self%time_tolerance()))
+         if (self%ends) self%excess = max(self%excess, self%error(1)/self%accuracy)
       end associate
    end subroutine judge
 

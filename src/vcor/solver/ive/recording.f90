@@ -11,7 +11,7 @@ module vcor_solver_ive_recording
    use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : flat_end, force_better, next_to_start, peak_position
+   use vcor_solver_tuning, only : force_better, peak_position
    implicit none
    private
 
@@ -99,19 +99,23 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
 
       real(wp) :: peak, time
+      !> Whether the force rose up to the start of the panel
+      logical :: rises
 
       associate (n => panel%stages)
          call find_peak(problem, start, panel, panel%indentation, .true., accuracy, peak, time)
          if (peak > trajectory%max_indentation &
-             .or. panel%indentation(0) >= trajectory%max_indentation) then
+             .or. trajectory%time_of_max_indentation >= panel%time(0)) then
             trajectory%max_indentation = peak
             trajectory%time_of_max_indentation = time
          end if
          call find_peak(problem, start, panel, panel%force, .false., accuracy, peak, time)
-         if (peak > trajectory%max_force .or. panel%force(0) >= trajectory%max_force) then
-            ! where it rises up to the end of the panel, the end is none yet
-            if (time < panel%time(n)) &
-               call refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+         rises = trajectory%time_of_max_force >= panel%time(0)
+         ! where it rises up to the end of the panel, the end is none yet
+         if ((rises .or. peak > trajectory%max_force) .and. time > 0.0_wp &
+             .and. time < panel%time(n)) &
+            call refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+         if (rises .or. peak > trajectory%max_force) then
             trajectory%max_force = peak
             trajectory%time_of_max_force = time
          end if
@@ -137,7 +141,7 @@ contains
 
       type(panel_t) :: cut
       type(step_t) :: step
-      real(wp) :: slope, theta
+      real(wp) :: slope, bend, slopes(0:width), theta
       integer :: n, j, other, first
 
       n = panel%stages
@@ -146,11 +150,19 @@ contains
       peak = value(j)
       time = panel%time(j)
       associate (rule => problem%collocator%rule)
-         slope = sum(rule%derivative(j, :)*value)
+         slopes = rule%slopes(value)
+         slope = slopes(j)
          other = j + merge(1, -1, slope > 0.0_wp)
-         if (other < 0 .or. other > n .or. .not. abs(slope) > flat_end*value(j)) return
+         if (other < 0 .or. other > n) return
+         bend = sum(rule%derivative(j, :)*slopes)
+         if ((j == 0 .or. j == n) .and. 0.5_wp*slope**2 < -bend*accuracy*value(j)) then
+            ! so close to the end of the panel that the parabola there does
+            peak = peak - 0.5_wp*slope**2/bend
+            time = time - slope/bend*(panel%map(1) + 2.0_wp*panel%map(2)*rule%point(j))
+            return
+         end if
          first = min(j, other)
-         theta = rule%crossing(rule%slopes(value), rule%point(first), rule%point(first + 1), &
+         theta = rule%crossing(slopes, rule%point(first), rule%point(first + 1), &
             peak_position)
          time = theta*(panel%map(1) + panel%map(2)*theta)
          step = step_to(start%time, time)
@@ -164,9 +176,9 @@ contains
 
    !> Largest force anew with the panel halved that decides it, where it is not accurate enough.
    !> The force of modes that settle at once follows the rate of u, and that is the derivative of
-   !> a polynomial: the impulse hardly feels its error but the force does, next to the start of a
-   !> panel still that of the panel before. And a panel in t that begins next to the branch point
-   !> at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
+   !> a polynomial: the impulse hardly feels its error but the force does. What the panel before has
+   !> left of it fades along the panel. And a panel in t that begins next to the branch point at
+   !> t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
    subroutine refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
@@ -184,27 +196,26 @@ contains
 
       type(start_t) :: now
       type(panel_t) :: last
-      real(wp) :: root, branch
-      logical :: early
+      real(wp) :: root, branch, part, here
+      logical :: handed_down
 
       associate (n => panel%stages)
-         early = before%panel%stages > 0 .and. before%doubt > force_better*accuracy*peak &
-            .and. time - start%time < next_to_start*(panel%time(n) - start%time)
-         if (early) then
+         handed_down = before%doubt > force_better*accuracy*peak
+         part = (time - start%time)/(panel%time(n) - start%time)
+         here = doubt
+         if (handed_down) here = before%doubt**(1.0_wp - part)*doubt**part
+         root = sqrt(start%time/time)
+         branch = 0.0_wp
+         if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
+         if (max(here/(force_better*peak), branch) <= accuracy) return
+         now = start
+         last = panel
+         if (handed_down) then
             now = before%start
             last = before%panel
             call solve_halves(problem, start%time, now, last)
-            if (last%converged .and. time > start%time) &
-               call solve_on(problem, step_to(now%time, time - now%time), now, last)
-         else
-            root = sqrt(start%time/time)
-            branch = 0.0_wp
-            if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
-            if (max(doubt/(force_better*peak), branch) <= accuracy) return
-            now = start
-            last = panel
-            call solve_halves(problem, time, now, last)
          end if
+         if (last%converged .and. time > start%time) call solve_halves(problem, time, now, last)
          if (last%converged) peak = last%force(n)
       end associate
    end subroutine refine_force
