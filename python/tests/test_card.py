@@ -456,7 +456,7 @@ def test_the_command_both_ways(tmp_path, capsys, program):
 def test_the_command_refuses_in_one_line(tmp_path, capsys):
     case = PAPER / "sls.nml"
     assert "expected --material and --for" in command(capsys, case, code=2)
-    words = [case, "--material", "rubber", "--for", "lsdyna"]
+    words = [case, "--for", "lsdyna"]
     assert "--poisson-ratio 0.495" in command(capsys, *words, code=3)
     assert "no such" in command(capsys, "none.k", code=4).lower()
     assert "found no card" in command(capsys, ROOT / "LICENSE", code=2)

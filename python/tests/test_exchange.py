@@ -194,10 +194,21 @@ def test_two_beads_without_arithmetic():
     wall = vcor.pair(ACETATE, (2.995e-3, math.inf))
     assert wall["sphere.mass"] == pytest.approx(2 * made["sphere.mass"], rel=1e-12)
     assert wall["plate.surface_radius"] == 0
+    rigid = vcor.pair([ACETATE, {"name": "steel", "model": "rigid"}], (2.995e-3,))
+    assert rigid["sphere.mass"] == wall["sphere.mass"]
     heavy = vcor.pair(ACETATE, (1e-3, 2e-3), masses=(3e-5, 6e-5), velocity=0.3)
     assert (heavy["sphere.mass"], heavy["impact.velocity"]) == (pytest.approx(2e-5), 0.3)
     with pytest.raises(vcor.InputError, match="density"):
         vcor.pair({"name": "light", "model": "elastic", "modulus": 1e9}, (1e-3,))
+
+
+def test_the_header_says_what_the_default_mechanics_cost():
+    case = vcor.pair(RUBBER, (0.005, 0.005))
+    found = vcor.export(case, "lammps", VELOCITIES)
+    (line,) = [line for line in found.header if "contact.mechanics = 'exact'" in line]
+    exact = vcor.pair(RUBBER, (0.005, 0.005), contact={"mechanics": "exact"})
+    assert f"e {exact.solve({'impact.velocity': 0.5})['cor']:.4f} at 0.5 m/s" in line
+    assert not any("exact" in line for line in vcor.export(exact, "lammps", VELOCITIES).header)
 
 
 ACETATE = {"name": "cellulose acetate", "model": "prony", "density": 1319.0, "poisson_ratio": 0.28,

@@ -20,7 +20,7 @@ from conftest import PAPER, ROOT, SWEEPS
 import vcor
 from vcor import _command
 from vcor.data import Data
-from vcor.plot import KINDS, STYLE, figure, main, save
+from vcor.plot import KINDS, STYLE, _label_decades, figure, main, save
 
 
 @pytest.fixture(scope="module")
@@ -158,6 +158,7 @@ def test_the_legend_leaves_out_what_a_case_has_not(results, tmp_path):
 def test_where_the_model_does_not_hold(results):
     data = vcor.open(results / "sweep.h5")
     made = figure([results / "sweep.h5"])
+    hatches = {"outside": "/////", "caution": "//"}
     spans = [patch for patch in made.axes[0].patches if patch.get_hatch()]
     hatched = any(data.validity == "outside")
     assert bool(spans) == hatched == ("outside of the model's validity" in texts(made))
@@ -165,7 +166,23 @@ def test_where_the_model_does_not_hold(results):
         low, high = patch.get_extents().transformed(made.axes[0].transData.inverted()).intervalx
         v = data["impact.velocity"]
         inside = data.validity.values[(v > low) & (v < high)]
-        assert (inside == "outside").all()
+        assert {hatches[level] for level in inside} == {patch.get_hatch()}
+
+
+def test_caution_has_hatching_of_its_own():
+    case = vcor.read(PAPER.parent / "steel_on_glass.nml")
+    thick = {"plate.half_thickness": np.geomspace(5e-4, 1e-2, 12)}
+    found = case.sweep(thick, ["cor", "validity"])
+    assert set(found.validity.values) == {"good", "caution", "outside"}
+    over = {"impact.velocity": np.geomspace(0.01, 1.0, 4)}
+    for data in (found, case.sweep(thick | over, ["cor", "validity"])):
+        made = figure([data])
+        assert texts(made)[-2:] == [
+            "outside of the model's validity",
+            "with caution: off by per cents",
+        ]
+    spans = [patch for patch in figure([found]).axes[0].patches if patch.get_hatch()]
+    assert [patch.get_hatch() for patch in spans] == ["/////", "//"]
 
 
 def test_measured_points(results, tmp_path):
@@ -367,6 +384,25 @@ def test_curves_can_be_told_apart_in_grey():
         assert len({str(style[key]) for style in styles}) == 8
 
 
+@pytest.mark.parametrize(
+    "ends",
+    [(0.25, 0.56), (0.39, 0.41), (0.3, 3.0), (0.05, 40.0), (1e-8, 1e3), (2e-6, 5e-6)],
+)
+def test_labels_of_a_logarithmic_axis(results, ends):
+    made = figure([results / "sweep.h5"], log="y", ranges={"y": (ends[0], max(ends[1], 0.45))})
+    (axis,) = made.axes
+    axis.set_ylim(*ends)
+    _label_decades(axis.yaxis)
+    made.draw_without_rendering()
+    ticks = [t for t in axis.yaxis.get_major_ticks() if ends[0] <= t.get_loc() <= ends[1]]
+    assert len(ticks) >= 3
+    boxes = [tick.label1.get_window_extent() for tick in ticks]
+    assert not any(a.overlaps(b) for a, b in itertools.pairwise(boxes))
+    words = [tick.label1.get_text() for tick in ticks]
+    assert len(set(words)) == len(words) and not any("e+" in word or "e-" in word for word in words)
+    assert not any(label.get_text() for label in axis.yaxis.get_ticklabels(minor=True))
+
+
 @pytest.mark.parametrize("velocity", [0.02, 0.5, 90.0])
 def test_room_for_the_ticks(results, tmp_path, velocity):
     """The labels of an axis stand apart, and within the picture, however long the contact is."""
@@ -491,6 +527,9 @@ def bad(results):
         (["cube.h5", "--levels", "0.5"], 2, "expected two or more"),
         (["sweep.h5", "--log", "w"], 2, "expected letters among x, y, z"),
         (["sweep.h5", "--width", "1"], 2, "a width of 1 cm"),
+        (["sweep.h5", "--width", "85"], 2, "such as 85mm"),
+        (["sweep.h5", "--width", "8,5"], 2, "--width: found '8,5', expected"),
+        (["sweep.h5", "--range", "x=100:200"], 2, r"x is impact velocity \[m/s\] from 1 to 50"),
         (["cube.h5", "--kind", "sweep"], 3, "expected --kind map"),
         (["sweep.h5", "--kind", "histroy"], 2, "'histroy'.*history"),
         (["sweep.h5", "--scrpt"], 2, "--scrpt.*--help"),

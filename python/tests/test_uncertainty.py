@@ -190,6 +190,7 @@ def test_command(tmp_path, capsys):
         ("rubber.beta=2:1", "expected such as"),
         ("rubber.bta=5%", "bta"),
         ("rubber.model=5%", "expected a number"),
+        ("impact.drop_height=5%", "the case does not give it"),
     ],
 )
 def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):

@@ -157,6 +157,8 @@ def place(
             raise UsageError(f"{path} would replace a file that is read, expected another --output")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise FileError(f"{path.parent}: found a file, expected the name of a folder") from None
     except OSError as error:
         raise FileError(f"{path.parent}: {error.strerror}") from None
     return path

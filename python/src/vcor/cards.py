@@ -258,7 +258,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     add = parser.add_argument
     add("file", metavar="FILE", help="case, file of &material groups, or a file that holds a card")
-    add("--material", metavar="NAME", help="name of the material; in a card needed if of several")
+    add("--material", metavar="NAME", help="name of the material; needed if there are several")
     add("--for", dest="code", choices=FORMATS, help="the program")
     add("--output", metavar="FILE", help="file to be written; default: print")
     add("--units", choices=UNITS, help="units of the card; default: SI")
@@ -280,8 +280,9 @@ def _work(options: argparse.Namespace) -> None:
     if nu is not None and not -1 < nu <= 0.5:
         raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")
     if re.search(r"(?im)^\s*&material\b", _text(options.file)):
-        if not (options.material and options.code):
+        if not options.code:
             raise UsageError(f"{options.file} is a case, expected --material and --for")
+        options.material = options.material or _only(options.file)
         _refuse(options, "reading a card", modulus=None)
         made = card(
             options.file, options.material, poisson_ratio=nu, band=_band(options.band),
@@ -304,6 +305,19 @@ def _work(options: argparse.Namespace) -> None:
         sys.stdout.write(text)
     for note in notes:
         sys.stderr.write(f"vcor: note: {note}\n")
+
+
+def _only(path: str) -> str:
+    """The only material of a case that relaxes."""
+    groups = re.findall(r"(?ims)^\s*&material\b(.*?)^\s*/", _text(path))
+    found = [re.search(r"(?i)\bname\s*=\s*(['\"])(.+?)\1", group) for group in groups
+             if not re.search(r"(?i)\bmodel\s*=\s*['\"](rigid|elastic)\b", group)]  # fmt: skip
+    names = [name[2] for name in found if name]
+    if len(names) != 1:
+        known = f", one of {', '.join(names)}" if names else ""
+        raise UsageError(f"{path}: found {len(names)} materials that relax, expected --material "
+                         f"NAME{known}")  # fmt: skip
+    return names[0]
 
 
 def _refuse(options: argparse.Namespace, what: str, **defaults: float | None) -> None:

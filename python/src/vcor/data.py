@@ -24,10 +24,12 @@ _SIZES = {
 _ZERO_C = 273.15
 _PLAIN = ("", "1", "-", "1/s", "kg", "kg/m3", "K", "N s", "N/m2")
 #: Names that others give to columns, and what these are
-_NAMES = {
+NAMES = {
     "T": "temperature", "t": "time", "omega": "frequency", "w": "frequency",
     "angular_frequency": "frequency",
-    "f": "frequency", "freq": "frequency", "e": "cor", "E": "relaxation_modulus",
+    "f": "frequency", "freq": "frequency", "e": "cor",
+    "e_a": "cor_sphere", "t0": "contact_time", "s_max": "max_indentation", "F_max": "max_force",
+    "E": "relaxation_modulus",
     "E(t)": "relaxation_modulus", "modulus": "relaxation_modulus", "E_relax": "relaxation_modulus",
     "E'": "storage_modulus", "E_stor": "storage_modulus", "storage": "storage_modulus",
     "E''": "loss_modulus", "E_loss": "loss_modulus", "loss": "loss_modulus",
@@ -87,7 +89,7 @@ class Data:
             size = 1.0 if zero else self._size(unit or "")
             what = name.removesuffix("_sigma")
             ending = name[len(what) :]
-            self.columns[_NAMES.get(what, what) + ending] = np.array(values) * size + (
+            self.columns[NAMES.get(what, what) + ending] = np.array(values) * size + (
                 0.0 if ending else zero
             )
 

@@ -7,6 +7,7 @@ A program is one entry of TARGETS: its laws, what is written for them, and files
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import os
 import sys
@@ -30,7 +31,7 @@ from .contact_laws import HERTZ, LINEAR, VISCOELASTIC, Law, Twin
 TEMPLATES = Path(__file__).with_name("templates")
 #: Columns that an export needs
 COLUMNS = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation", "contact_radius",
-           "initial_energy", "validity")  # fmt: skip
+           "initial_energy", "validity", "validity_cause")  # fmt: skip
 #: What e is, and where its end of contact is
 MEANING = {
     "cor_sphere": "speed of the sphere away from the plate at rest over that towards it",
@@ -281,19 +282,23 @@ class Export:
         from matplotlib import style
         from matplotlib.figure import Figure
 
-        from .plot import COLUMN, HEIGHT, STYLE
+        from .plot import COLUMN, HEIGHT, STYLE, _label_decades
 
         with style.context(STYLE):
             made = Figure(figsize=(COLUMN / 2.54, HEIGHT / 2.54))
             axis = made.subplots()
             name = str(next(iter(self.table.dims)))
             x, e = self.table[name].values, self.table[self.table.attrs["e"]].values
-            axis.plot(x, e, label="vcor", marker="")
+            fine = np.geomspace(x[0], x[-1], 200)
+            axis.plot(fine, PchipInterpolator(np.log(x), e)(np.log(fine)), label="vcor", marker="")
             if "e_law" in self.table:
-                axis.plot(x, self.table.e_law.values, label=self.target, ls="", marker="s")
+                axis.plot(x, self.table.e_law.values, label=f"law for {self.target}", ls="",
+                          marker="s")  # fmt: skip
             axis.set_xscale("log")
             unit = self.table[name].attrs["units"]
-            axis.set(xlabel=f"{self.table[name].attrs['long_name']} [{unit}]", ylabel="e")
+            axis.set_xlabel(f"{self.table[name].attrs['long_name']} [{unit}]")
+            axis.set_ylabel("coefficient of restitution")
+            _label_decades(axis.xaxis)
             axis.legend()
         return made
 
@@ -333,9 +338,10 @@ def pair(
                          "or two materials")  # fmt: skip
     try:
         weights = masses or [4 / 3 * math.pi * r**3 * float(one["density"])
-                             for r, one in zip((first, second), both, strict=True)]  # fmt: skip
+                             for r, one in zip((first, second), both, strict=True)
+                             if r < math.inf]  # fmt: skip
     except KeyError:
-        raise InputError("expected the density of both materials, or masses") from None
+        raise InputError("expected the density of the material of each bead, or masses") from None
     reduced = 1 / sum(1 / weight for weight in (*weights, math.inf)[:2])
     known = {str(one["name"]): one for one in both}
     given: dict[str, dict[str, Any]] = {
@@ -429,8 +435,21 @@ def _solved(case: Case, given: Floats, quantity: str, threads: int | None) -> xr
     first = found.isel(point=0)
     table.attrs["mass"] = float(2 * first.initial_energy / velocity[0] ** 2)
     table.attrs["radius"] = float(first.contact_radius**2 / first.max_indentation)
-    good = int((found.validity.values == "good").sum())
-    table.attrs["validity"] = f"good at {good} of {len(velocity)} velocities"
+    judged, cause = found.validity.values, found.validity_cause.values
+    parts = [f"good at {(judged == 'good').sum()} of {len(velocity)} velocities"]
+    for level in ("caution", "outside"):
+        if (judged == level).any():
+            causes = ", ".join(sorted(set(map(str, cause[judged == level]))))
+            parts.append(f"{level} at {(judged == level).sum()} ({causes})")
+    table.attrs["validity"] = ", ".join(parts)
+    if case["contact.mechanics"] == "paper":
+        exact, middle = case.copy(), float(velocity[len(velocity) // 2])
+        exact["contact.mechanics"] = "exact"
+        with contextlib.suppress(NumericalError):
+            there = float(exact.solve({"impact.velocity": middle}, [quantity])[quantity])
+            here = float(found[quantity][len(velocity) // 2])
+            if abs(there - here) >= 5e-5:
+                table.attrs["exact"] = f"e {there:.4f} at {middle:.4g} m/s, here {here:.4f}"
     return table
 
 
@@ -450,7 +469,9 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
         + (f"{temperature:g} K" if temperature else "not given"),
         f"velocities: {curve.velocity.values[0]:g} to {curve.velocity.values[-1]:g} m/s, validity "
         + curve.attrs["validity"],
-    ]
+        *(f"with contact.mechanics = 'exact': {words}" for words in [curve.attrs.get("exact")]
+          if words),
+    ]  # fmt: skip
 
 
 def _finished(

@@ -175,7 +175,7 @@ class Identification:
         from matplotlib import style
         from matplotlib.figure import Figure
 
-        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _label_short_decades, _legend, _panel_label
+        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _label_decades, _legend, _panel_label
 
         names = list(dict.fromkeys(row["quantity"] for row in self.data))
         width = COLUMN if len(names) == 1 else PAGE
@@ -220,7 +220,7 @@ class Identification:
                 if "modulus" in name:
                     above.set_yscale("log")
                 for axis in (above.xaxis, above.yaxis):
-                    _label_short_decades(axis)
+                    _label_decades(axis)
             _legend(made, *axes[0])
         return made
 

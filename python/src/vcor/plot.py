@@ -6,6 +6,7 @@ Lengths, times and the like are shown in units that suit them; files are in SI u
 
 from __future__ import annotations
 
+import argparse
 import io
 import math
 import os
@@ -22,7 +23,7 @@ import matplotlib.style
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
@@ -30,7 +31,7 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 from . import _command, _library
 from ._command import printable
 from ._library import Floats, InputError, UsageError
-from .data import PREFIXES, Data
+from .data import NAMES, PREFIXES, Data
 from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
@@ -38,15 +39,24 @@ KINDS = ("history", "loop", "moduli", "sweep", "map")
 FORMATS = ("svg", "pdf", "png")
 #: Width of a column and of a page, height of a panel [cm]
 COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
+#: Widths that are drawn [cm], and units of length [cm]
+_WIDTHS, _UNITS = (4.25, 60.0), {"cm": 1.0, "mm": 0.1, "in": 2.54}
 #: Results or curves that can be told apart
 MOST = 8
 _SCALED = ("m", "s", "N", "Pa", "J", "kg", "W")
 _WORDS = {
     "cor": "coefficient of restitution",
+    "cor_sphere": "restitution of the sphere alone",
     "min_frequency": "lowest frequency of interest",
     "resilience": "rebound resilience",
 }
-_OUTSIDE = "outside of the model's validity"
+#: Hatching by what the column validity says, and its text
+_HATCHES = {"outside": ("/////", "outside of the model's validity"),
+            "caution": ("//", "with caution: off by per cents")}  # fmt: skip
+#: Letters of a label that a side of a panel has room for
+_ROOM = 38
+#: Colours of a map, light enough for lines and hatching over them
+_SHADES = LinearSegmentedColormap.from_list("", mpl.colormaps["Blues"](np.linspace(0.0, 0.7, 64)))
 #: Colour of the points of a map without a result: grey, which is no level
 _NOTHING = "0.8"
 _Range = tuple[float | None, float | None]
@@ -127,8 +137,9 @@ def figure(
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
     if quantities and kind not in ("sweep", "map"):
         raise UsageError(f"found --quantity, which a figure of kind {kind} does not show")
-    if width is not None and not COLUMN / 2 <= width <= 10 * PAGE:
-        raise UsageError(f"found a width of {width:g} cm, expected 4.25 to 170")
+    if width is not None and not _WIDTHS[0] <= width <= _WIDTHS[1]:
+        raise UsageError(f"found a width of {width:g} cm, expected {_WIDTHS[0]:g} to "
+                         f"{_WIDTHS[1]:g}, or with a unit such as 85mm")  # fmt: skip
     for result in results[1:]:
         if result.kind() != results[0].kind():
             raise InputError(
@@ -136,7 +147,7 @@ def figure(
                 f"{results[0].path} for one of kind {results[0].kind()}"
             )
     texts = list(map(printable, legends)) or legends_of(results)
-    names = quantities or ("cor",)
+    names = [NAMES.get(name, name) for name in quantities or ("cor",)]
     wishes = _Wishes(
         results, texts, bool(legends), data, names, log, ranges or {}, levels, hatch, width
     )
@@ -148,8 +159,8 @@ def figure(
     for one in data:
         if _stem(one) not in shown:
             raise InputError(
-                f"{one.path}: found the columns {', '.join(one.columns)}, none of which the figure "
-                "shows; expected those of its axes"
+                f"{one.path}: found the columns {', '.join(one.columns)}, expected one for each "
+                f"axis{': ' * bool(results[0].axes)}{', '.join(results[0].axes)}"
             )
     return made
 
@@ -388,18 +399,20 @@ def _across(result: Result) -> str:
 
 
 def _hatch_span(axis: Axes, lines: list[xr.Dataset], across: str, factor: float) -> None:
-    """Hatch the part of an axis in which the model does not hold for one of the curves at least."""
+    """Hatch the parts of an axis by the worst validity of the curves."""
     x = factor * np.unique(np.concatenate([line[across].values for line in lines]))
-    outside = np.zeros(len(x), dtype=bool)
-    for line in lines:
-        if "validity" in line:
-            where = factor * line[across].values[(line.validity == "outside").values]
-            outside |= np.isin(x, where)
     edges = np.concatenate([x[:1], (x[1:] + x[:-1]) / 2, x[-1:]])
-    steps = np.diff(np.concatenate([[0], outside.astype(int), [0]]))
-    for start, end in zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True):
-        axis.axvspan(edges[start], edges[end], fill=False, hatch="////", ec="0.8", lw=0,
-                     label=_OUTSIDE, zorder=0)  # fmt: skip
+    rest = np.ones(len(x), dtype=bool)
+    for level, (lines_of, text) in _HATCHES.items():
+        found = np.zeros(len(x), dtype=bool)
+        for line in lines:
+            if "validity" in line:
+                found |= np.isin(x, factor * line[across].values[line.validity.values == level])
+        steps = np.diff(np.concatenate([[0], (found & rest).astype(int), [0]]))
+        rest &= ~found
+        for start, end in zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True):
+            axis.axvspan(edges[start], edges[end], fill=False, hatch=lines_of, ec="0.8", lw=0,
+                         label=text, zorder=0)  # fmt: skip
 
 
 def _map(wishes: _Wishes) -> Figure:
@@ -426,7 +439,7 @@ def _map(wishes: _Wishes) -> Figure:
         if np.ma.getmaskarray(z).any():
             axis.set_facecolor(_NOTHING)
             axis.fill([], [], color=_NOTHING, label="no result")
-        filled = axis.contourf(fx * x, fy * y, z, levels=levels, norm=norm,
+        filled = axis.contourf(fx * x, fy * y, z, levels=levels, norm=norm, cmap=_SHADES,
                                extend={"": "neither", "minmax": "both"}.get(extend, extend)
                                )  # fmt: skip
         for values, setter in ((x, axis.set_xscale), (y, axis.set_yscale)):
@@ -434,27 +447,32 @@ def _map(wishes: _Wishes) -> Figure:
                 setter("log")
         if z.max() > z.min():
             drawn = axis.contour(fx * x, fy * y, z, levels=levels, colors="0.1")
-            for text in axis.clabel(drawn, fontsize=7, inline=False, fmt="%.4g", colors="k"):
-                text.set_path_effects([withStroke(linewidth=1.6, foreground="w")])
+            for number in axis.clabel(drawn, fontsize=7, inline=False, fmt=_number, colors="k"):
+                number.set_path_effects([withStroke(linewidth=1.6, foreground="w")])
                 u, v = axis.transAxes.inverted().transform(
-                    axis.transData.transform(text.get_position())
+                    axis.transData.transform(number.get_position())
                 )
                 # no label over the frame
-                text.set_visible(0.08 < u < 0.92 and 0.05 < v < 0.95)
+                number.set_visible(0.08 < u < 0.92 and 0.05 < v < 0.95)
         bar = made.colorbar(filled, ax=axis, label=_label(column, z_unit), ticks=levels)
         bar.ax.minorticks_off()
-        bar.ax.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
-        if wishes.hatch and "validity" in ordered and (ordered.validity == "outside").any():
-            outside = (ordered.validity == "outside").values.T.astype(float)
-            with mpl.rc_context({"hatch.color": "0.55"}):
-                axis.contourf(fx * x, fy * y, outside, levels=[0.5, 1.5], colors="none",
-                              hatches=["////"])  # fmt: skip
-            axis.fill([], [], fill=False, hatch="////", ec="0.55", lw=0, label=_OUTSIDE)
+        bar.ax.yaxis.set_major_formatter(lambda value, _: _number(value))
+        for level, (lines, text) in _HATCHES.items():
+            if not (wishes.hatch and "validity" in ordered and (ordered.validity == level).any()):
+                continue
+            found = (ordered.validity == level).values.T.astype(float)
+            with mpl.rc_context({"hatch.color": "0.25"}):
+                axis.contourf(fx * x, fy * y, found, levels=[0.5, 1.5], colors="none",
+                              hatches=[lines])  # fmt: skip
+            if found.min() < 1:
+                axis.contour(fx * x, fy * y, found, levels=[0.5], colors="0.25", linestyles=":")
+            axis.fill([], [], fill=False, hatch=lines, ec="0.25", lw=0, label=text)
         for one in wishes.data:
             (px, _), (py, _), (pz, _) = (one.find(n) for n in (*result.axes, name))
             if px is None or py is None:
                 continue
-            options = {"color": "white"} if pz is None else {"c": fz * pz, "norm": filled.norm}
+            options = {"color": "white"} if pz is None else {
+                "c": fz * pz, "norm": filled.norm, "cmap": _SHADES}  # fmt: skip
             axis.scatter(fx * px, fy * py, s=18, edgecolors="k", linewidths=0.6, zorder=5,
                          label=_stem(one), **options)  # fmt: skip
         axis.set_xlabel(_label(x, x_unit))
@@ -507,8 +525,9 @@ def _legend(made: Figure, *axes: Axes) -> None:
     for axis in axes:
         for handle, text in zip(*axis.get_legend_handles_labels(), strict=True):
             found.setdefault(text, handle)
-    if _OUTSIDE in found:
-        found[_OUTSIDE] = found.pop(_OUTSIDE)
+    for _, text in _HATCHES.values():
+        if text in found:
+            found[text] = found.pop(text)
     if not found:
         return
     width, height = made.get_size_inches()
@@ -583,6 +602,16 @@ def _label(array: xr.DataArray, unit: str) -> str:
     return _with_unit(_name_of(name) if "." in name else text, unit)
 
 
+def _number(value: float) -> str:
+    """A tick in four digits; very small and large ones with a power of ten."""
+    digits, _, power = f"{value:.3e}".partition("e")
+    if value == 0 or -4 < int(power) < 5:
+        return f"{float(f'{value:.3e}'):.6g}"
+    raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    digits = f"{float(digits):g}·"
+    return f"{'' if digits == '1·' else digits}10{raised}"
+
+
 def _panel_label(name: str, unit: str, values: Floats) -> tuple[float, str]:
     """Factor for the values of a quantity, and its name in words with the unit that they have."""
     column = _library.columns(0).get(name)
@@ -615,24 +644,34 @@ def _adjust(made: Figure, wishes: _Wishes) -> None:
                     axis.autoscale(axis=letter)  # type: ignore[arg-type]
             if letter in wishes.ranges:
                 axis.set(**{f"{letter}lim": wishes.ranges[letter]})
-            _label_short_decades(which)
+                (low, high), ends = sorted(which.get_view_interval()), which.get_data_interval()
+                if high < min(ends) or low > max(ends):
+                    raise UsageError(
+                        f"--range {letter}={low:g}:{high:g}: nothing is there, {letter} is "
+                        f"{which.label.get_text()} from {min(ends):.4g} to {max(ends):.4g}"
+                    )
+            which.label.set_text("\n".join(textwrap.wrap(which.label.get_text(), _ROOM)))
+            _label_decades(which)
     for legend in made.legends:
         for text in legend.get_texts():
             text.set_parse_math(False)
 
 
-def _label_short_decades(which: Any) -> None:
-    """Plain numbers where a logarithmic axis has less than two decades."""
+def _label_decades(which: Any) -> None:
+    """Plain numbers on a logarithmic axis without far decades, as many as there is room for."""
     low, high = sorted(which.get_view_interval())
-    if which.get_scale() != "log" or not 0 < low < high < 100 * low:
+    if which.get_scale() != "log" or not 0 < low < high:
         return
+    which.set_minor_formatter(lambda *_: "")
+    if high < 100 * low or (low > 0.9e-3 and high < 1.1e4):
+        which.set_major_formatter(lambda value, _: _number(value))
     power = 10.0 ** math.floor(math.log10(low))
     marks = [n * power * 10**k for k in range(3) for n in (1, 2, 5)]
-    marks = [mark for mark in marks if low * 0.999 <= mark <= high * 1.001]
-    if len(marks) > 1:
-        which.set_major_locator(FixedLocator(marks))
-        which.set_major_formatter(lambda value, _: f"{value:g}")
-        which.set_minor_formatter(lambda *_: "")
+    if high < 4 * low:
+        marks = list(MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high))
+    if high < 100 * low:
+        inside = [mark for mark in marks if low * 0.999 <= mark <= high * 1.001]
+        which.set_major_locator(FixedLocator(inside))
 
 
 # ----------------------------------------------------------------------------- command
@@ -665,7 +704,8 @@ def _parser() -> _command.Parser:
         help="range of x, y or the levels z, in the unit that is drawn; repeatable")  # fmt: skip
     add("--levels", metavar="N|Z,Z,...", help="levels of a map, or about how many; default: 8")
     add("--no-hatch", action="store_true", help="do not hatch where the model does not hold")
-    add("--width", metavar="CM", type=float, help=f"width; default: {COLUMN} or {PAGE}")
+    add("--width", metavar="CM", type=_width,
+        help=f"width in cm, or such as 85mm or 3.35in; default: {COLUMN} or {PAGE}")  # fmt: skip
     add("--output", metavar="PATH", help="NAME.svg, .pdf or .png, or a folder")
     add("--format", choices=FORMATS, help="format in a folder; default: svg")
     add("--script", action="store_true", help="leave the Python script that makes the figure")
@@ -702,6 +742,17 @@ def _settings(options: Any) -> dict[str, Any]:
         ) from None
     settings["ranges"] = ranges or None
     return {name: value for name, value in settings.items() if value is not None}
+
+
+def _width(word: str) -> float:
+    """A width [cm]."""
+    unit = next((unit for unit in _UNITS if word.endswith(unit)), "")
+    try:
+        return float(word.removesuffix(unit)) * _UNITS.get(unit, 1.0)
+    except ValueError:
+        raise argparse.ArgumentTypeError(
+            f"found '{word}', expected a number of cm, or such as 85mm"
+        ) from None
 
 
 def _is_finite(*ends: float | None) -> bool:

@@ -53,6 +53,9 @@ class Spread:
     def read(cls, case: Case, address: str, text: str | float) -> Spread:
         """Distribution from its text; a number is a relative standard deviation."""
         value = case[address]
+        if value is None:
+            raise UsageError(f"{address}: the case does not give it, expected a number that it "
+                             "gives")  # fmt: skip
         if not isinstance(value, (int, float)):
             one = f"one of them, such as {address}(1)" if isinstance(value, list) else "a number"
             raise UsageError(f"{address}: found {value}, expected {one}")
@@ -151,13 +154,16 @@ class Uncertainty:
                      for name in row.source.values[order]]  # fmt: skip
             factor, label = _panel_label(quantity, "", row["value"].values)
             for color, side, text in (
-                ("0.75", below[order], "one standard deviation less"),
-                ("C1", above[order], "one more"),
+                ("0.75", below[order], "− one standard deviation"),
+                ("C1", above[order], "+ one"),
             ):
                 start = factor * float(row["value"])
                 axis.barh(names, factor * side - start, left=start, label=text, color=color)
             axis.axvline(start, color="black", lw=0.8, marker="")
             axis.set_xlabel(label)
+            axis.tick_params(axis="y", length=0)
+            axis.tick_params(axis="x", top=False)
+            axis.locator_params(axis="x", nbins=4)
             made.legend(loc="outside upper center", ncols=2)
         return made
 
