@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import functools
 import importlib
 import os
 import sys
@@ -75,34 +76,13 @@ def _run(name: str, module: str) -> None:
             ) from None
 
 
-def card() -> None:
-    """Run `vcor card`."""
-    _run("card", "cards")
-
-
-def export() -> None:
-    """Run `vcor export`."""
-    _run("export", "exchange")
-
-
-def identify() -> None:
-    """Run `vcor identify`."""
-    _run("identify", "identification")
-
-
-def master() -> None:
-    """Run `vcor master`."""
-    _run("master", "master_curve")
-
-
-def plot() -> None:
-    """Run `vcor plot`."""
-    _run("plot", "plot")
-
-
-def uncertainty() -> None:
-    """Run `vcor uncertainty`."""
-    _run("uncertainty", "uncertainty")
+# The commands vcor-NAME
+card = functools.partial(_run, "card", "cards")
+export = functools.partial(_run, "export", "exchange")
+identify = functools.partial(_run, "identify", "identification")
+master = functools.partial(_run, "master", "master_curve")
+plot = functools.partial(_run, "plot", "plot")
+uncertainty = functools.partial(_run, "uncertainty", "uncertainty")
 
 
 def printable(text: str) -> str:

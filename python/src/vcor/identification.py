@@ -67,6 +67,8 @@ NEXT_REACH = 3.0
 KEPT = ("name", "density", "poisson_ratio", "shift", "shift_file", "reference_temperature",
         "wlf_c1", "wlf_c2", "activation_energy", "vertical_shift", "valid_temperature_from",
         "valid_temperature_to")  # fmt: skip
+#: What is said of a datum
+DATUM = ("source", "quantity", "at", "value", "sigma", "model", "residual")
 #: Abscissae of data that are no impacts
 _ACROSS = {
     "force": "time [s]",
@@ -111,7 +113,7 @@ class Identification:
     eigenvalues: Floats
     aic: float
     bic: float
-    #: A row per datum: source, quantity, at, value, sigma, model, residual
+    #: DATUM of each datum
     data: tuple[dict[str, Any], ...]
     #: Times that the data see [s], of a material with a shift at its reference temperature
     window: tuple[float, float]
@@ -252,7 +254,13 @@ class _Problem:
                              f"{name}_sigma, or --error {name}=2%")  # fmt: skip
         self.estimated = bool(missing.all())
         self.sigma = scale if self.estimated else sigma
-        guess = np.log([_positive(case, address) for address in free])
+        values = np.array([number(case, address) for address in free])
+        if not (values > 0).all():
+            address = free[int(np.argmin(values > 0))]
+            raise UsageError(
+                f"{address}: found {case[address]}, expected a number > 0 as first guess"
+            )
+        guess = np.log(values)
         self.guess, self.low, self.high = guess, guess - FARTHEST, guess + FARTHEST
         if not (self.sigma > 0).all():
             raise InputError("found a standard error or a datum that is not > 0")
@@ -450,8 +458,8 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
             directions = directions[:, values < 1 / UNDETERMINED**2]
         lost = np.eye(len(x))[:, free_of_limits] @ directions
         raise NumericalError(_not_determined(problem, x, lost))
-    for at, value in zip(free, np.exp(x), strict=True):
-        case[at] = float(value)
+    for address, value in zip(free, np.exp(x), strict=True):
+        case[address] = float(value)
     deviations = np.sqrt(np.diag(covariance))
     estimates = tuple(
         Estimate(
@@ -467,22 +475,14 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     likelihood = n * math.log(max(chi2, 1e-300) / n) if problem.estimated else chi2
     found = problem.predict(x[None])[0]
     materials = materials_of(free)
+    sigma = scale * problem.sigma
+    residual = (found - problem.value) / np.fmax(sigma, 1e-300)
+    sources = [block.source for block in problem.blocks for _ in block.quantity]
+    at = np.concatenate([block.at for block in problem.blocks])
+    numbers = np.stack([at, problem.value, sigma, found, residual], axis=1).tolist()
     rows = tuple(
-        {
-            "source": block.source,
-            "quantity": block.quantity[i],
-            "at": float(block.at[i]),
-            "value": float(block.value[i]),
-            "sigma": float(scale * problem.sigma[start + i]),
-            "model": float(found[start + i]),
-            "residual": float(
-                (found[start + i] - block.value[i]) / max(scale * problem.sigma[start + i], 1e-300)
-            ),
-        }
-        for start, block in zip(
-            np.cumsum([0, *[len(b.value) for b in problem.blocks]]), problem.blocks, strict=False
-        )
-        for i in range(len(block.value))
+        dict(zip(DATUM, (source, name, *row), strict=True))
+        for source, name, row in zip(sources, problem.quantity, numbers, strict=True)
     )
     order = np.argsort(-eigenvalues)
     return Identification(
@@ -509,8 +509,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
 
 def _validity(problem: _Problem, case: Case) -> str:
     """Where the model of the impact does not hold for measured impacts, in words."""
-    impacts = [block for block in problem.blocks if isinstance(block, Impacts)]
-    found = [pair for block in impacts for pair in block.validity(case)]
+    found = [pair for block in _impacts(problem) for pair in block.validity(case)]
     words = [
         f"{kind} at {sum(one == kind for one, _ in found)} of {len(found)} impacts, by "
         + ", ".join(sorted({cause for one, cause in found if one == kind}))
@@ -552,11 +551,11 @@ def _not_determined(problem: _Problem, x: Floats, lost: Floats) -> str:
 
 def _responds(problem: _Problem, x: Floats, lost: Floats, name: str) -> bool:
     """Whether a measured quantity would respond to every combination that is lost."""
-    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
-    if block is None:
+    if not _impacts(problem):
         return False
 
     def logarithms(points: Floats) -> Floats:
+        block = _impacts(problem)[0]
         found = block.quantities(problem.case, problem.free, np.exp(points), [name])
         return np.log(np.abs(found[:, :, 0]))
 
@@ -623,13 +622,26 @@ def _ends(
     return ends
 
 
+def _impacts(problem: _Problem) -> list[Impacts]:
+    return [block for block in problem.blocks if isinstance(block, Impacts)]
+
+
+def _speeds(problem: _Problem) -> Floats:
+    """Velocities of the first impacts, or of the case [m/s]."""
+    own = np.array([velocity_of(problem.case)])
+    return next((block.velocity for block in _impacts(problem)), own)
+
+
+def _probe(case: Case, grid: Floats) -> Impacts:
+    """Impacts of the case at other velocities."""
+    return Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
+
+
 def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
     """The measurement that would bring the worst combination down most."""
-    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
-    speeds = block.velocity if block else np.array([velocity_of(problem.case)])
+    case, free, speeds = problem.case, problem.free, _speeds(problem)
     grid = np.geomspace(speeds.min() / NEXT_REACH, speeds.max() * NEXT_REACH, 13)
-    case, free = problem.case, problem.free
-    probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
+    probe = _probe(case, grid)
     measured = (grid >= speeds.min()) & (grid <= speeds.max())
     feasible = measured | [kind != "outside" for kind, _ in probe.validity(case)]
 
@@ -657,10 +669,8 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
 
 def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
     """Prediction of cor over velocity with its 95 % band, of the case otherwise."""
-    block = next((b for b in problem.blocks if isinstance(b, Impacts)), None)
-    speeds = block.velocity if block else np.array([velocity_of(problem.case)])
-    grid = np.geomspace(speeds.min() / 2, speeds.max() * 2, 41)
-    probe = Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, problem.case)
+    grid = np.geomspace(_speeds(problem).min() / 2, _speeds(problem).max() * 2, 41)
+    probe = _probe(problem.case, grid)
 
     def cor(points: Floats) -> Floats:
         return probe.predict(problem.case, problem.free, np.exp(points))
@@ -730,13 +740,6 @@ def _product(names: Sequence[str], direction: Floats) -> str:
             text = f"{power:.2f}".rstrip("0").rstrip(".")
             factors.append(name if text == "1" else f"{name}^{text}")
     return "*".join(factors)
-
-
-def _positive(case: Case, address: str) -> float:
-    value = number(case, address)
-    if not value > 0:
-        raise UsageError(f"{address}: found {case[address]}, expected a number > 0 as first guess")
-    return value
 
 
 def _finite(interval: tuple[float, float]) -> list[float | None]:
