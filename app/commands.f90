@@ -53,10 +53,11 @@ module vcor_app_commands
       //"the sweep after the points in progress, with exit code 130 or 143. The same command " &
       //"with `--resume` continues it, also after a crash, and writes the same files as an " &
       //"uninterrupted run. A STEM.part.h5 of another case or version is refused."), &
-      entry_t("", "The screen says which mechanics an impact has, what the exact ones give where " &
-      //"they differ, and which of its measures of validity are not good; of a sweep how many " &
-      //"points those are, by which measure, and where. With `--print` that is one line on " &
-      //"stderr. Numbers that no material has (a density of 7.8 kg/m3) bring a warning."), &
+      entry_t("", "The screen says which mechanics an impact has, what the exact ones (law " &
+      //"'receding', pair 'series', waves 'body', or its limit 'hereditary' for a thin plate) " &
+      //"give where they differ, and which of its measures of validity are not good; of a sweep " &
+      //"how many points those are, by which measure, and where. With `--print` that is one " &
+      //"line on stderr. Numbers that no material has (a density of 7.8 kg/m3) bring a warning."), &
       entry_t("", "Finished results of another case are replaced, with a message. Unfinished " &
       //"results of another case are never replaced."), &
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &

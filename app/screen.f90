@@ -51,10 +51,10 @@ contains
             associate (quantity => columns(quantity_place(shown(i))))
                text = text//line('  '//quantity%meaning, 50, quantity%symbol, &
                   shown_value(shown(i)), merge('        ', quantity%unit, quantity%unit == '1'), &
-                  remark(shown(i)))
+                  remark(outcome, shown(i)))
                if (i <= 2 .and. .not. ieee_is_nan(exact%cor)) text = text &
                   //line('    with exact mechanics', 50, quantity%symbol, &
-                  quantity_value(exact, shown(i)), '', '')
+                  quantity_value(exact, shown(i)), '', remark(exact, shown(i)))
             end associate
          end do
          text = text//nl//budget(outcome)//nl//'  '//method//', ' &
@@ -75,13 +75,14 @@ contains
       end function shown_value
 
       !> What stands behind a number
-      function remark(name)
+      function remark(found, name)
+         type(outcome_t), intent(in) :: found
          character(len=*), intent(in) :: name
          character(len=:), allocatable :: remark
 
          remark = ''
-         if (name == 'cor') remark = '+- '//short(outcome%cor_error)//' numerical'
-         if (name == 'cor_sphere') remark = '+- '//short(outcome%cor_sphere_error) &
+         if (name == 'cor') remark = '+- '//short(found%cor_error)//' numerical'
+         if (name == 'cor_sphere') remark = '+- '//short(found%cor_sphere_error) &
             //' numerical; a drop test reads this'
       end function remark
    end function report

@@ -149,9 +149,9 @@ def screen(vcor, text, *words):
 def test_screen_of_the_paper(vcor):
     """The mechanics, what the exact ones give, and a sentence for each measure that is not good."""
     out = screen(vcor, SLS)
-    assert "  mechanics: waves relaxing, law boltzmann; exact: waves hereditary, law receding\n" in out
+    assert "  mechanics: waves relaxing, law boltzmann; exact: waves body, law receding\n" in out
     values = re.findall(r"^ .*(?: e| e_a) +([0-9.]+).*$", out, re.MULTILINE)
-    exact = ["--set", "plate.waves=hereditary", "--set", "contact.law=receding"]
+    exact = ["--set", "plate.waves=body", "--set", "contact.law=receding"]
     rows = [numbers(vcor, SLS), numbers(vcor, SLS, *exact)]
     expected = [row[name] for name in ("cor", "cor_sphere") for row in rows]
     assert [float(value) for value in values] == pytest.approx(expected, abs=1e-8)
@@ -201,6 +201,24 @@ def test_exact_mechanics(vcor):
        alpha = 1e4, beta = 2e4 /\n"""
     out = screen(vcor, pair, "--set", "contact.pair=series")
     assert "law boltzmann, pair series; exact: waves none, law receding, pair series" in out
+
+
+def test_exact_mechanics_of_plates(vcor):
+    """Of a thin plate that of its limit, of any other that of a layer; with an accuracy of its own."""
+    for half, waves in ("0.02", "body"), ("0.003", "hereditary"):
+        out = screen(vcor, SLS, "--set", f"plate.half_thickness={half}", "--set", "impact.velocity=0.01", "--set",
+                     "solver.accuracy=1e-10")
+        assert f"exact: waves {waves}, law receding\n" in out and "with exact mechanics" in out
+
+
+def test_footprint_is_judged(vcor):
+    """A layer's coefficient that depends on the disc by more than a hundredth, but not its thin-plate measures."""
+    out = screen(vcor, SLS, "--set", "plate.waves=body")
+    row = numbers(vcor, SLS, "--set", "plate.waves=body")
+    assert re.search(r"^    caution: footprint_effect \S+: .{30,100}$", out, re.MULTILINE)
+    assert 0.01 < abs(row["footprint_effect"]) < 0.1 and row["validity"] == "caution"
+    judged = re.findall(r"(\w+) [0-9.E+-]+(?:[:,]|$)", out.split("validity: ")[1].split("written")[0], re.MULTILINE)
+    assert set(judged) == {"contact_ratio", "thickness_ratio", "footprint_effect", "weight_ratio"}
 
 
 def test_exact_mechanics_without_result(vcor):

@@ -91,6 +91,8 @@ contains
          outcome%initial_energy = scale
          outcome%wave_energy = scale*0.25_wp
          outcome%half_space_loss = 0.25_wp + value
+      case (9)
+         outcome%footprint_effect = -value
       case default
          call check(.false., "every measure is tested")
       end select

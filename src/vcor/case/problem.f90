@@ -375,10 +375,10 @@ contains
       call prepare(self)
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return
-      call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
-         self%plate%material)
       if (self%impact%plate%layered()) &
          outcome%footprint_effect = cor_with_larger_footprint(self) - outcome%cor
+      call assess(outcome, self%impact, trajectory, self%around, self%sphere%material, &
+         self%plate%material)
    end subroutine solve
 
    !> Make what method ive needs of a layer in advance

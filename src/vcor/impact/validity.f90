@@ -64,7 +64,9 @@ module vcor_impact_validity
       ! Mechanics (1985), doi:10.1017/CBO9781139171731, sections 6.1 and 6.2
       threshold_t('mean_pressure', 1.07_wp, 2.8_wp), &
       ! less what is computed as waves: energy that the impact loses and the model does not
-      threshold_t('half_space_loss', 0.01_wp, 0.1_wp)]
+      threshold_t('half_space_loss', 0.01_wp, 0.1_wp), &
+      ! its size: what a layer's cor depends on the disc that is loaded, which is a choice
+      threshold_t('footprint_effect', 0.01_wp, 0.1_wp)]
 
    !> Weight of `sphere_ratio` in what is held against the thresholds of contact_ratio. A sphere
    !> that gives way is no half space: its dent is smaller by 0.5 a/r, so the contact is 4 % shorter
@@ -124,7 +126,7 @@ contains
 
    !> Measure what an impact assumes, and judge it
    pure subroutine assess(outcome, impact, trajectory, around, sphere, plate)
-      !> Outcome of a separation, evaluated; its measures are set
+      !> Outcome of a separation, evaluated; its measures but for `footprint_effect` are set
       type(outcome_t), intent(inout) :: outcome
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(in) :: trajectory
@@ -238,7 +240,8 @@ contains
       values = [outcome%contact_ratio, outcome%thickness_ratio, outcome%plate_wave_number, &
          outcome%needed_extent/around%extent, outcome%deflection_ratio, outcome%weight_ratio, &
          outcome%mean_pressure/around%yield_strength, &
-         outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy]
+         outcome%half_space_loss - outcome%wave_energy/outcome%initial_energy, &
+         abs(outcome%footprint_effect)]
       if (around%is_weighed) values(findloc(thresholds%measure, 'weight_ratio', dim=1)) = none
       do i = 1, size(thresholds)
          if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none

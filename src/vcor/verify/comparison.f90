@@ -248,6 +248,8 @@ contains
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
+      ! a layer is solved to what it can be
+      if (model%waves == 'body') call other%unset(other%address('solver', 'accuracy'))
       call problem_of_case(problem, other, error)
       valid = .not. allocated(error)
       if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
