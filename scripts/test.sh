@@ -18,6 +18,7 @@ begin() {
 # Runs on every way out. A step that fails without a failed test (a build, say) counts as one
 finish() {
    local code=$?
+   jobs -p | xargs -r kill 2>/dev/null || true
    if [ $code -ne 0 ]; then
       printf '\ntest: error: stopped at: %s\n' "$step"
       if [ $failed -eq 0 ]; then failed=1; fi
@@ -113,11 +114,16 @@ with_fpm() {
 begin "set-up"
 scripts/setup.sh --tests
 
-begin "Python environments"
-make_venv "$venv" python3 -r tests/requirements.txt
+begin "release build, and Python environments beside it"
+make_venv "$venv" python3 -r tests/requirements.txt &
+environments=$!
 # The package is tested with Debian's Python, with this one, and with the newest one that is here
 make_venv build/newest "$(newest_python)" -c tests/requirements.txt \
-   numpy xarray h5py h5netcdf tqdm matplotlib scipy pytest
+   numpy xarray h5py h5netcdf tqdm matplotlib scipy pytest &
+cmake --preset release -DVCOR_WERROR=ON
+cmake --build --preset release
+wait $environments
+wait $!
 
 with_cmake release
 with_cmake debug -DVCOR_BENCHMARKS=OFF

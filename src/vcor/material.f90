@@ -82,15 +82,10 @@ module vcor_material
       !> The values
       type(value_t), private :: value(most_values)
    contains
-      !> Set a number by its name
       procedure :: set
-      !> Set a list by its name
       procedure :: set_list
-      !> A number by its name
       procedure :: number
-      !> A list by its name
       procedure :: list
-      !> Whether another one has the same modulus
       procedure :: deforms_as
       procedure, private :: place_of
       procedure, private :: find

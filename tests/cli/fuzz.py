@@ -125,7 +125,9 @@ def fault_of(seed):
             fault = "a file is left on refusal"
         elif (folder / "z").exists():
             fault = "a name was run"
-        elif b"nan" in done.stdout.lower() and done.returncode == SUCCESS:
+        elif done.returncode == SUCCESS and b"nan" in done.stdout.lower() and not any(
+            b"nan" in path.read_bytes().lower() for path in folder.glob("*.*")
+        ):
             fault = "nan where a result is said to be"
         return f"seed {seed}: {' '.join(words)}: {fault}: {' | '.join(lines)[:300]}" if fault else ""
     finally:

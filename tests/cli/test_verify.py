@@ -195,7 +195,10 @@ def test_examples(vcor, path):
 
 def test_solutions_of_a_case(vcor):
     vcor.write(SLS)
-    found = solutions(vcor.succeeds("verify", "case.nml"))
+    done = vcor("verify", "case.nml")
+    assert done.code == SUCCESS
+    assert [path.name for path in vcor.folder.iterdir()] == ["case.nml"]
+    found = solutions(done.out)
     assert [line[0] for line in found] == ["ive", "ive", "direct", "direct", "direct"]
     assert [float(line[1]) for line in found[:2]] == [1e-8, 1e-10]
     steps = [int(line[2]) for line in found[2:]]
@@ -282,7 +285,8 @@ def test_sticking(vcor, rate):
     text, _ = edit(SLS, "material", "alpha", "0.0")
     text, _ = edit(text, "material", "beta", rate)
     text, _ = edit(text, "plate", "waves", "'none'")
-    vcor.write(text)
+    # without its density no plate has waves, and the table of models is short
+    vcor.write(text.replace("   density = 1100.0\n", ""))
     out = vcor.succeeds("verify", "case.nml")
     found = [line for line in solutions(out) if line[-1] == "sticks"]
     assert [line[0] for line in found] == ["ive", "ive", "direct"]
@@ -331,17 +335,6 @@ def test_scheme_that_cannot(vcor):
     vcor.write(case_text("prony"))
     sets = ["--set", "rubber.viscosity=1", "--set", "solver.scheme=adams_bashforth"]
     vcor.refuses("verify", "case.nml", *sets, code=INPUT, at="case.nml", says="viscosity")
-
-
-def test_nothing_is_written(vcor):
-    vcor.write(SLS)
-    vcor.succeeds("verify", "case.nml")
-    assert [path.name for path in vcor.folder.iterdir()] == ["case.nml"]
-
-
-def test_success_is_zero(vcor):
-    vcor.write(SLS)
-    assert vcor("verify", "case.nml").code == SUCCESS
 
 
 # ---------------------------------------------------------------------------------- documentation

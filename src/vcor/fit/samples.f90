@@ -24,13 +24,9 @@ module vcor_fit_samples
       !> Lines of keys that the head of the file gives for the &material group; may be unallocated
       character(len=:), allocatable :: keys
    contains
-      !> Number of moduli
       procedure :: count => count_moduli
-      !> First time
       procedure :: first_time
-      !> Last time
       procedure :: last_time
-      !> All moduli as one list
       procedure :: all => all_moduli
    end type samples_t
 

@@ -45,25 +45,15 @@ module vcor_impact_contact
       !> What fits sums of exponentials to a pair; not allocated where they need not be fitted
       type(signed_fit_t), allocatable :: fit
    contains
-      !> E'(t)
       procedure :: relaxation
-      !> dE'/dt
       procedure :: rate
-      !> Integral of E'
       procedure :: integral
-      !> Mean of that integral
       procedure :: mean_integral
-      !> Integrals of E' over equal steps
       procedure :: step_integrals
-      !> Storage and loss modulus
       procedure :: dynamic_modulus
-      !> E'(0)
       procedure :: glassy
-      !> E'(infinity)
       procedure :: rubbery
-      !> Viscosity of the dashpot in parallel
       procedure :: viscosity
-      !> E' as a sum of exponentials
       procedure :: exponentials
    end type contact_modulus_t
 

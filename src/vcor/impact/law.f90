@@ -41,17 +41,11 @@ module vcor_impact_law
       !> doi:10.1115/1.3625192)
       logical :: receding = .false.
    contains
-      !> u(s)
       procedure, non_overridable :: u
-      !> du/ds
       procedure, non_overridable :: slope
-      !> u/s
       procedure, non_overridable :: secant
-      !> u/s at many indentations
       procedure, non_overridable :: secants
-      !> Indentation at which motion and force agree
       procedure, non_overridable :: solve
-      !> Time scale of an elastic impact
       procedure, non_overridable :: time_scale
    end type contact_law_t
 

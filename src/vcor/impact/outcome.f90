@@ -102,9 +102,7 @@ module vcor_impact_outcome
       !> Place of the measure that decides in its `thresholds`, 0: none
       integer :: validity_cause = 0
    contains
-      !> Whether all numbers are finite
       procedure :: is_finite
-      !> Whether the error is above the accuracy that was asked for
       procedure :: misses
    end type outcome_t
 

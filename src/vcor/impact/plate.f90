@@ -51,35 +51,21 @@ module vcor_impact_plate
       !> Radius of the disc that loads the layer [m], > 0
       real(wp), public :: footprint = 0.0_wp
    contains
-      !> Whether it moves at all
       procedure :: moves
-      !> Plate parameter alpha(t)
       procedure :: alpha
       procedure :: alpha_at
       procedure :: alpha_after
-      !> d alpha/dt
       procedure :: alpha_rate
-      !> Both
       procedure :: alpha_and_rate
-      !> Whether the plate is the frozen one and differs from the relaxing one
       procedure :: frozen
-      !> Whether it is a layer by elastodynamics
       procedure :: layered
-      !> Whether it is too thin to be one
       procedure :: is_sheet
-      !> Whether the plate remembers the force
       procedure :: hereditary
-      !> Whether its velocity is no function of force and impulse
       procedure :: drifts
-      !> Time that a sum for a layer holds
       procedure, nopass :: window
-      !> Make the response of a layer in advance
       procedure :: prepare
-      !> Its response as a sum of exponentials
       procedure :: response
-      !> Integral of the memory
       procedure :: memory_integral
-      !> Compliance of a layer, and what of it is at once
       procedure :: compliance
       procedure :: instant
    end type plate_t

@@ -40,46 +40,26 @@ module vcor_impact_problem
       !> Contact law
       type(contact_law_t) :: law
    contains
-      !> Give the sphere another motion or size
       procedure :: launch
-      !> Way and velocity of the sphere without a contact force
       procedure :: free_path
       procedure :: free_velocity
-      !> Velocity that the motion is measured by
       procedure :: speed_scale
-      !> Kernel k(t)
       procedure :: kernel
-      !> Integral of the kernel
       procedure :: kernel_integral
-      !> Mean of that integral
       procedure :: kernel_mean_integral
-      !> Integrals of the kernel over equal steps
       procedure :: kernel_step_integrals
-      !> The kernel as a sum of exponentials
       procedure :: kernel_exponentials
-      !> Viscosity of the kernel's dashpot
       procedure :: kernel_viscosity
-      !> Time scale of the contact
       procedure :: time_scale
-      !> Time scale of an elastic contact
       procedure, private :: elastic_time
-      !> Time scale of the fastest motion
       procedure :: fast_time_scale
-      !> Time after which a contact counts as lasting
       procedure :: patience
-      !> Whether a step is too long for the plate
       procedure :: outruns
-      !> Force at first contact
       procedure :: first_force
-      !> Radius of the contact
       procedure :: contact_radius
-      !> Whether it has an equilibrium modulus to push the bodies apart
       procedure :: springs_back
-      !> Zener's parameter lambda
       procedure :: inelasticity
-      !> The same for what plate and kernel are during the contact
       procedure :: lasting_inelasticity
-      !> Kinetic energy of the sphere before the impact
       procedure :: initial_energy
    end type impact_t
 

@@ -88,19 +88,13 @@ module vcor_impact_trajectory
       !> shape (2, panels)
       real(wp), allocatable :: map(:, :)
    contains
-      !> Make room for nodes
       procedure :: reserve
-      !> Note the map of a panel
       procedure :: add_map
-      !> Whether all motion has died out
       procedure :: has_died_out
       procedure :: is_stuck
       procedure :: rests
-      !> Whether the error is far above the accuracy that was asked for
       procedure :: misses_by_far
-      !> State at equal steps of time
       procedure :: sample
-      !> Indentation at a time of the contact
       procedure :: indentation_at
    end type trajectory_t
 

@@ -100,7 +100,6 @@ module vcor_impact_validity
       !> Rule of its integrals, made once, shape (n)
       real(wp), allocatable, private :: node(:), weight(:)
    contains
-      !> Follow the plate's Poisson's ratio
       procedure :: follow
    end type surroundings_t
 

@@ -24,11 +24,8 @@ module vcor_material_exponential_sum
       !> Largest relative error against the modulus that it stands for [-]; 0: it is that modulus
       real(wp) :: error = 0.0_wp
    contains
-      !> Multiply it by a factor
       procedure :: scale
-      !> Number of its internal variables
       procedure :: variables
-      !> Its integral from 0 to t, dashpot included
       procedure :: integral
    end type exponential_sum_t
 

@@ -56,7 +56,6 @@ module vcor_material_signed_fit
       !> Weights of the nodes, shape (nodes)
       real(wp), allocatable :: share(:)
    contains
-      !> Fit a modulus
       procedure :: fit
    end type signed_fit_t
 

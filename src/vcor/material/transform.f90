@@ -35,7 +35,6 @@ module vcor_material_transform
       !> Its weights
       complex(wp) :: weight(contour_nodes) = (0.0_wp, 0.0_wp)
    contains
-      !> Make the rule of the inversion
       procedure :: prepare
       procedure :: relaxation
       procedure :: rate

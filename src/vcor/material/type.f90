@@ -31,7 +31,6 @@ module vcor_material_type
    contains
       !> Relaxation modulus E(t)
       procedure(of_time_i), deferred :: relaxation
-      !> Relaxation modulus E(t) at many times
       procedure :: relaxation_at
       !> Rate of relaxation dE/dt
       procedure(of_time_i), deferred :: rate
@@ -39,7 +38,6 @@ module vcor_material_type
       procedure(of_time_i), deferred :: integral
       !> Complex modulus s L{E}(s)
       procedure(complex_modulus_i), deferred :: complex_modulus
-      !> Relaxation spectrum
       procedure :: spectrum
       !> Glassy modulus E(0), infinite for a singular kernel
       procedure(limit_i), deferred :: glassy
@@ -47,15 +45,10 @@ module vcor_material_type
       procedure(limit_i), deferred :: rubbery
       !> The modulus as a sum of exponentials
       procedure(exponentials_i), deferred :: exponentials
-      !> Whether the modulus is constant
       procedure :: elastic
-      !> Factor 1/(1 - nu^2) from E to the plane-strain modulus E' of Eq. (1)
       procedure :: plane_strain_factor
-      !> Mass density
       procedure :: density
-      !> Poisson's ratio
       procedure :: poisson_ratio
-      !> Set both, within their ranges
       procedure :: set_constants
    end type material_t
 

@@ -36,7 +36,7 @@ module vcor_solver_tuning
    real(wp), parameter :: window_margin = 2.0_wp ! tested
    real(wp), parameter :: window_growth = 20.0_wp ! time
    !> The factor where the plate is a layer, whose sum is the better the tighter the window is
-   real(wp), parameter :: layer_growth = 2.0_wp
+   real(wp), parameter :: layer_growth = 2.0_wp ! tested
    !> Time of the largest force over the window before which it is none: the sum of a layer has no
    !> rates for so short a time
    real(wp), parameter :: layer_start = 1.0e-3_wp ! guard
@@ -49,7 +49,7 @@ module vcor_solver_tuning
    !> reach: the velocity of its face at the end is another matter than the sphere's
    real(wp), parameter :: layer_reach = 3.0e-4_wp
    !> Accuracy that an impact on a layer is worked to at best: what rings is not to be resolved
-   real(wp), parameter :: layer_accuracy = 3.0e-8_wp
+   real(wp), parameter :: layer_accuracy = 3.0e-8_wp ! tested
    !> What the velocity of its face at the end feels of the misfit, measured between sums of other
    !> rates: most where the force ends as s^1.5
    real(wp), parameter :: error_of_layer = 1.0e3_wp
@@ -248,10 +248,10 @@ module vcor_solver_tuning
 
    !> Steps of the first run in the contact time of an elastic impact, and the least part of that
    !> time that a fast glassy modulus may make of it
-   integer, parameter :: first_steps = 64
+   integer, parameter :: first_steps = 64 ! tested
    real(wp), parameter :: least_part = 32.0_wp
    !> A run of more steps is given up: its sums take seconds, or the compliance of a layer does
-   integer, parameter :: most_for_all = 60000
+   integer, parameter :: most_for_all = 60000 ! tested
    integer, parameter :: most_for_layers = 8000
    !> Steps beyond which the face of a layer is not followed for the sake of `cor` alone
    integer, parameter :: enough_steps = 1000
