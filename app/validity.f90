@@ -8,7 +8,8 @@ module vcor_app_validity
    use vcor_app_screen, only : percent, short, significant
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_grid, only : grid_t
-   use vcor_case_identified, only : find_reliance, reliance_t
+   use vcor_case_catalogue, only : find_group
+   use vcor_case_identified, only : find_band, find_reliance, reliance_t
    use vcor_case_plausibility, only : note_length, slips_of
    use vcor_case_unread, only : why_unread
    use vcor_constants, only : pi
@@ -388,7 +389,9 @@ contains
       type(reliance_t) :: reliance, worst
       type(case_t) :: case
       type(error_t), allocatable :: error
+      real(wp) :: ends(2)
       integer :: points(2), i, k, time, worst_point, unseen
+      integer, allocatable :: places(:)
       logical, allocatable :: known(:)
 
       if (.not. (job%case%given('material', 'valid_from', item) &
@@ -418,7 +421,7 @@ contains
       end do
       unseen = 0
       if (worst_point > 0 .and. worst%ends(1)) &
-         unseen = count(known .and. summary%values(time)%reals <= worst%band(1))
+         unseen = unseen_contacts(summary%values(time)%reals)
       if (worst_point > 0) write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
          //message(worst, worst_point)
 
@@ -433,6 +436,46 @@ contains
          change = huge(change)
          if (found%solved) change = abs(found%held - found%cor)
       end function change
+
+      !> Contacts that end before the data begin, each at its temperature
+      function unseen_contacts(times) result(number)
+         !> Contact times [s]
+         real(wp), intent(in) :: times(:)
+         integer :: number
+
+         type(address_t) :: address
+         real(wp), allocatable :: starts(:)
+         integer :: axis, i, warm
+
+         number = 0
+         warm = 0
+         address = job%case%address('impact', 'temperature')
+         do axis = 1, size(job%sweep%grid%axes)
+            associate (own => job%sweep%grid%axes(axis)%address)
+               if (own == address) warm = axis
+               ! parameters of the material move its data, too
+               if (own%group == find_group('material') .and. own%item == item) return
+            end associate
+         end do
+         starts = [worst%band(1)]
+         if (warm > 0) then
+            associate (temperatures => job%sweep%grid%axes(warm)%values)
+               starts = [(0.0_wp, i = 1, size(temperatures))]
+               do i = 1, size(temperatures)
+                  case = job%case
+                  call case%put(address, temperatures(i), error)
+                  if (.not. allocated(error)) call find_band(case, item, ends, error)
+                  if (.not. allocated(error)) starts(i) = ends(1)
+               end do
+            end associate
+         end if
+         do i = 1, size(times)
+            places = job%sweep%grid%places(i)
+            axis = 1
+            if (warm > 0) axis = places(warm)
+            if (known(i)) number = number + merge(1, 0, times(i) <= starts(axis))
+         end do
+      end function unseen_contacts
 
       !> What is said
       function message(found, point) result(text)

@@ -178,6 +178,17 @@ def test_a_data_file_is_found_from_the_case(tmp_path):
     assert repr(pickle.loads(pickle.dumps(case)).solve()) == repr(case.solve())
 
 
+def test_files_of_materials_complete_a_case(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "points.csv").write_text("1e-6 2e6\n1e-3 1e6\n")
+    material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
+    (tmp_path / "a" / "x.nml").write_text(material)
+    rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"
+    (tmp_path / "drop.nml").write_text(rest + "&plate waves = 'none', material = 'x' /\n")
+    found = vcor.read(tmp_path / "drop.nml", tmp_path / "a" / "x.nml").run()
+    assert 0 < float(found.cor) < 1
+
+
 def test_moduli(sls):
     rubber = sls.material("rubber")
     glassy, alpha, beta = (sls[f"rubber.{key}"] for key in ("glassy_modulus", "alpha", "beta"))

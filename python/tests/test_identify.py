@@ -11,6 +11,7 @@ from conftest import ROOT
 import vcor
 from vcor import identification
 from vcor.data import Data
+from vcor.observations import read_columns
 
 DATA = ROOT / "python" / "tests" / "data"
 CASE = """&impact velocity = 1.0 /
@@ -253,6 +254,24 @@ def test_drops_of_a_case_with_a_height_and_another_gravity():
     found = vcor.identify(case, data, ["rubber.beta"])
     assert found["rubber.beta"] == pytest.approx(1200, rel=1e-6)
     assert found.data[0]["at"] == pytest.approx(np.sqrt(2 * 1.62 * 0.1))
+
+
+LAB = {
+    "blanks": "drop height [cm], Rebound Height (mm)\n40,200\n80,390\n",
+    "Excel": "\ufeff# ball, 23 °C\nsep=;\nNr.;drop height [cm];rebound height [mm]\n1;40,0;200\n"
+    "2;80,0;390\n",
+    "instrument": "Drop tester 5;;;\nDate;12.03.2026;;\nsample;fall height;rebound_height;remark\n"
+    ";cm;mm;\nA1;40;200;\nA2;80;390;late\n",
+}
+
+
+@pytest.mark.parametrize("name", LAB)
+def test_tables_as_a_laboratory_writes_them(tmp_path, name):
+    path = tmp_path / "drops.csv"
+    path.write_text(LAB[name], encoding="utf-8")
+    found = read_columns(path)
+    assert np.allclose(found["drop_height"], [0.4, 0.8])
+    assert np.allclose(found["rebound_height"], [0.2, 0.39]) and len(found) == 2
 
 
 def test_models_are_compared():

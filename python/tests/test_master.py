@@ -122,6 +122,17 @@ def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     assert by_table == pytest.approx(by_law, abs=2e-3)
 
 
+def test_three_temperatures_fix_the_constants_of_wlf_and_a_fourth_tests_them(tmp_path):
+    path = file_of(tmp_path / "raw.csv", [5, 20, 35], noise=0.003)
+    found = vcor.master(path, reference_temperature=REFERENCE)
+    assert found.law.name == "WLF" and "one more would test" in str(found)
+    for key, value in (("wlf_c1", C1), ("wlf_c2", C2)):
+        assert abs(found.law.values[key] - value) < 3 * found.law.errors[key]
+    assert "WLF: two constants need three" in str(vcor.master(file_of(path, [5, 20])))
+    with pytest.raises(vcor.InputError, match="ends in C, as 25C"):
+        vcor.master(path, reference_temperature=25)
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -218,6 +218,17 @@ def test_measured_points(results, tmp_path):
         figure([results / "sweep.h5", tmp_path / "unit.csv"])
 
 
+def test_temperatures_are_shown_in_celsius(tmp_path):
+    case = vcor.read(SWEEPS / "squash_ball.nml")
+    sweep = case.sweep({"impact.temperature": [283.15, 298.15, 313.15]}, ["cor"])
+    points = tmp_path / "points.csv"
+    points.write_text("temperature [K], cor\n298.15, 0.35\n")
+    axis = figure([sweep, points]).axes[0]
+    assert axis.get_xlabel() == "impact temperature [°C]"
+    (line, *_), shown = axis.lines, [tuple(one.get_xdata()) for one in axis.lines]
+    assert tuple(line.get_xdata()) == (10, 25, 40) and any(np.allclose(x, 25) for x in shown)
+
+
 def test_axes_that_are_wanted(results):
     made = figure([results / "sweep.h5"], log="xy", ranges={"y": (0.1, 1.0)}, width=12)
     (axis,) = made.axes

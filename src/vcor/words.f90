@@ -103,7 +103,7 @@ contains
          distance = edit_distance(lower(trim(name)), lower(known(first:last)))
          if (is_beginning(name, known(first:last))) distance = min(distance, 1)
          if (is_beginning(known(first:last), name)) distance = min(distance, most)
-         if (distance < least) then
+         if (distance < least .or. (distance == least .and. last - first + 1 < len(word))) then
             least = distance
             word = known(first:last)
          end if
@@ -111,7 +111,7 @@ contains
       end do
    end function nearest_name
 
-   !> Whether a name is the beginning of a known one
+   !> Whether a name is the beginning of a part of a known one, as thickness of half_thickness
    pure function is_beginning(name, word) result(yes)
       !> The unknown name, any case
       character(len=*), intent(in) :: name
@@ -120,7 +120,7 @@ contains
       logical :: yes
 
       yes = len_trim(name) >= shortest_beginning
-      if (yes) yes = index(lower(word), lower(trim(name))) == 1
+      if (yes) yes = index("_"//lower(word), "_"//lower(trim(name))) > 0
    end function is_beginning
 
    !> Least number of letters put in, left out, changed, or swapped with their neighbour that makes

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import difflib
 import functools
 import importlib
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -35,6 +36,9 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse the options."""
+        what, _, words = message.partition("unrecognized arguments: ")
+        if words and not what:
+            message += near(words.split()[0].partition("=")[0], self._option_string_actions)
         raise UsageError(f"{message} ({self.prog} --help says more)")
 
     def options(self, arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -83,6 +87,12 @@ identify = functools.partial(_run, "identify", "identification")
 master = functools.partial(_run, "master", "master_curve")
 plot = functools.partial(_run, "plot", "plot")
 uncertainty = functools.partial(_run, "uncertainty", "uncertainty")
+
+
+def near(word: str, known: Iterable[str]) -> str:
+    """What to add to a message about an unknown name, if a known one is like it."""
+    found = difflib.get_close_matches(word, list(known), 1)
+    return f"; did you mean '{found[0]}'?" if found else ""
 
 
 def printable(text: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 import warnings
@@ -15,7 +16,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
-from ._library import Error, Floats, Handle, InputError, NoResultWarning, NumericalError
+from ._library import Error, FileError, Floats, Handle, InputError, NoResultWarning, NumericalError
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -28,13 +29,15 @@ _INVALID = 3
 _BAR_DELAY = 1.0
 
 
-def read(path: str | os.PathLike[str]) -> Case:
-    """Read a case file.
+def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Case:
+    """Read a case file, completed by files of materials.
 
     Parameters
     ----------
     path
         The file; data files that it names are relative to its folder.
+    *materials
+        Files of &material groups, as `vcor run` takes them after a case.
 
     Returns
     -------
@@ -48,7 +51,25 @@ def read(path: str | os.PathLike[str]) -> Case:
     InputError
         It is no case.
     """
-    return Case(None, name=os.fspath(path))
+    if not materials:
+        return Case(None, name=os.fspath(path))
+    texts = []
+    for one in map(Path, [path, *materials]):
+        try:
+            text = one.read_text(encoding="utf-8")
+        except OSError as error:
+            raise FileError(f"{one}: {error.strerror}") from None
+        texts.append(text if one == Path(path) else _with_folder(text, one.parent.absolute()))
+    return Case("\n".join(texts), name=os.fspath(path))
+
+
+def _with_folder(text: str, folder: Path) -> str:
+    """A case whose data files are found from anywhere."""
+    return re.sub(
+        r"(\b(?:shift_)?file\s*=\s*)(['\"])(.*?)\2",
+        lambda found: f"{found[1]}{found[2]}{folder / found[3]}{found[2]}",
+        text, flags=re.IGNORECASE,
+    )  # fmt: skip
 
 
 class Case:

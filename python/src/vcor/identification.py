@@ -119,7 +119,7 @@ class Identification:
     window: tuple[float, float]
     #: The measurement that would help most: quantity, velocity [m/s], and by how much
     advice: str
-    #: Prediction of cor: velocity, cor, and the ends of its 95 % band
+    #: Prediction: velocity, cor or cor_sphere, and the ends of its 95 % band
     band: dict[str, list[float]] = field(repr=False)
     model: str = ""
     #: Where the model of the impact does not hold, in words
@@ -195,11 +195,11 @@ class Identification:
                 unit = {"force": "N"}.get(name, "Pa" if "modulus" in name else "")
                 factor, label = _panel_label(name, unit, value)
                 # at several temperatures, say, no line leads through all
-                apart = len(set(at)) < len(at)
+                apart = len(set(at)) < len(set(zip(at, model, strict=True)))
                 line = at, factor * model
-                if name == "cor" and self.band["velocity"] and not apart:
+                if name in self.band and self.band["velocity"] and not apart:
                     band = {key: np.array(column) for key, column in self.band.items()}
-                    line = band["velocity"], band["cor"]
+                    line = band["velocity"], band[name]
                     above.fill_between(
                         band["velocity"], band["low"], band["high"], alpha=0.3, lw=0, color="C1",
                         label="95 % band",
@@ -244,7 +244,8 @@ class _Problem:
         sigma = np.concatenate([block.sigma for block in blocks])
         for name in errors:
             if name not in self.quantity:
-                raise UsageError(f"--error {name}: the data have no such column")
+                known = ", ".join(dict.fromkeys(self.quantity))
+                raise UsageError(f"--error {name}: the data have no such column, they are {known}")
         given = np.array([errors.get(name, np.nan) for name in self.quantity])
         sigma = np.where(np.isnan(sigma), given * scale, sigma)
         missing = np.isnan(sigma)
@@ -422,6 +423,7 @@ def identify(
         determine, and what would help.
     """
     case = (case if isinstance(case, Case) else read(case)).copy()
+    free = free.split(",") if isinstance(free, str) else free
     for address, value in (fix or {}).items():
         case[address] = float(value)
     sources = [data] if isinstance(data, (str, os.PathLike, Mapping)) else list(data)
@@ -632,9 +634,9 @@ def _speeds(problem: _Problem) -> Floats:
     return next((block.velocity for block in _impacts(problem)), own)
 
 
-def _probe(case: Case, grid: Floats) -> Impacts:
+def _probe(case: Case, grid: Floats, name: str = "cor") -> Impacts:
     """Impacts of the case at other velocities."""
-    return Impacts("", {"velocity": grid, "cor": np.ones(len(grid))}, case)
+    return Impacts("", {"velocity": grid, name: np.ones(len(grid))}, case)
 
 
 def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
@@ -668,9 +670,10 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
 
 
 def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
-    """Prediction of cor over velocity with its 95 % band, of the case otherwise."""
+    """Prediction of cor, or what was measured of it, over velocity with its 95 % band."""
     grid = np.geomspace(_speeds(problem).min() / 2, _speeds(problem).max() * 2, 41)
-    probe = _probe(problem.case, grid)
+    name = "cor_sphere" if {"cor", "cor_sphere"} & {*problem.quantity} == {"cor_sphere"} else "cor"
+    probe = _probe(problem.case, grid, name)
 
     def cor(points: Floats) -> Floats:
         return probe.predict(problem.case, problem.free, np.exp(points))
@@ -678,7 +681,7 @@ def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[fl
     slopes = problem.derivatives(x, cor)
     deviation = np.sqrt(np.einsum("ij,jk,ik->i", slopes, covariance, slopes))
     middle, half = cor(x[None])[0], float(ndtri(0.975)) * deviation
-    columns = {"velocity": grid, "cor": middle, "low": middle - half, "high": middle + half}
+    columns = {"velocity": grid, name: middle, "low": middle - half, "high": middle + half}
     good = np.isfinite(middle)
     return {name: column[good].tolist() for name, column in columns.items()}
 
@@ -821,7 +824,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_outputs()
     add = parser.add_argument
     add("case", metavar="CASE.nml", help="case; its values are the first guess")
-    add("data", nargs="+", metavar="DATA", help="data files with a header")
+    data = "data files with a header, and files of materials (.nml) that the case needs"
+    add("data", nargs="+", metavar="DATA", help=data)
     add("--free", metavar="ADDRESS,ADDRESS", required=True, help="parameters to be identified")
     add("--fix", metavar="ADDRESS=VALUE", action="append", default=[], help="a value that is given")
     error = "relative error of a column that has none, such as cor=1%%"
@@ -840,12 +844,13 @@ def _work(options: argparse.Namespace) -> None:
     found: list[Identification] = []
     refused: list[Error] = []
     models = [word.strip() for words in options.model for word in words.split(",")]
+    case = read(options.case, *(name for name in options.data if name.endswith(".nml")))
+    data = [name for name in options.data if not name.endswith(".nml")]
     for model in models or [None]:
         try:
             found.append(
-                identify(options.case, options.data, free, fix=fix, errors=errors, model=model,
-                         seed=options.seed)
-            )  # fmt: skip
+                identify(case, data, free, fix=fix, errors=errors, model=model, seed=options.seed)
+            )
         except NumericalError as error:
             refused.append(error)
     if not found:

@@ -26,14 +26,18 @@ from scipy.optimize import least_squares, minimize_scalar
 
 from . import _command, _library
 from ._library import Error, FileError, Floats, InputError, NumericalError, UsageError
+from .data import ZERO_C
 from .fit import read_moduli
 
-#: Gas constant [J/(mol K)], and 0 C [K]
-GAS, ZERO_C = 8.31446261815324, 273.15
+#: Gas constant [J/(mol K)]
+GAS = 8.31446261815324
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
 #: Smallest scatter of a curve that is believed, relative
 LEAST_SCATTER = 1e-3
+#: Temperature below which one in kelvin is taken for a slip [K]
+COLDEST = 100.0
+_UNITS = {"wlf_c1": "", "wlf_c2": "K", "activation_energy": "J/mol"}
 #: Largest misfit of the steps, in standard errors, of a law that stands for the table
 FOLLOWS = 2.0
 _TEMPERATURE = re.compile(r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(]\s*\W*([CK])\b.*)?")
@@ -101,12 +105,17 @@ class Master:
         order = np.argsort(at, kind="stable")
         return at[order], *moduli[:, order]
 
+    @property
+    def law(self) -> Law | None:
+        """The law that the shift factors follow, if any."""
+        law = min(self.laws, key=lambda one: one.misfit, default=None)
+        return law if law and law.misfit < FOLLOWS else None
+
     def keys(self, table: str) -> dict[str, str | float]:
         """Keys of a &material: the law that the shift factors follow, else their table, a file."""
-        law = min(self.laws, key=lambda one: one.misfit, default=None)
         found: dict[str, str | float] = {"shift": "table", "shift_file": table}
-        if law and law.misfit < FOLLOWS:
-            found = {"shift": law.name.lower(), **law.values}
+        if self.law:
+            found = {"shift": self.law.name.lower(), **self.law.values}
         return {
             **found,
             "reference_temperature": self.reference_temperature,
@@ -130,7 +139,8 @@ class Master:
         }
 
     def __str__(self) -> str:
-        lines = [f"reference temperature {self.reference_temperature:.2f} K", ""]
+        kelvin = self.reference_temperature
+        lines = [f"reference temperature {kelvin:.2f} K ({kelvin - ZERO_C:.2f} C)", ""]
         lines.append(f"{'T [K]':>10s}{'T [C]':>10s}{'log10 a_T':>12s}{'error':>8s}")
         lines += [
             f"{t:10.2f}{t - ZERO_C:10.2f}{shift:12.4f}{error:8.4f}"
@@ -140,15 +150,19 @@ class Master:
         ]
         for law in self.laws:
             constants = ", ".join(
-                f"{name} {value:.5g} +- {law.errors[name]:.2g}"
+                f"{name} {value:.5g} +- {law.errors[name]:.2g} {_UNITS[name]}".strip()
                 for name, value in law.values.items()
             )
-            lines += [
-                "",
-                f"{law.name}: {constants}",
-                f"   misfit of a step of log10 a_T {law.rms:.3g}",
-            ]
-        return "\n".join(lines) + "\n"
+            lines += ["", f"{law.name}: {constants}"]
+            if len(law.values) < len(self.temperatures) - 1:
+                lines.append(f"   misses the steps between temperatures by {law.rms:.2g} decades, "
+                             f"{law.misfit:.2g} times their errors")  # fmt: skip
+            else:
+                lines.append("   fixed by these few temperatures: one more would test the law")
+        if len(self.temperatures) == 2:
+            lines += ["", "WLF: two constants need three temperatures, and a test of them four"]
+        taken = self.law.name if self.law else "the table of shift factors, as no law holds"
+        return "\n".join([*lines, "", f"vcor fit takes: {taken}"]) + "\n"
 
     def figure(self) -> Any:
         """Figure (matplotlib): the master curve, and the shift factors with their laws."""
@@ -223,8 +237,10 @@ def master(
     else:
         middle = int(np.argmin(np.abs(temperatures - reference_temperature)))
         if abs(temperatures[middle] - reference_temperature) > 3:
-            raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, "
-                             f"the nearest are at {temperatures[middle]:.2f} K")  # fmt: skip
+            slip = "; a temperature in degrees Celsius ends in C, as 25C"
+            slip = slip if reference_temperature < COLDEST else ""
+            raise InputError(f"there are no data within 3 K of {reference_temperature:g} K, the "
+                             f"nearest are at {temperatures[middle]:.2f} K{slip}")  # fmt: skip
     pairs = zip(curves[:-1], curves[1:], strict=True)
     steps, variances = np.array([_step(*pair) for pair in pairs]).T
     steps, errors = steps / math.log(10), np.sqrt(variances) / math.log(10)
@@ -313,11 +329,10 @@ def _curve(path: str, lines: Sequence[str], temperature: float) -> Curve:
 
 
 def _kelvin(text: str, path: str) -> float:
-    try:
-        number = float(text.rstrip("CK"))
-    except ValueError:
-        raise UsageError(f"{path}@{text}: expected a temperature such as -20C or 253K") from None
-    return number + (ZERO_C if text.endswith("C") else 0.0)
+    found = re.fullmatch(r"([-+]?\d+\.?\d*)\s*(?:°|deg)?([CK]?)", text.strip())
+    if not found:
+        raise UsageError(f"{path}: found '{text}', expected a temperature such as -20C or 253K")
+    return float(found[1]) + (ZERO_C if found[2] == "C" else 0.0)
 
 
 def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
@@ -381,19 +396,19 @@ def _laws(temperatures: Floats, steps: Floats, errors: Floats, reference: float)
             return rest
 
         dof = len(steps) - len(keys)
-        if dof < 1:
+        if dof < 0:
             continue
         found = least_squares(misfit, np.log(start), max_nfev=500)
         values = np.exp(found.x)
         if name == "WLF" and values[1] + lowest <= 0:
             continue
-        scale = max(1.0, 2 * found.cost / dof)
-        deviations = values * np.sqrt(np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * scale)
+        square = 2 * found.cost / max(dof, 1)
+        variances = np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * max(1.0, square)
+        deviations = values * np.sqrt(variances)
         rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
         law = law_of(found.x)
         found_errors = dict(zip(keys, deviations.tolist(), strict=True))
-        misfit_of_law = math.sqrt(2 * found.cost / dof)
-        laws.append(Law(name, law.values, found_errors, rms, misfit_of_law))
+        laws.append(Law(name, law.values, found_errors, rms, math.sqrt(square)))
     return tuple(laws)
 
 

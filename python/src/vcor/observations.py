@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from . import _library
+from ._command import near
 from ._library import Error, FileError, Floats, InputError
 from .case import Case
-from .data import Data
+from .data import Data, plain_name
 from .master_curve import read_curves
 
 Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
@@ -72,8 +73,9 @@ class Impacts:
                 self.settings[SETTINGS.get(name, name)] = column
                 continue
             if name not in known or known[name].labels:
+                hint = near(name, [*known, *SETTINGS, "drop_height", "bounce_time"])
                 raise InputError(f"{source}: found column '{name}', expected a column of the "
-                                 f"summary, {', '.join(SETTINGS)} or an address")  # fmt: skip
+                                 f"summary, {', '.join(SETTINGS)} or an address{hint}")  # fmt: skip
             most = 1.0 if name in COEFFICIENTS else math.inf
             if (bad := np.flatnonzero((column <= 0) | (column > most))).size:
                 limit = " and <= 1" if most == 1 else ""
@@ -316,12 +318,14 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
 def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
     """Columns of a data file of impacts or of a record; moduli as `vcor master` reads them."""
     impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
+    impacts -= {"loss_tangent", "steps"}
     try:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
-    head = next((line for line in lines if line.split("#")[0].strip()), "")
-    words = set(re.findall(r"\w+", head))
+    cells = {cell.strip() for line in lines[:40] for cell in re.split(r"[;,\t\[(]", line)}
+    cells |= {word for line in lines[:40] for word in line.split()}
+    words = {plain_name(cell) for cell in cells if cell}
     if impacts & words or any(word.endswith("_sigma") for word in words):
         return Data(path).columns
     curves = read_curves(path)

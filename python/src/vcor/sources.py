@@ -12,9 +12,10 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from ._command import printable
+from ._command import near, printable
 from ._library import Error, FileError, Handle, InputError, UsageError
 from .case import Case
+from .data import ZERO_C, is_temperature
 from .results import open as open_results
 
 Source = str | os.PathLike[str] | xr.Dataset
@@ -40,6 +41,7 @@ class Result:
             self.summary = open_results(source)
             with h5netcdf.File(self.path, "r") as file:
                 self.groups |= set(file.groups)
+        self.summary = _in_celsius(self.summary)
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
         self.title = printable(str(self.summary.attrs.get("title", "")))
@@ -74,12 +76,19 @@ class Result:
         """A quantity of a sweep."""
         numeric = [str(n) for n, v in self.summary.data_vars.items() if v.dtype.kind in "fi"]
         if name not in numeric:
-            raise UsageError(
-                f"{self.path}: found no quantity '{name}', expected one of {', '.join(numeric)}"
-            )
+            known = f"{', '.join(numeric)}{near(name, numeric)}"
+            raise UsageError(f"{self.path}: found no quantity '{name}', expected one of {known}")
         if not np.isfinite(self.summary[name]).any():
             raise InputError(f"{self.path}: '{name}' has no value at any point of this sweep")
         return self.summary[name]
+
+
+def _in_celsius(data: xr.Dataset) -> xr.Dataset:
+    """The same with swept temperatures as they are shown."""
+    swept = {name: at for name, at in data.coords.items() if is_temperature(str(name))}
+    return data.assign_coords(
+        {name: (at - ZERO_C).round(9).assign_attrs(units="°C") for name, at in swept.items()}
+    )
 
 
 def _moduli_of(path: str) -> dict[str, xr.Dataset]:

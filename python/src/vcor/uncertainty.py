@@ -506,7 +506,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_outputs()
     add = parser.add_argument
-    add("case", metavar="CASE.nml")
+    add("case", metavar="CASE.nml", nargs="+", help="case, and files of materials that it needs")
+    setting = "replace a value of the case, as vcor run does"
+    add("--set", metavar="ADDRESS=VALUE", action="append", default=[], help=setting)
     spreads = "5%% (of its value), 0.1 (in its unit) or 1:2 (uniform)"
     add("--vary", metavar="ADDRESS=SPREAD", action="append", default=[], help=spreads)
     add("--covariance", metavar="FIT.json", help="JSON of vcor fit or vcor identify")
@@ -523,8 +525,11 @@ def _work(options: argparse.Namespace) -> None:
     vary: dict[str, str | float] = {}
     for word in options.vary:
         address, _, vary[address] = word.partition("=")
+    case = read(*options.case)
+    for word in options.set:
+        address, _, case[address] = word.partition("=")
     found = propagate(
-        options.case,
+        case,
         vary,
         covariance=options.covariance,
         samples=options.samples,
@@ -534,7 +539,7 @@ def _work(options: argparse.Namespace) -> None:
     )
     texts = {".json": json.dumps(found.as_dict(), indent=1) + "\n"}
     figure = found.figure(str(found.table.quantity.values[0]))
-    stem = f"{Path(options.case).stem}_uncertainty"
+    stem = f"{Path(options.case[0]).stem}_uncertainty"
     _command.finish(options, str(found), stem, texts, figure)
 
 
