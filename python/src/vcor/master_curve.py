@@ -442,15 +442,18 @@ def _work(options: argparse.Namespace) -> None:
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
     reference = found.reference_temperature
     stem = f"{Path(options.data[0].partition('@')[0]).stem}_master"
-    keys = "".join(f"# &material {name} = {value!r}\n"
-                   for name, value in found.keys(f"{stem}_shift.csv").items())  # fmt: skip
+    shift = found.keys(f"{stem}_shift.csv").items()
+    pairs = [f"{key} = {x!r}" if isinstance(x, str) else f"{key} = {x:.9g}" for key, x in shift]
+    keys = "".join(f"# &material {pair}\n" for pair in pairs)
     texts = {
         ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),
         "_shift.csv": f"# reference temperature {reference:.6g} K\nT [K],log10 a_T\n"
         + _rows((found.temperatures, found.log_shift)),
         ".json": json.dumps(found.as_dict(), indent=1) + "\n",
     }
-    _command.finish(options, str(found), stem, texts, found.figure())
+    report = f"{found}\nshift of a &material, which vcor fit {stem}.csv takes over:\n"
+    report += "".join(f"   {pair}\n" for pair in pairs)
+    _command.finish(options, report, stem, texts, found.figure())
 
 
 def _rows(columns: Sequence[Floats]) -> str:

@@ -6,6 +6,7 @@ import contextlib
 import math
 import os
 import re
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
@@ -16,7 +17,7 @@ from scipy.interpolate import CubicSpline
 
 from . import _library
 from ._command import near
-from ._library import Error, FileError, Floats, InputError
+from ._library import Error, FileError, Floats, InputError, NoResultWarning
 from .case import Case
 from .data import Data, plain_name
 from .master_curve import read_curves
@@ -122,7 +123,9 @@ class Impacts:
 
     def validity(self, case: Case) -> list[tuple[str, str]]:
         """Whether the model holds, and the column that decides, of each impact."""
-        found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", NoResultWarning)
+            found = case.points(self.settings, ["validity", "validity_cause"], progress=False)
         return [
             (str(one), str(cause))
             for one, cause in zip(found.validity.values, found.validity_cause.values, strict=True)
