@@ -215,5 +215,5 @@ def test_any_thickness_and_what_no_column_has(sls):
     found = vcor.propagate(sls, {"rubber.beta": 0.05}, samples=32, quantities=["cor"])
     row = found.table.sel(quantity="cor")
     assert 0 < float(row.numerical) < 1e-3 and np.isfinite(row.elasticity).all()
-    assert (found.validity, found.validity_cause) == ("caution", "contact_ratio")
-    assert "validity: caution by contact_ratio" in str(found)
+    assert (found.validity, found.validity_cause) == ("caution", "footprint_effect")
+    assert "validity: caution by footprint_effect" in str(found)
