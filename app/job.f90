@@ -358,6 +358,11 @@ contains
       end do
       do i = 1, size(request%names)
          if (contains_word(known, request%names(i)%text)) cycle
+         if (index(request%names(i)%text, '.') > 0 .and. size(grid%axes) == 0) then
+            call raise(error, error_usage, "found '"//printable(request%names(i)%text) &
+               //"' in --print, but the case sweeps nothing; expected names of columns")
+            return
+         end if
          call raise(error, error_usage, "unknown name '"//printable(request%names(i)%text) &
             //"' in --print; "//suggestion(request%names(i)%text, known))
          return

@@ -164,8 +164,9 @@ contains
                words = 'the wave is only '//brief(2.0_wp*pi/value) &
                   //" thicknesses long, too short for a thin plate; compare waves = 'body'"
             case ('needed_extent')
-               words = 'plate.extent is '//brief(around%extent) &
-                  //' m, the wave returns during the contact; take a larger plate'
+               words = 'waves come back from the edge at plate.extent = ' &
+                  //brief(around%extent)//' m; good from '//brief(around%extent*value &
+                  /thresholds(measure)%caution)//' m on'
             case ('deflection_ratio')
                words = 'the plate bends by '//percent(value) &
                   //' of its thickness, too far for linear bending; take a thicker plate'

@@ -203,6 +203,14 @@ def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
     assert said in error
 
 
+def test_impacts_without_a_result_are_a_line(capsys, tmp_path):
+    words = [PAPER / "sls.nml", "--vary", "sphere.radius=0.5", "--samples", "32", "--output"]
+    with pytest.raises(SystemExit):
+        uncertainty.main([str(word) for word in [*words, tmp_path]])
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split()[1] for line in lines] == ["note:", "error:"]
+
+
 def test_a_list_is_varied_term_by_term():
     case = vcor.read(PAPER / "butyl_prony.nml")
     with pytest.raises(vcor.UsageError, match=r"such as butyl.moduli\(1\)"):

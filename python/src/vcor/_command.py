@@ -10,6 +10,7 @@ import importlib
 import os
 import sys
 import tempfile
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -56,11 +57,18 @@ class Parser(argparse.ArgumentParser):
         return options
 
 
+def _note(message: Warning | str, *_: Any) -> None:
+    """Write a warning on one line."""
+    sys.stderr.write(f"vcor: note: {printable(str(message))}\n")
+
+
 @contextlib.contextmanager
 def one_line() -> Iterator[None]:
-    """An error in this context is one line on stderr and the exit code of the program."""
+    """Errors and warnings are lines on stderr; an error leaves with the code of the program."""
     try:
-        yield
+        with warnings.catch_warnings():
+            warnings.showwarning = _note  # type: ignore[assignment]
+            yield
     except Error as error:
         sys.stderr.write(f"vcor: error: {printable(str(error))}\n")
         sys.exit(error.code)

@@ -666,7 +666,9 @@ def _label_decades(which: Any) -> None:
     if high < 100 * low or (low > 0.9e-3 and high < 1.1e4):
         which.set_major_formatter(lambda value, _: _number(value))
     power = 10.0 ** math.floor(math.log10(low))
-    marks = [n * power * 10**k for k in range(3) for n in (1, 2, 5)]
+    # numbers with powers are wide
+    steps = (1, 2, 5) if low > 0.9e-3 or high < 10 * low else (1, 3)
+    marks = [n * power * 10**k for k in range(3) for n in steps]
     if high < 4 * low:
         marks = list(MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high))
     if high < 100 * low:
