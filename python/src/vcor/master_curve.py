@@ -161,8 +161,9 @@ class Master:
                 lines.append("   fixed by these few temperatures: one more would test the law")
         if len(self.temperatures) == 2:
             lines += ["", "WLF: two constants need three temperatures, and a test of them four"]
-        taken = self.law.name if self.law else "the table of shift factors, as no law holds"
-        return "\n".join([*lines, "", f"vcor fit takes: {taken}"]) + "\n"
+        if not self.law:
+            lines += ["", "no law holds: a material takes the table of shift factors"]
+        return "\n".join(lines) + "\n"
 
     def figure(self) -> Any:
         """Figure (matplotlib): the master curve, and the shift factors with their laws."""
