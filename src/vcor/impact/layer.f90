@@ -63,7 +63,7 @@ contains
       call gauss_nodes(self%node, self%weight)
    end subroutine new_layer
 
-   !> Compliance C(s) beyond Hertz' dent, to about 1e-9 of its value at s -> oo
+   !> Compliance C(s) beyond Hertz' dent, to about 2e-8 of it and of the dent
    pure function compliance(self, s, footprint) result(c)
       !> The layer
       class(layer_t), intent(in) :: self
@@ -93,7 +93,7 @@ contains
       ! propagating modes they follow their distance from the real axis, further out the footprint
       real(wp), parameter :: start = 1.0e-3_wp, growth = 0.35_wp, near_poles = 0.7_wp
       real(wp), parameter :: slow_share = 0.3_wp, beyond_rayleigh = 1.4_wp, oscillation = 2.0_wp
-      real(wp), parameter :: around_bending(2) = [0.7_wp, 1.3_wp]
+      real(wp), parameter :: around_bending(2) = [0.7_wp, 1.6_wp]
       ! The integrand is its asymptote from here on
       real(wp), parameter :: far_footprint = 40.0_wp, far_wave = 15.0_wp, far_face = 30.0_wp
       complex(wp) :: modulus, shear, p, q, g(nodes)

@@ -231,7 +231,7 @@ contains
       type(contact_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
 
-      real(wp) :: force_error, allowed, cor_error, sphere_error
+      real(wp) :: force_error, allowed, cor_error, sphere_error, inherited
       integer :: n, j
 
       n = self%panel%stages
@@ -270,7 +270,10 @@ contains
             ! the rebound feels the solution between the ends of the panels, too
             self%inner = inner_felt*maxval(abs(collocator%coarsened(panel%indentation) &
                - coarse%indentation(1:)))/(self%speed*self%time_scale)
-            self%excess = max(self%excess, self%inner/(inner_allowed*self%accuracy))
+            ! what is handed down stays however short the panel is
+            inherited = inner_felt*abs(panel%indentation(0) - coarse%indentation(0)) &
+               /(self%speed*self%time_scale)
+            self%excess = max(self%excess, (self%inner - inherited)/(inner_allowed*self%accuracy))
          end if
          do j = 1, n
             if (any(impact%outruns(panel%alpha(j - 1), panel%alpha(j), panel%impulse(j:n), &
@@ -475,10 +478,10 @@ contains
             + (time*(plate_gains(panel, alpha_rate) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
-         ! at a branch point both solutions have F' = 0, but not at the same time
-         if (.not. self%branches) cor_error = cor_error + (part*abs(panel%recoil(n) &
-            - coarse%recoil(n - 1)) + time*abs(slope_at_end(rule, panel, panel%recoil))) &
-            /impact%velocity
+         ! next to s = 0 both solutions have F' = 0, but not at the same time
+         if (.not. (self%branches .or. self%shallow)) cor_error = cor_error &
+            + (part*abs(panel%recoil(n) - coarse%recoil(n - 1)) &
+            + time*abs(slope_at_end(rule, panel, panel%recoil)))/impact%velocity
       end associate
    end subroutine estimate_errors
 
