@@ -148,7 +148,8 @@ contains
                trajectory%cor_sphere_error = found%error
                ! the face of a layer rings: what the order of three runs says is chance
                if (impact%plate%layered()) then
-                  trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)))
+                  trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)), &
+                     abs(cor(2) - cor(1)))
                   trajectory%cor_sphere_error = max(trajectory%cor_sphere_error, &
                      abs(cor_sphere(3) - cor_sphere(2)))
                end if
