@@ -383,7 +383,10 @@ def test_note_on_data_that_do_not_cover_the_contact(table):
     table.write("\n".join(LINES[:50]), "data.csv")
     out = table.succeeds("run", "case.nml")
     assert "note: the data of the plate (data.csv) end at " in out
-    assert out.count("note") == 1
+    assert out.count("note: the data") == 1
+    # nor is a layer solved with a modulus known for 2 % of its contact: no number of it is shown
+    assert "note: no result with exact mechanics: the estimated error of cor" in out
+    assert "with exact mechanics   " not in out
 
 
 def test_ten_thousand_points(table):

@@ -5,7 +5,7 @@ module vcor_case_address
    use vcor_case_catalogue, only : catalogue, find_group, find_key, group_names, groups, keys_of, &
       list_key
    use vcor_text, only : canonical_name, integer_text, shortened
-   use vcor_words, only : join_words, nearest_name, suggestion
+   use vcor_words, only : join_words, suggestion
    implicit none
    private
 
@@ -131,13 +131,11 @@ contains
       integer :: other
 
       message = "unknown key '"//shortened(key)//"' in &"//trim(groups(group)%name)//'; '
-      if (nearest_name(key, keys_of(group)) == '') then
-         do other = 1, size(groups)
-            if (find_key(groups(other)%name, key) == 0) cycle
-            message = message//'it belongs to &'//trim(groups(other)%name)//', '
-            exit
-         end do
-      end if
+      do other = 1, size(groups)
+         if (find_key(groups(other)%name, key) == 0) cycle
+         message = message//'it belongs to &'//trim(groups(other)%name)//', '
+         exit
+      end do
       message = message//suggestion(key, keys_of(group))
    end function unknown_key
 

@@ -253,7 +253,11 @@ contains
       call problem_of_case(problem, other, error)
       valid = .not. allocated(error)
       if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
-      if (allocated(error)) model%failure = error%message
+      if (allocated(error)) then
+         model%failure = error%message
+         ! a number with an error above all bounds is none
+         model%outcome = outcome_t()
+      end if
    end subroutine solve_model
 
 end module vcor_verify_comparison
