@@ -323,10 +323,12 @@ contains
       !> The sum, its `error` told
       type(exponential_sum_t), intent(out) :: terms
 
-      ! what is far from the accuracy asked for, and could be better
-      real(wp), parameter :: poor = 1.0e-7_wp, far = 30.0_wp
+      ! what is far from the accuracy asked for, and the part of the window by whose end what is
+      ! fastest is over
+      real(wp), parameter :: far = 30.0_wp, early = 0.01_wp
       type(exponential_sum_t) :: one
       logical :: is_found
+      integer :: n
 
       if (allocated(self%second)) then
          call expand_pair(self, window, accuracy, terms, is_found)
@@ -335,9 +337,12 @@ contains
          call self%first%exponentials(window, accuracy, terms)
          call terms%scale(self%first_factor)
          ! a spectrum with peaks that no rule resolves
-         if (self%series .and. .not. self%first%discrete .and. &
-             terms%error > max(poor, far*accuracy)) then
+         if (self%series .and. .not. self%first%discrete .and. terms%error > far*accuracy) then
             call fit_values(one)
+            ! what relaxes before the first of the values, its integral knows
+            n = size(one%rates)
+            if (n > 0) one%moduli(n) = one%moduli(n) + one%rates(n) &
+               *(self%integral(early*window) - one%integral(early*window))
             one%viscosity = self%viscosity()
             if (one%error < terms%error) terms = one
          end if

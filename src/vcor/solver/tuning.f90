@@ -274,6 +274,9 @@ module vcor_solver_tuning
    integer, parameter :: near_drift = 16 ! open
    integer, parameter :: near_kernel = 16 ! tested
    integer, parameter :: near_part = 12 ! open
+   !> What the rule over a step makes of alpha' of a frozen plate may be off by, over the rise of
+   !> alpha in the step: beyond, the step does not resolve it
+   real(wp), parameter :: unresolved_rise = 0.1_wp ! open
    !> Share of the weights of a layer after the last one that is added to the first ones
    real(wp), parameter :: aliased = 1.0e-10_wp
    !> Distance of the exponent from an integer that is none: the force is smooth at first

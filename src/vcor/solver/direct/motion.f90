@@ -17,7 +17,7 @@ module vcor_solver_direct_motion
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : convolution_t, lengthen
    use vcor_solver_direct_weights, only : layer_weights, memory_weights
-   use vcor_solver_tuning, only : near_drift, stiff_step
+   use vcor_solver_tuning, only : near_drift, stiff_step, unresolved_rise
    implicit none
    private
 
@@ -61,8 +61,12 @@ module vcor_solver_direct_motion
       type(integral_t), private :: push, drift, lag
       !> Whether the plate is the frozen one
       logical, private :: frozen = .false.
-      !> Power of t with which the rate of the drift begins
+      !> Half of what alpha rises by in a step that does not resolve alpha', otherwise 0 [m/(N s)],
+      !> and alpha' at the last two nodes [m/(N s2)]
+      real(wp), private :: half_rise = 0.0_wp, rates(2) = 0.0_wp
+      !> Power of t with which the rate of the drift begins, and whether alpha' is finite there
       real(wp), private :: power = 0.0_wp
+      logical, private :: smooth = .false.
       !> What a hereditary plate remembers
       type(convolution_t), private :: memory
       !> Whether it is a layer, and its C(oo) [m/N]
@@ -94,7 +98,7 @@ contains
 
       self%dt = dt
       self%frozen = impact%plate%frozen()
-      if (self%frozen) self%power = power_of_drift(impact, dt)
+      if (self%frozen) call find_power(impact, dt, self%power, self%smooth)
       if (.not. impact%plate%hereditary()) return
       self%layered = impact%plate%layered()
       if (self%layered) then
@@ -120,10 +124,13 @@ contains
       ! rules for the integral over a step, from its end, its start and the node before
       real(wp), parameter :: adams_moulton(3) = [5.0_wp, 8.0_wp, -1.0_wp]/12.0_wp
       real(wp), parameter :: trapezoid(3) = [0.5_wp, 0.5_wp, 0.0_wp]
-      real(wp) :: response
+      real(wp) :: response, last_alpha, rise
 
       self%t = self%dt*real(n, wp)
       self%recoil(1:2) = self%recoil(2:3)
+      last_alpha = self%alpha
+      self%rates = [self%alpha_rate, self%rates(1)]
+      if (n == 1 .and. self%smooth) self%rates(1) = impact%plate%alpha_rate(0.0_wp)
       call impact%plate%alpha_and_rate(self%t, self%alpha, self%alpha_rate)
       if (self%layered) self%alpha = self%memory%newest
       response = self%alpha
@@ -137,9 +144,17 @@ contains
       if (.not. self%frozen) return
       self%drift_rule = self%rule
       if (n <= near_drift) self%drift_rule = self%dt*power_rule(n, self%power)
+      self%half_rise = 0.0_wp
+      rise = self%alpha - last_alpha
+      if ((n > near_drift .or. self%smooth) .and. abs(rise &
+          - sum(self%rule*[self%alpha_rate, self%rates])) > unresolved_rise*rise) then
+         self%drift_rule = 0.0_wp
+         self%half_rise = 0.5_wp*rise
+      end if
       call go_on(self%push, self%rule)
       call go_on(self%drift, self%drift_rule)
       call go_on(self%lag, self%rule)
+      self%drift%value = self%drift%value + self%half_rise*self%last_force
    end subroutine advance
 
    !> Set the motion at node n as a function of the force there
@@ -160,7 +175,7 @@ contains
       if (self%frozen) then
          plate = self%push%value - self%lag%value - weight*self%drift%value
          plate_velocity = -self%drift%value
-         per_force = self%alpha - self%drift_rule(1)*self%alpha_rate
+         per_force = self%alpha - self%drift_rule(1)*self%alpha_rate - self%half_rise
          rate = 0.0_wp
       else
          plate = self%alpha*i
@@ -244,6 +259,7 @@ contains
       if (.not. self%frozen) return
       call complete(self%push, self%rule, self%alpha*force)
       call complete(self%drift, self%drift_rule, self%alpha_rate*force)
+      self%drift%value = self%drift%value + self%half_rise*force
       call complete(self%lag, self%rule, self%drift%value)
    end subroutine accept
 
@@ -271,19 +287,33 @@ contains
 
    !> Power of t with which the rate of a frozen plate's drift, alpha' F, begins: alpha' is infinite
    !> at first contact for a continuous spectrum, and F = int k u' goes with t^(n-1) int k
-   pure function power_of_drift(impact, dt) result(power)
+   pure subroutine find_power(impact, dt, power, smooth)
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Power, of the first two steps
-      real(wp) :: power
+      real(wp), intent(out) :: power
+      !> Whether alpha' is finite: then a step that is too long for it has no power
+      logical, intent(out) :: smooth
 
-      real(wp) :: ratio
+      ! a step that resolves all, and a ratio of alpha' that is one
+      real(wp), parameter :: early = 1.0e-9_wp, one = 0.9999_wp
 
-      ratio = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt) &
-         *impact%plate%alpha_rate(2.0_wp*dt)/max(impact%plate%alpha_rate(dt), tiny(1.0_wp))
-      power = impact%law%exponent - 1.0_wp + log(max(ratio, 0.5_wp))/log(2.0_wp)
-   end function power_of_drift
+      smooth = ratio_of_rates(early*dt) > one
+      power = impact%kernel_integral(2.0_wp*dt)/impact%kernel_integral(dt)
+      if (.not. smooth) power = power*ratio_of_rates(dt)
+      power = impact%law%exponent - 1.0_wp + log(max(power, 0.5_wp))/log(2.0_wp)
+
+   contains
+
+      !> alpha' at 2 t over that at t
+      pure real(wp) function ratio_of_rates(t)
+         real(wp), intent(in) :: t
+
+         ratio_of_rates = impact%plate%alpha_rate(2.0_wp*t) &
+            /max(impact%plate%alpha_rate(t), tiny(1.0_wp))
+      end function ratio_of_rates
+   end subroutine find_power
 
    !> Rule for the integral over step n, from its end, its start and the node before, that is exact
    !> for t^power times a parabola, on the first two steps times what can be told from fewer nodes
