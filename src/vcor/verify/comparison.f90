@@ -186,10 +186,10 @@ contains
       call case%get('contact', 'law', law)
       call case%get('contact', 'pair', pair)
       n = 0
-      do k = 1, 2
+      do k = 1, merge(2, 1, reads(case, 'pair'))
          half = n
          do i = 1, size(plates)
-            do j = 1, merge(size(laws), 1, has_laws(case))
+            do j = 1, merge(size(laws), 1, reads(case, 'law'))
                associate (model => all(n + 1))
                   model = model_t(plates(i), laws(j), pair, &
                      plates(i) == waves .and. laws(j) == law .and. k == 1)
@@ -203,17 +203,20 @@ contains
          end do
          pair = trim(merge('series', 'eq1   ', pair == 'eq1'))
       end do
-      if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
+      if (half > 0) then
+         if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
+      end if
       allocate (models, source=all(:n))
    end subroutine solve_models
 
-   !> Whether the law of the contact makes a difference
-   pure function has_laws(case)
+   !> Whether a key of &contact makes a difference
+   pure function reads(case, key)
       type(case_t), intent(in) :: case
-      logical :: has_laws
+      character(len=*), intent(in) :: key
+      logical :: reads
 
-      has_laws = why_unread(case, case%address('contact', 'law')) == ''
-   end function has_laws
+      reads = why_unread(case, case%address('contact', key)) == ''
+   end function reads
 
    !> Whether two outcomes have another restitution, or only one of them has any
    elemental function differ(a, b)
@@ -242,9 +245,10 @@ contains
 
       other = case
       call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
-      if (has_laws(case)) &
+      if (reads(case, 'law')) &
          call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
-      call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
+      if (reads(case, 'pair')) &
+         call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
