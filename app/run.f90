@@ -6,8 +6,7 @@ module vcor_app_run
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : percent, report, short, significant
    use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
-      solve_exact, warn_of_bands
-   use vcor_case_problem, only : material_of_case
+      seen_from, solve_exact, times_of_table, warn_of_bands
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
@@ -19,8 +18,6 @@ module vcor_app_run
    use vcor_io_results, only : history_table, summary_table
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
-   use vcor_material_shifted, only : time_factor_of
-   use vcor_material_type, only : material_t
    use vcor_sweep_quantity, only : new_summary, summary_t, values_of
    use vcor_sweep_sweep, only : solve_point, worker_t
    use vcor_verify_comparison, only : model_t
@@ -180,24 +177,15 @@ contains
          !> Group of the body
          character(len=*), intent(in) :: body
 
-         ! what counts is the material between the contact time and a hundredth of it
-         real(wp), parameter :: early = 0.01_wp
          character(len=:), allocatable :: name
-         class(material_t), allocatable :: material
-         type(error_t), allocatable :: error
          real(wp), allocatable :: times(:)
          integer :: item
 
          item = job%case%material_of(body)
-         if (data_file(job%case, item) == '') return
-         call job%case%get('material', 'times', times, item)
-         if (job%case%given('material', 'shift', item)) then
-            call material_of_case(job%case, item, material, error)
-            if (allocated(error)) return
-            times = times*time_factor_of(material)
-         end if
+         allocate (times, source=times_of_table(job%case, item))
+         if (size(times) == 0) return
          name = '; the data of the '//body//' ('//data_file(job%case, item)//') '
-         if (times(1) > early*outcome%contact_time) text = text//name//'begin at ' &
+         if (times(1) > seen_from*outcome%contact_time) text = text//name//'begin at ' &
             //short(times(1))//' s: '//percent(times(1)/outcome%contact_time, 'all') &
             //' of the contact lies before, where the modulus is taken as constant'
          if (times(size(times)) < outcome%contact_time) text = text//name//'end at ' &

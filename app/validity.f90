@@ -10,6 +10,7 @@ module vcor_app_validity
    use vcor_case_grid, only : grid_t
    use vcor_case_catalogue, only : find_group
    use vcor_case_identified, only : find_band, find_reliance, reliance_t
+   use vcor_case_problem, only : material_of_case
    use vcor_case_plausibility, only : note_length, slips_of
    use vcor_case_unread, only : why_unread
    use vcor_constants, only : pi
@@ -18,7 +19,10 @@ module vcor_app_validity
    use vcor_impact_trajectory, only : contact_separated
    use vcor_impact_validity, only : judged, level_caution, level_good, level_of, level_outside, &
       levels, surroundings_t, thresholds
+   use vcor_io_data_file, only : data_file
    use vcor_kinds, only : wp
+   use vcor_material_shifted, only : time_factor_of
+   use vcor_material_type, only : material_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_text, only : integer_text, printable, real_text
    use vcor_verify_comparison, only : differ, model_t, solve_model
@@ -26,8 +30,10 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, about_numbers, warn_of_slips, warn_of_bands
+      points_remark, about_numbers, warn_of_slips, warn_of_bands, times_of_table, seen_from
 
+   !> What counts of a material is what is between the contact time and so small a part of it
+   real(wp), parameter :: seen_from = 0.01_wp
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
 
@@ -335,12 +341,75 @@ contains
 
       sphere = job%case%material_of('sphere')
       plate = job%case%material_of('plate')
-      call warn_of_band(job, summary, sphere)
-      call warn_of_temperatures(job, sphere)
-      if (plate == sphere) return
-      call warn_of_band(job, summary, plate)
-      call warn_of_temperatures(job, plate)
+      call warn_of_one(sphere)
+      if (plate /= sphere) call warn_of_one(plate)
+
+   contains
+
+      !> Warn of one material
+      subroutine warn_of_one(item)
+         integer, intent(in) :: item
+
+         call warn_of_band(job, summary, item)
+         call warn_of_table(job, summary, item)
+         call warn_of_temperatures(job, item)
+      end subroutine warn_of_one
    end subroutine warn_of_bands
+
+   !> Times of the data of a table at the temperature of the impact
+   function times_of_table(case, item) result(times)
+      type(case_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Times [s], ascending; none of a material that is no table
+      real(wp), allocatable :: times(:)
+
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+
+      allocate (times(0))
+      if (data_file(case, item) == '') return
+      call material_of_case(case, item, material, error)
+      if (allocated(error)) return
+      call case%get('material', 'times', times, item)
+      times = times*time_factor_of(material)
+   end function times_of_table
+
+   !> Warn of contacts of a sweep that a table of data does not cover; of a single impact its report
+   !> says so. Data that move with a swept temperature are left out
+   subroutine warn_of_table(job, summary, item)
+      type(job_t), intent(in) :: job
+      type(summary_t), intent(in) :: summary
+      integer, intent(in) :: item
+
+      character(len=:), allocatable :: name, data, what
+      real(wp), allocatable :: times(:), contacts(:)
+      real(wp) :: first, last
+      integer :: i
+
+      allocate (times, source=times_of_table(job%case, item))
+      if (size(times) == 0 .or. .not. job%sweep%is_grid()) return
+      do i = 1, size(job%sweep%grid%axes)
+         if (job%sweep%grid%axes(i)%name == 'impact.temperature' &
+             .and. job%case%given('material', 'shift', item)) return
+      end do
+      allocate (contacts, source=pack(summary%values(quantity_place('contact_time'))%reals, &
+         summary%status == contact_separated))
+      if (size(contacts) == 0) return
+      call job%case%get('material', 'name', name, item)
+      data = 'vcor: warning: '//job%case%source//": the data of '"//printable(name)//"' (" &
+         //data_file(job%case, item)//') '
+      first = times(1)
+      last = times(size(times))
+      what = percent(first/minval(contacts))//' of the shortest contact lies before'
+      if (any(contacts <= first)) what = integer_text(count(contacts <= first))//' of ' &
+         //integer_text(size(contacts))//' contacts lie wholly before'
+      if (first > seen_from*minval(contacts)) write (error_unit, '(a)') data//'begin at ' &
+         //short(first)//' s: '//what//', where the modulus is taken as constant'
+      if (last < maxval(contacts)) write (error_unit, '(a)') data//'end at '//short(last) &
+         //' s: '//percent(1.0_wp - last/maxval(contacts)) &
+         //' of the longest contact lies after, where the modulus is taken as constant'
+   end subroutine warn_of_table
 
    !> Warn of temperatures beyond the data behind the shift of a material
    subroutine warn_of_temperatures(job, item)

@@ -389,6 +389,37 @@ def test_note_on_data_that_do_not_cover_the_contact(table):
     assert "with exact mechanics   " not in out
 
 
+def test_contacts_of_a_sweep_that_the_data_do_not_cover(table):
+    """How many lie wholly before the data, or how much of the shortest; of the longest after."""
+    table.write(TABLE + "&sweep parameter='impact.velocity', values=0.01, 1, 10 /\n", "sweep.nml")
+    words = ["run", "sweep.nml", "--quiet"]
+
+    def contacts():
+        """Contact times, the longest first."""
+        return [float(x) for x in table(*words, "--print", "contact_time").out.split()]
+
+    def said(kept):
+        """What is said of so much of the data."""
+        table.write("\n".join(kept), "data.csv")
+        done = table(*words)
+        assert done.code == 0 and done.err.count("warning") == 1
+        return re.search(r"of 'rubber' \(data.csv\) (.*) lies? .*constant", done.err)[1]
+
+    assert table(*words).err == ""
+    longest, middle, shortest = contacts()
+    times = np.array([float(line.split(",")[0]) for line in LINES])
+    first = np.argmax(times > (middle * longest) ** 0.5)
+    assert said(LINES[first:]) == f"begin at {times[first]:.1E} s: 2 of 3 contacts"
+    first = np.argmax(times > 0.3 * shortest)
+    words_said = said(LINES[first:])
+    share = 100 * times[first] / contacts()[-1]
+    assert words_said == f"begin at {times[first]:.1E} s: {share:.0f} % of the shortest contact"
+    last = np.argmax(times > 0.5 * longest)
+    words_said = said(LINES[: last + 1])
+    share = 100 * (1 - times[last] / contacts()[0])
+    assert words_said == f"end at {times[last]:.1E} s: {share:.0f} % of the longest contact"
+
+
 def test_ten_thousand_points(table):
     expected = cor(table)
     time = np.logspace(-7, 1, 10_000)
@@ -423,8 +454,9 @@ def test_data_that_begin_after_the_contacts_of_a_sweep(table):
     table.write(TABLE + "&sweep parameter = 'impact.velocity', values = 1, 5 /\n")
     table.write(falling(1e-3), "data.csv")
     words = ["run", "case.nml", "--print", "cor,status"]
-    found = table.succeeds(*words)
-    assert found == table.succeeds(*words, "--set", "solver.method=direct")
+    found = table(*words)
+    assert found.code == 0 and "the data of 'rubber' (data.csv) begin at 1.0E-03 s" in found.err
+    assert found.out == table(*words, "--set", "solver.method=direct").out
     done = table(*words, "--set", "solver.method=ive")
     assert (done.code, done.out) == (NUMERICAL, "nan failed\n" * 2)
     assert "2 of 2 points without result" in done.err
