@@ -189,7 +189,8 @@ def _take_numbers(pointer: c_void_p, n: int) -> Floats:
         _free(pointer)
 
 
-def _c_texts(texts: Sequence[str]) -> Any:
+@functools.lru_cache(maxsize=64)
+def _c_texts(texts: tuple[str, ...]) -> Any:
     return (c_char_p * len(texts))(*[text.encode() for text in texts])
 
 
@@ -256,8 +257,8 @@ class Handle:
         results = np.empty((len(values), len(names)))
         m, k = len(addresses), len(names)
         remark = _call(
-            "vcor_solve", self._case, m, _c_texts(addresses), len(values),
-            np.ascontiguousarray(values), k, _c_texts(names), results, threads,
+            "vcor_solve", self._case, m, _c_texts(tuple(addresses)), len(values),
+            np.ascontiguousarray(values), k, _c_texts(tuple(names)), results, threads,
         )  # fmt: skip
         return results, remark
 
