@@ -64,7 +64,7 @@ contains
          empty = .false.
       end do
       if (empty) call raise(error, error_input, printable(source) &
-         & //": the file is empty, expected groups such as &impact velocity = 5.0 /")
+            //": the file is empty, expected groups such as &impact velocity = 5.0 /")
    end subroutine read_case_text
 
    !> Complete a case by the materials of another file; their data files are in its folder
@@ -107,10 +107,10 @@ contains
          message = unknown_group(name)
       else if (groups(group)%repeated) then
          if (case%count(name) >= most_items) message = "found more than " &
-            & //integer_text(most_items)//" &"//trim(groups(group)%name)//" groups"
+               //integer_text(most_items)//" &"//trim(groups(group)%name)//" groups"
       else if (case%count(name) > 0) then
          message = "group &"//trim(groups(group)%name)//" is there twice, the first in line " &
-            & //integer_text(case%line(group, 1))
+               //integer_text(case%line(group, 1))
       end if
       if (allocated(message)) then
          call raise(error, error_input, namelist%place(line)//": "//message)

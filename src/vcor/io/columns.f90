@@ -21,10 +21,10 @@ module vcor_io_columns
 
    !> What to say of a file with both ways to write numbers
    character(len=*), parameter :: mixed_decimals = "found both decimal commas and decimal points" &
-      & //", expected one of them in all lines"
+         //", expected one of them in all lines"
    !> What to say of a file that is none of text
    character(len=*), parameter :: not_a_text = "found a control character, expected a text file " &
-      & //"(in ASCII or UTF-8)"
+         //"(in ASCII or UTF-8)"
 
    !> How the numbers of a file are written
    type :: decimals_t
@@ -223,7 +223,7 @@ contains
             from(columns) = start
             to(columns) = start - 1 + verify(content(start:last), blanks, back=.true.)
             if (to(columns) >= start) from(columns) = start - 1 &
-               & + verify(content(start:last), blanks)
+                  + verify(content(start:last), blanks)
          end if
          start = last + 2
          if (last == len(content)) exit
@@ -253,10 +253,10 @@ contains
       if (.not. value > 0.0_wp) then
          message = "found "//real_text(value)//", expected "//expected
       else if (.not. (value >= smallest_value/size_of_unit &
-         & .and. value <= largest_value/size_of_unit)) then
+            .and. value <= largest_value/size_of_unit)) then
          message = "found "//real_text(value)//", expected "//expected//", between " &
-            & //real_text(smallest_value)//" and "//real_text(largest_value) &
-            & //" in units of the SI"
+               //real_text(smallest_value)//" and "//real_text(largest_value) &
+               //" in units of the SI"
       end if
    end subroutine read_value
 

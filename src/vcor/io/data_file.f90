@@ -128,7 +128,7 @@ contains
       integer :: n, last_line
       logical :: first
 
-      allocate(points(2, lines_in(text)))
+      allocate (points(2, lines_in(text)))
       n = 0
       first = .true.
       do
@@ -149,14 +149,14 @@ contains
          if (allocated(message)) then
             continue
          else if (row%columns == 2) then
-            call read_value(row%cell(1), trim(names(1)), scale(1), points(1, n+1), message)
+            call read_value(row%cell(1), trim(names(1)), scale(1), points(1, n + 1), message)
             if (.not. allocated(message)) &
-               & call read_value(row%cell(2), trim(names(2)), scale(2), points(2, n+1), message)
+                  call read_value(row%cell(2), trim(names(2)), scale(2), points(2, n + 1), message)
             if (.not. allocated(message) .and. n > 0) &
-               & call compare(points(:, n), points(:, n+1), last_line, message)
+                  call compare(points(:, n), points(:, n + 1), last_line, message)
          else
             message = "found "//integer_text(row%columns)//" columns, expected 2, a time and a " &
-               & //"modulus, with a comma, a semicolon, a tab or blanks between them"
+                  //"modulus, with a comma, a semicolon, a tab or blanks between them"
          end if
          if (allocated(message)) then
             call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
@@ -167,8 +167,8 @@ contains
       end do
       if (n < 2) then
          call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": found " &
-            & //integer_text(n)//" "//trim(merge("point ", "points", n == 1)) &
-            & //", expected 2 at least, a time and a modulus to a line")
+               //integer_text(n)//" "//trim(merge("point ", "points", n == 1)) &
+               //", expected 2 at least, a time and a modulus to a line")
          return
       end if
       times = points(1, :n)*scale(1)
@@ -199,25 +199,25 @@ contains
          shear = shear .or. index(header%columns(i)%name, "shear") > 0
          if (shear .and. .not. is_shear) then
             call raise(error, error_input, found//", a shear modulus, expected a relaxation " &
-               & //"modulus E: give modulus_kind = 'shear' in its &material group, which makes " &
-               & //"E = 2 (1 + nu) G of it, or identify a material by vcor fit")
+                  //"modulus E: give modulus_kind = 'shear' in its &material group, which makes " &
+                  //"E = 2 (1 + nu) G of it, or identify a material by vcor fit")
          else if (is_shear .and. role == role_relaxation &
-            & .and. names_tensile(header%columns(i)%name)) then
+               .and. names_tensile(header%columns(i)%name)) then
             call raise(error, error_input, found//", a tensile modulus, but the case has " &
-               & //"modulus_kind = 'shear'")
+                  //"modulus_kind = 'shear'")
          else if (all(role /= [role_none, role_time, role_relaxation])) then
             call raise(error, error_input, found//" ("//name_of(role, unit)//"), expected a " &
-               & //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
-               & //"identifies a material in them")
+                  //"time and a relaxation modulus E: dynamic data are for vcor fit, which " &
+                  //"identifies a material in them")
          end if
          if (allocated(error)) return
          if (header%count /= 2) cycle
          if (all(role /= [role_none, expected_roles(i)])) then
             call raise(error, error_input, found//" ("//name_of(role, unit)//") as column " &
-               & //integer_text(i)//", expected a time and a relaxation modulus")
+                  //integer_text(i)//", expected a time and a relaxation modulus")
          else if (role == role_none .and. unit == "") then
             call raise(error, error_input, found//" as name of a column, expected "//example(i) &
-               & //", or a unit beside it")
+                  //", or a unit beside it")
          end if
          if (allocated(error)) return
          if (unit == "") cycle
@@ -228,8 +228,8 @@ contains
          if (unit == "N/mm2") key = "MPa"
          if (unit == "N/m2") key = "Pa"
          call raise(error, error_input, place//": found '"//trim(unit) &
-            & //"' as unit of the "//trim(names(i))//", which is not that of the case; give " &
-            & //trim(names(i))//"_unit = '"//trim(key)//"' in its &material group")
+               //"' as unit of the "//trim(names(i))//", which is not that of the case; give " &
+               //trim(names(i))//"_unit = '"//trim(key)//"' in its &material group")
          return
       end do
 
@@ -256,11 +256,11 @@ contains
 
       if (.not. point(1) > before(1)) then
          message = "found time "//real_text(point(1))//" after "//real_text(before(1)) &
-            & //" in line "//integer_text(line)//", expected times that increase"
+               //" in line "//integer_text(line)//", expected times that increase"
       else if (.not. point(2) <= before(2)*(1.0_wp + modulus_rounding)) then
          message = "found modulus "//real_text(point(2))//" after "//real_text(before(2)) &
-            & //" in line "//integer_text(line)//", expected moduli that fall: a relaxation " &
-            & //"modulus never grows with time; for data with noise identify a model by vcor fit"
+               //" in line "//integer_text(line)//", expected moduli that fall: a relaxation " &
+               //"modulus never grows with time; for data with noise identify a model by vcor fit"
       end if
    end subroutine compare
 
