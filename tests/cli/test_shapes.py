@@ -49,6 +49,21 @@ def test_elastic_punch(vcor, method):
     assert force == pytest.approx(stiffness * 2 / omega, rel=10 * near)
 
 
+def test_elastic_cone(vcor):
+    """F = K s^2: at the end the force says little of the time, the indentation all."""
+    stiffness = 2 / math.pi * math.tan(math.radians(65)) * 1e6 / 0.75
+    depth = (3 * 0.05 * 2.0**2 / (2 * stiffness)) ** (1 / 3)
+    half = math.gamma(1 / 3) * math.gamma(1 / 2) / math.gamma(5 / 6) / 3
+    for accuracy in ("1e-6", "1e-8", "1e-10"):
+        words = ["--set", f"solver.accuracy={accuracy}"]
+        names = "cor,contact_time,max_indentation"
+        cor, time, largest = numbers(vcor, case(CONE, ELASTIC), names, *words)
+        assert cor == pytest.approx(1, abs=float(accuracy))
+        assert largest == pytest.approx(depth, rel=float(accuracy))
+        near = max(float(accuracy), 1e-9)
+        assert time == pytest.approx(2 * depth / 2.0 * half, rel=near)
+
+
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("plate", [0.0, 0.3])
 def test_damped_punch(vcor, method, plate):

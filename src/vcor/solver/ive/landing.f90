@@ -128,12 +128,14 @@ contains
 
       type(panel_t) :: last
       real(wp) :: time, correction, last_correction, tolerance, kappa, memory_rate, old_memory, &
-         memory
+         memory, velocity
+      logical :: elastic
       integer :: iteration, n
 
       n = panel%stages
       last = panel
       associate (contact => problem%modes%contact, law => problem%impact%law)
+         elastic = size(contact%rates) == 0 .and. .not. contact%viscosity > 0.0_wp
          ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
          ! left out: the indentation s and the memory M are smooth in time, u(s) where s goes to
          ! zero is not. So Newton's method is put on kappa u(s) = M with s and M linear in time, the
@@ -155,9 +157,15 @@ contains
                memory_rate = (memory - old_memory)/correction
             old_memory = memory
             last_correction = correction
-            call look_ahead(law, kappa, panel%indentation(n), &
-               relative_velocity(problem%impact, panel, n), memory, memory_rate, correction, &
-               panel%converged)
+            velocity = relative_velocity(problem%impact, panel, n)
+            if (elastic) then
+               ! s = 0; the square of s that a cone's force is has rounding for its zero
+               panel%converged = velocity < 0.0_wp
+               correction = -panel%indentation(n)/velocity
+            else
+               call look_ahead(law, kappa, panel%indentation(n), velocity, memory, memory_rate, &
+                  correction, panel%converged)
+            end if
             if (.not. panel%converged) return
             if (abs(correction) <= (start%time + time)*merge(sqrt(share_of_square*tolerance), &
                tolerance, panel%indentation(n) >= shallow)) return
