@@ -7,15 +7,20 @@ import contextlib
 import difflib
 import functools
 import importlib
+import json
+import math
 import os
 import sys
 import tempfile
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from ._library import Error, FileError, UsageError, __version__
+
+if TYPE_CHECKING:
+    from .case import Case
 
 FORMATS = ("svg", "pdf", "png")
 
@@ -108,10 +113,24 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "?" for c in text)
 
 
+def read_text(path: str | os.PathLike[str], errors: str = "replace") -> str:
+    """Text of a file, without a byte order mark."""
+    try:
+        return Path(path).read_text(encoding="utf-8-sig", errors=errors)
+    except OSError as error:
+        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
+
+
+def number(case: Case, address: str, missing: float = math.nan) -> float:
+    """Number at an address of a case."""
+    value = case[address]
+    return float(value) if isinstance(value, (int, float)) else missing
+
+
 def name_flaw(name: str) -> str:
     """What is wrong with the name of a file to be written, empty if nothing is."""
     for part in name.split("/"):
-        if part[:1] in ("|", "<") and part:
+        if part.startswith(("|", "<")):
             return f"'{name}' has a part that begins with '{part[0]}', a pipe to other programs"
     return ""
 
@@ -183,15 +202,16 @@ def write(path: Path, data: bytes) -> None:
 
 
 def finish(
-    options: argparse.Namespace, report: str, stem: str, texts: Mapping[str, str], figure: Any
+    options: argparse.Namespace, report: str, stem: str, contents: Mapping[str, Any], figure: Any
 ) -> None:
-    """Write texts by the ends of their names and a figure, and print a report of them."""
+    """Write texts, or what goes into JSON, by the ends of their names and a figure, and report."""
     from .plot import save
 
     folder = options.output if options.output.endswith("/") else f"{options.output}/"
     paths = [place(folder, stem + end.rpartition(".")[0], [end.rpartition(".")[2]], None, [])
-             for end in texts]  # fmt: skip
-    for path, text in zip(paths, texts.values(), strict=True):
+             for end in contents]  # fmt: skip
+    for path, content in zip(paths, contents.values(), strict=True):
+        text = content if isinstance(content, str) else json.dumps(content, indent=1) + "\n"
         write(path, text.encode())
     paths.append(place(folder, stem, [options.format], None, []))
     save(figure, paths[-1])

@@ -13,9 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from . import _command
-from ._library import FileError, InputError, NumericalError, UsageError
+from ._command import number
+from ._library import InputError, NumericalError, UsageError
 from .card_formats import FORMATS, UNITS, Card, Source
 from .case import Case
+from .sources import with_impact
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -27,12 +29,6 @@ _ACCURACY = 1e-3
 _AREA_WEIGHT = 10.0
 #: Most terms of a sum
 _MOST_TERMS = 40
-#: A group of an impact, for a file that has materials only
-_IMPACT = """
-&impact velocity = 1.0 /
-&sphere radius = 1.0, mass = 1.0, material = '{0}' /
-&plate material = '{0}', waves = 'none' /
-"""
 #: Numbers of a shift law
 _SHIFT = ("reference_temperature", "wlf_c1", "wlf_c2", "activation_energy")
 
@@ -76,15 +72,13 @@ def card(
     if isinstance(case, Case):
         case = case.copy()
     else:
-        text = _text(case)
-        has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
-        case = Case(text if has_impact else text + _IMPACT.format(material), name=os.fspath(case))
-
+        text = _command.read_text(case)
+        whole = with_impact(text, material)
+        has_impact, case = whole == text, Case(whole, name=os.fspath(case))
     case.text()  # checks it
 
     def of(key: str) -> float:
-        value = case[f"{material}.{key}"]
-        return float(value) if isinstance(value, (int, float)) else 0.0
+        return number(case, f"{material}.{key}", 0.0)
 
     def series(key: str) -> tuple[float, ...]:
         return tuple(np.atleast_1d(case[f"{material}.{key}"] or ()).tolist())
@@ -220,7 +214,7 @@ def read_card(
     Card
         The material in SI units; `str` of it is a &material group.
     """
-    text = _text(path)
+    text = _command.read_text(path)
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
@@ -238,14 +232,6 @@ _MARKS = (
     ("ansys", r"(?im)^\s*TB\s*,"),
     ("comsol", r"(?m)\A(\s*%.*\n|\s*\n)*(\s*\d+\s+\S+\s+\S+\s*(\n|\Z))"),
 )
-
-
-def _text(path: str | os.PathLike[str]) -> str:
-    """Text of a file."""
-    try:
-        return Path(path).read_text(encoding="utf-8", errors="replace")
-    except OSError as error:
-        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -279,7 +265,7 @@ def _work(options: argparse.Namespace) -> None:
     nu = options.poisson_ratio
     if nu is not None and not -1 < nu <= 0.5:
         raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")
-    if re.search(r"(?im)^\s*&material\b", _text(options.file)):
+    if re.search(r"(?im)^\s*&material\b", _command.read_text(options.file)):
         if not options.code:
             raise UsageError(f"{options.file} is a case, expected --material and --for")
         options.material = options.material or _only(options.file)
@@ -309,7 +295,7 @@ def _work(options: argparse.Namespace) -> None:
 
 def _only(path: str) -> str:
     """The only material of a case that relaxes."""
-    groups = re.findall(r"(?ims)^\s*&material\b(.*?)^\s*/", _text(path))
+    groups = re.findall(r"(?ims)^\s*&material\b(.*?)^\s*/", _command.read_text(path))
     found = [re.search(r"(?i)\bname\s*=\s*(['\"])(.+?)\1", group) for group in groups
              if not re.search(r"(?i)\bmodel\s*=\s*['\"](rigid|elastic)\b", group)]  # fmt: skip
     names = [name[2] for name in found if name]
@@ -336,7 +322,3 @@ def _band(word: str | None) -> tuple[float, float] | None:
     except ValueError:
         raise UsageError(f"found --band {word}, expected FROM:TO in s") from None
     return first, last
-
-
-if __name__ == "__main__":
-    main()

@@ -147,3 +147,5 @@ class Twin:
 LINEAR = Law("linear spring and dashpot", 1, 0)
 HERTZ = Law("Hertz spring with a dashpot of constant e", 1.5, 0.25)
 VISCOELASTIC = Law("Kelvin-Voigt solid in Hertz' contact", 1.5, 0.5)
+#: By their names in templates/programs.toml
+LAWS = {"linear": LINEAR, "hertz": HERTZ, "viscoelastic": VISCOELASTIC}

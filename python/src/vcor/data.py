@@ -6,11 +6,11 @@ import csv
 import math
 import os
 import re
-from pathlib import Path
 
 import numpy as np
 
-from ._library import FileError, Floats, InputError
+from ._command import read_text
+from ._library import Floats, InputError
 
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 #: Units that take a prefix
@@ -60,9 +60,7 @@ class Data:
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
         try:
-            text = Path(path).read_text(encoding="utf-8-sig")
-        except OSError as error:
-            raise FileError(f"{self.path}: {error.strerror}") from None
+            text = read_text(path, "strict")
         except UnicodeDecodeError:
             raise InputError(f"{self.path}: this is no text") from None
         lines = [line for line in text.splitlines() if line.split("#")[0].strip(" ;,\t")]

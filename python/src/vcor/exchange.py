@@ -1,7 +1,7 @@
 """e(v) for other programs: input for discrete elements and physics engines, and what it costs.
 
 `export` solves a case at velocities and fits the contact law of a program to e and contact times.
-A program is one entry of TARGETS: its laws, what is written for them, and files that it goes into.
+A program is an entry of templates/programs.toml and the templates of its files.
 """
 
 from __future__ import annotations
@@ -11,9 +11,10 @@ import contextlib
 import math
 import os
 import sys
+import tomllib
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from string import Template
 from typing import Any
@@ -24,9 +25,10 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from . import _command, _library
+from ._command import number
 from ._library import Floats, InputError, NoResultWarning, NumericalError, UsageError
 from .case import Case, read
-from .contact_laws import HERTZ, LINEAR, VISCOELASTIC, Law, Twin
+from .contact_laws import LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
 #: Columns that an export needs
@@ -41,221 +43,24 @@ MEANING = {
 STEPS, RUNS = 400, 3
 
 
-@dataclass(frozen=True)
-class Option:
-    """A law of a program, and how its numbers are written there."""
-
-    law: Law
-    text: str
-    #: More of its template
-    fill: Mapping[str, str] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Target:
-    """A program that takes e."""
-
-    name: str
-    #: Ends of the names of its files, NAME + end + .txt in the folder templates
-    files: tuple[str, ...]
-    options: tuple[Option, ...] = ()
-    #: What to know of numbers for this program
-    notes: tuple[str, ...] = ()
-    #: Version in which the input was run; none: it was not
-    run: str = ""
-
-
 #: How lines of a comment begin, by the end of the file's name; others: with #
 COMMENTS = {".c": "// ", ".cpp": "// ", ".dat": "! ", ".xml": ""}
 
 
-def _clipped(law: Law) -> Law:
-    return replace(law, clipped=True)
+@dataclass(frozen=True)
+class Target:
+    """A program that takes e: an entry of templates/programs.toml."""
+
+    name: str
+    files: Sequence[str]
+    laws: Sequence[Mapping[str, Any]] = ()
+    notes: Sequence[str] = ()
+    run: str = ""
 
 
-def _both(law: Law, text: str, limited: str, **fill: str) -> tuple[Option, Option]:
-    """A law whose force may pull, and the same with forces that are cut off at 0."""
-    cut = {name: value + limited for name, value in fill.items()}
-    return Option(law, text, fill), Option(_clipped(law), text + limited, cut)
-
-
-TARGETS = {
-    target.name: target
-    for target in (
-        Target("table", (".csv",)),
-        Target(
-            "rebound",
-            (".py", ".c"),
-            run="REBOUND 5.2.2",
-            notes=("Beyond the range of velocities e is that of its end.",),
-        ),
-        Target(
-            "lammps",
-            (".in",),
-            (
-                *_both(VISCOELASTIC, "hertz {hertz} {eta} damping viscoelastic", " limit_damping"),
-                *_both(HERTZ, "hertz {hertz} {e} damping coeff_restitution", " limit_damping"),
-                *_both(LINEAR, "hooke {K} {gamma} damping mass_velocity", " limit_damping"),
-            ),
-            run="LAMMPS 22 Jul 2025",
-            notes=(
-                "damping tsuji: not used here. Up to 2025 it lacks a factor of sqrt(2) (0.3, 0.5, "
-                "0.7, 0.9 give 0.440, 0.616, 0.778, 0.928); since September 2026 it has it.",
-                "hertz/material: not used here. On walls it takes E* of two equal bodies.",
-            ),
-        ),
-        Target(
-            "mujoco",
-            (".xml",),
-            (Option(_clipped(LINEAR), 'solref="-{omega2} -{gamma}" solimp="0.99 0.99 0.001"'),),
-            run="MuJoCo 4.0.0",
-            notes=(
-                "solref is per unit of reduced mass, so that it holds for bodies of any mass; with "
-                "the default solimp e depends on the velocity.",
-                "Without a <pair>: both on both geoms, or on one with priority 1.",
-            ),
-        ),
-        Target(
-            "liggghts",
-            (".in",),
-            _both(
-                HERTZ,
-                "coefficientRestitution {e}, youngsModulus {young}, model hertz",
-                " limitForce on",
-                limit="",
-            ),
-            run="LIGGGHTS-PUBLIC 3.8.0",
-            notes=(
-                "coefficientRestitution must be larger than 0.05 and at most 1; a youngsModulus "
-                "below 5e6 Pa needs soft_particles yes.",
-                "characteristicVelocity is for model hooke only, which is not used here.",
-            ),
-        ),
-        Target(
-            "yade",
-            (".py",),
-            (
-                Option(
-                    _clipped(HERTZ),
-                    "Ip2_FrictMat_FrictMat_MindlinPhys(en={level}), FrictMat(young={young_half})",
-                    {
-                        "material": "FrictMat(young={young_half}, poisson={poisson}, "
-                        "frictionAngle=0, density=1000)",
-                        "physics": "Ip2_FrictMat_FrictMat_MindlinPhys(en={level})",
-                        "force": "Law2_ScGeom_MindlinPhys_Mindlin()",
-                    },
-                ),
-                Option(
-                    _clipped(LINEAR),
-                    "ViscElMat(kn={K_twice}, cn={C_twice})",
-                    {
-                        "material": "ViscElMat(kn={K_twice}, cn={C_twice}, ks=0, cs=0, "
-                        "frictionAngle=0, density=1000)",
-                        "physics": "Ip2_ViscElMat_ViscElMat_ViscElPhys()",
-                        "force": "Law2_ScGeom_ViscElPhys_Basic()",
-                    },
-                ),
-            ),
-            run="YADE 2023.02a",
-            notes=(
-                "Forces never pull. MindlinPhys allows for that by itself (a fit of Thornton et "
-                "al. 2013): en is e. A version without that fit takes what LIGGGHTS takes for "
-                "limitForce on.",
-                "On walls MindlinPhys takes half of the bead's radius: young is larger by sqrt(2).",
-                "kn and cn of two ViscElMat act in series: each is twice that of the contact.",
-            ),
-        ),
-        Target(
-            "mercurydpm",
-            (".cpp",),
-            (
-                Option(
-                    HERTZ,
-                    "setEffectiveElasticModulusAndRestitutionCoefficient({contact_modulus}, {e})",
-                    {"species": "HertzianViscoelastic"},
-                ),
-                Option(
-                    LINEAR,
-                    "setCollisionTimeAndRestitutionCoefficient({time}, {e}, {mass_twice})",
-                    {"species": "LinearViscoelastic"},
-                ),
-            ),
-            notes=(
-                "Forces may pull. The mass of the linear law is that of two equal beads: twice the "
-                "reduced mass.",
-                "Two species need the values of their pair on getMixedObject: means are no law.",
-            ),
-        ),
-        Target(
-            "mfix",
-            (".dat",),
-            (
-                Option(
-                    HERTZ,
-                    "HERTZIAN: e_young = {young}, des_en_input = {e_mfix}",
-                    {
-                        "collision": "HERTZIAN",
-                        "lines": "  e_young(1) = {young}\n  ew_young = {young}\n"
-                        "  v_poisson(1) = {poisson}\n  vw_poisson = {poisson}\n"
-                        "  des_en_input(1) = {e_mfix}\n  des_en_wall_input(1) = {e_mfix}",
-                    },
-                ),
-                Option(
-                    LINEAR,
-                    "LSD: kn = {K}, des_en_input = {e}",
-                    {
-                        "collision": "LSD",
-                        "lines": "  kn = {K}\n  kn_w = {K}\n"
-                        "  des_en_input(1) = {e}\n  des_en_wall_input(1) = {e}",
-                    },
-                ),
-            ),
-            notes=(
-                "Forces may pull. HERTZIAN has the damping of the linear law: 0.3, 0.5, 0.7, 0.9 "
-                "would give 0.346, 0.540, 0.727, 0.910. The value here gives e.",
-            ),
-        ),
-        Target(
-            "chrono",
-            (".py",),
-            (
-                Option(
-                    _clipped(VISCOELASTIC),
-                    "Hertz, UseMaterialProperties(False), SetKn({kn}), SetGn({gn})",
-                    {
-                        "lines": "material.SetKn({kn})\nmaterial.SetGn({gn})\n"
-                        "system.UseMaterialProperties(False)\n"
-                        "system.SetContactForceModel(chrono.ChSystemSMC.Hertz)"
-                    },
-                ),
-                Option(
-                    _clipped(HERTZ),
-                    "Hertz, SetYoungModulus({young}), SetRestitution({e})",
-                    {
-                        "lines": "material.SetYoungModulus({young})\n"
-                        "material.SetPoissonRatio({poisson})\nmaterial.SetRestitution({e})\n"
-                        "system.UseMaterialProperties(True)\n"
-                        "system.SetContactForceModel(chrono.ChSystemSMC.Hertz)"
-                    },
-                ),
-                Option(
-                    _clipped(LINEAR),
-                    "Hooke, UseMaterialProperties(False), SetKn({K}), SetGn({gamma})",
-                    {
-                        "lines": "material.SetKn({K})\nmaterial.SetGn({gamma})\n"
-                        "system.UseMaterialProperties(False)\n"
-                        "system.SetContactForceModel(chrono.ChSystemSMC.Hooke)"
-                    },
-                ),
-            ),
-            notes=(
-                "Forces never pull: the restitution entered is not e.",
-                "Kn and Gn act only with UseMaterialProperties(False). Gn is multiplied by the "
-                "reduced mass; Hertz multiplies both by R sqrt(s) of the overlap s.",
-            ),
-        ),
-    )
-}
+TARGETS = {name: Target(name, **keys)
+           for name, keys in tomllib.loads((TEMPLATES / "programs.toml").read_text()).items()
+           }  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -404,7 +209,7 @@ def export(
     if master:
         return _master(case, target, curve)
     chosen = TARGETS[target]
-    if not chosen.options:
+    if not chosen.laws:
         return _tabulated(case, chosen, curve)
     return _fitted(case, chosen, curve, law)
 
@@ -479,12 +284,14 @@ def _finished(
     misfit: float, options: Mapping[str, Twin] | None = None,
 ) -> Export:  # fmt: skip
     """The files of a program from its templates: lines of [pair] or [wall] as the case is."""
-    kind = "[pair]" if case["plate.surface_radius"] else "[wall]"
+    kind, other_kind = "[wall] ", "[pair] "
+    if case["plate.surface_radius"]:
+        kind, other_kind = other_kind, kind
     lines = [*_header(case, target, curve), *lines, *target.notes]
-    if target.options:
+    if target.laws:
         run = f"was run in {target.run}" if target.run else "was not run"
         lines.append(f"input of this kind {run}")
-    radius, other = _number(case, "sphere.radius"), _number(case, "plate.surface_radius")
+    radius, other = _radii(case)
     mass = curve.attrs["mass"] * (2 if other else 1)
     middle = float(np.sqrt(curve.velocity.values[0] * curve.velocity.values[-1]))
     known = {
@@ -499,17 +306,17 @@ def _finished(
         said = [comment + _command.printable(line) for line in lines]
         if ending == ".xml":
             said = [line.replace("--", "- -") for line in said]
-        kept = []
-        template = TEMPLATES / f"{target.name}{ending}.txt"
-        for line in template.read_text(encoding="utf-8").splitlines():
-            if line.startswith(("[pair] ", "[wall] ")):
-                if not line.startswith(kind):
-                    continue
-                line = line[7:]
-            kept.append(line)
+        template = (TEMPLATES / f"{target.name}{ending}.txt").read_text(encoding="utf-8")
+        kept = [line.removeprefix(kind) for line in template.splitlines()
+                if not line.startswith(other_kind)]  # fmt: skip
         text = _Template("\n".join(kept) + "\n")
         texts[ending] = text.substitute(known, **values, header="\n".join(said))
     return Export(target.name, curve, texts, lines, misfit, options or {})
+
+
+def _radii(case: Case) -> tuple[float, float]:
+    """Radii of the sphere and of the other body [m], 0 for a wall."""
+    return number(case, "sphere.radius", 0.0), number(case, "plate.surface_radius", 0.0)
 
 
 def _density(mass: float, radius: float) -> float:
@@ -549,24 +356,24 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
 
 def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Export:
     """A program with laws of its own, in the order of their misfits."""
-    if case["sphere.shape"] != "sphere" or _number(case, "plate.surface_radius") < 0:
+    if case["sphere.shape"] != "sphere" or _radii(case)[1] < 0:
         raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
                          "expected --for table or rebound")  # fmt: skip
     velocity, time = curve.velocity.values, curve.contact_time.values
     e = curve[curve.attrs["e"]].values
     found = []
-    for option in target.options:
-        twin = option.law.fit(velocity, e, time, curve.attrs["mass"])
+    for entry in target.laws:
+        law = replace(LAWS[entry["law"]], clipped=entry.get("clipped", False))
+        twin = law.fit(velocity, e, time, curve.attrs["mass"])
         numbers = _numbers(case, curve, twin)
-        text = option.text.format(**numbers)
+        filled = {key: one.format(**numbers) for key, one in entry.items() if key != "clipped"}
         # a program that takes e has no damping beyond the critical one
-        if "nan" not in text:
-            filled = {name: one.format(**numbers) for name, one in option.fill.items()}
-            found.append((text, twin, numbers | filled))
+        if "nan" not in filled["text"]:
+            found.append((filled["text"], twin, numbers | filled))
     found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
     if not 1 <= number <= len(found):
         raise UsageError(f"--law {number}: expected 1 to {len(found)} for {target.name}")
-    law, twin, filled = found[number - 1]
+    text, twin, filled = found[number - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})
     shown = shown.isel(velocity=slice(None, None, 2))
@@ -586,13 +393,12 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Expor
         *(f"  {i}. {text}  ({one.law.name}, {one.law.end}: {one.misfit:.2g}, "
           f"{100 * one.time_misfit:.2g} %)" for i, (text, one, _) in enumerate(found, 1)),
     ]  # fmt: skip
-    size = 8 * max(_number(case, "sphere.radius"), _number(case, "plate.surface_radius"))
     values = {
         **filled,
-        "law": law,
+        "law": text,
         "step": f"{step:.6g}",
         "duration": f"{RUNS * twin.time.max():.6g}",
-        "size": f"{size:g}",
+        "size": f"{8 * max(_radii(case)):g}",
     }
     options = {text: twin for text, twin, _ in found}
     return _finished(case, target, shown, lines, values, twin.misfit, options)
@@ -601,7 +407,7 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Expor
 def _numbers(case: Case, curve: xr.Dataset, twin: Twin) -> dict[str, str]:
     """Numbers that programs take for a law."""
     mass, root = curve.attrs["mass"], math.sqrt(curve.attrs["radius"])
-    poisson = _number(case, f"{case['sphere.material']}.poisson_ratio")
+    poisson = number(case, f"{case['sphere.material']}.poisson_ratio", 0.0)
     contact_modulus = 0.75 * twin.stiffness / root
     found = {
         "K": twin.stiffness,
@@ -630,12 +436,6 @@ def _entered_in_mfix(e: float) -> float:
     """What HERTZIAN takes for e: it has the factor 2 of a linear dashpot, not sqrt(5)."""
     share = math.sqrt(5) / 2 * math.log(e) / math.hypot(math.pi, math.log(e)) if e > 0 else math.nan
     return math.exp(math.pi * share / math.sqrt(1 - share**2)) if share > -1 else math.nan
-
-
-def _number(case: Case, address: str) -> float:
-    """Number at an address, 0 if there is none."""
-    value = case[address]
-    return float(value) if isinstance(value, (int, float)) else 0.0
 
 
 def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
@@ -713,7 +513,3 @@ def _work(options: argparse.Namespace) -> None:
         return
     stem = f"{Path(options.case).stem}_{found.target}"
     _command.finish(options, "\n".join(found.header), stem, found.texts, found.figure())
-
-
-if __name__ == "__main__":
-    main()

@@ -7,7 +7,6 @@ determine is found from the singular values of the derivatives, and said instead
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import os
 import re
@@ -21,6 +20,7 @@ from scipy.optimize import least_squares
 from scipy.special import ndtri, stdtrit
 
 from . import _command, _library
+from ._command import number
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, read
 from .fit import fit
@@ -31,7 +31,6 @@ from .observations import (
     Record,
     Source,
     materials_of,
-    number,
     observations,
     sharpen,
     velocity_of,
@@ -866,10 +865,6 @@ def _work(options: argparse.Namespace) -> None:
             report += f"{one.model:16s}{len(one.estimates):11d}{one.chi2:12.4g}"
             report += f"{one.aic:10.1f}{one.bic:10.1f}\n"
         report += "".join(f"no result: {error}\n" for error in refused)
-    texts = {".nml": best.case.text(), ".json": json.dumps(written, indent=1) + "\n"}
+    texts = {".nml": best.case.text(), ".json": written}
     stem = f"{Path(options.case).stem}_identified"
     _command.finish(options, report, stem, texts, best.figure())
-
-
-if __name__ == "__main__":
-    main()

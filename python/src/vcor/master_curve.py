@@ -10,7 +10,6 @@ thermorheologically simple.
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import os
 import re
@@ -25,7 +24,7 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from . import _command, _library
-from ._library import Error, FileError, Floats, InputError, NumericalError, UsageError
+from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .data import ZERO_C
 from .fit import read_moduli
 
@@ -264,10 +263,7 @@ def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
     A file without temperatures is one curve at nan.
     """
     path, _, given = os.fspath(name).partition("@")
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from None
+    lines = _command.read_text(path).splitlines()
     if given:
         return [_curve(path, lines, _kelvin(given, path))]
     told = [line for line in lines[:40] if not line.lstrip().startswith("#")]
@@ -450,7 +446,7 @@ def _work(options: argparse.Namespace) -> None:
         ".csv": f"# master curve at {reference:.6g} K\n{keys}{head}\n" + _rows(found.curve()),
         "_shift.csv": f"# reference temperature {reference:.6g} K\nT [K],log10 a_T\n"
         + _rows((found.temperatures, found.log_shift)),
-        ".json": json.dumps(found.as_dict(), indent=1) + "\n",
+        ".json": found.as_dict(),
     }
     report = f"{found}\nshift of a &material, which vcor fit {stem}.csv takes over:\n"
     report += "".join(f"   {pair}\n" for pair in pairs)
@@ -460,7 +456,3 @@ def _work(options: argparse.Namespace) -> None:
 def _rows(columns: Sequence[Floats]) -> str:
     """Columns as rows of text."""
     return "".join(",".join(f"{x:.9g}" for x in row) + "\n" for row in zip(*columns, strict=True))
-
-
-if __name__ == "__main__":
-    main()

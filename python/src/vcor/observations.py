@@ -7,17 +7,15 @@ import math
 import os
 import re
 import warnings
-from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 
 from . import _library
-from ._command import near
-from ._library import Error, FileError, Floats, InputError, NoResultWarning
+from ._command import near, number, read_text
+from ._library import Error, Floats, InputError, NoResultWarning
 from .case import Case
 from .data import Data, plain_name
 from .master_curve import read_curves
@@ -39,25 +37,6 @@ COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 SAME_TEMPERATURE = 1.0
 
 
-class Block(Protocol):
-    """Data of one file that are predicted together."""
-
-    source: str
-    #: What each datum is, shape (n,)
-    quantity: list[str]
-    #: Where it was taken: velocity, time or frequency in SI units, shape (n,)
-    at: Floats
-    value: Floats
-    #: Standard errors, nan where there are none, shape (n,)
-    sigma: Floats
-
-    def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
-        """Data for each row of values at the addresses, shape (rows, n); nan without result."""
-
-    def windows(self, case: Case) -> Floats:
-        """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
-
-
 class Impacts:
     """Impacts: a row of settings each, and what was measured."""
 
@@ -65,7 +44,7 @@ class Impacts:
         self.source = source
         columns = _as_velocities(source, dict(columns), case)
         self.settings: dict[str, Floats] = {}
-        self.quantity, rows, values, sigmas = [], [], [], []
+        parts = []
         known = _library.columns(0)
         for name, column in columns.items():
             if name.endswith("_sigma") and name[:-6] in columns:
@@ -82,21 +61,20 @@ class Impacts:
                 limit = " and <= 1" if most == 1 else ""
                 raise InputError(f"{source}: row {bad[0] + 1}: found a {name} of "
                                  f"{column[bad[0]]:.6g}, expected one > 0{limit}")  # fmt: skip
-            sigma = columns.get(f"{name}_sigma", np.full(len(column), np.nan))
-            for i in np.flatnonzero(np.isfinite(column)):
-                self.quantity.append(name)
-                rows.append(i)
-                values.append(column[i])
-                sigmas.append(sigma[i])
-        if not values:
+            rows = np.flatnonzero(np.isfinite(column))
+            if rows.size:
+                parts.append((name, rows, column[rows], _sigma(columns, name)[rows]))
+        if not parts:
             raise InputError(f"{source}: there is no measured quantity, such as cor, in this file")
         if any(np.isnan(column).any() for column in self.settings.values()):
             raise InputError(f"{source}: a row has no value of {' or '.join(self.settings)}")
-        self.names = list(dict.fromkeys(self.quantity))
-        self._rows = np.array(rows)
-        self._columns = np.array([self.names.index(name) for name in self.quantity])
-        self.value, self.sigma = np.array(values), np.array(sigmas)
-        n = max((len(column) for column in self.settings.values()), default=max(rows) + 1)
+        self.names = [name for name, *_ in parts]
+        self.quantity = [name for name, rows, *_ in parts for _ in rows]
+        self._rows, self.value, self.sigma = (
+            np.concatenate([part[i] for part in parts]) for i in (1, 2, 3)
+        )
+        self._columns = np.repeat(np.arange(len(parts)), [len(rows) for _, rows, *_ in parts])
+        n = max((len(column) for column in self.settings.values()), default=max(self._rows) + 1)
         #: Velocity of each impact [m/s]
         self.velocity = self.settings.pop("impact.velocity", np.full(n, velocity_of(case)))
         if case["impact.drop_height"] is None:
@@ -106,7 +84,7 @@ class Impacts:
         self.at = self.velocity[self._rows]
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
-        """Data for each row of values."""
+        """Data for each row of values at the addresses, shape (rows, n); nan without result."""
         results = self.quantities(case, addresses, values, self.names)
         return results[:, self._rows, self._columns]
 
@@ -148,7 +126,7 @@ class Record:
             raise InputError(f"{source}: expected five or more rising times with forces")
         self.quantity = ["force"] * len(self.at)
         # an error relative to the value would take the zeros beside the contact as exact
-        self.sigma = columns.get("force_sigma", np.full(len(self.at), np.nan))
+        self.sigma = _sigma(columns, "force")
         self.scale = np.full(len(self.at), float(np.max(self.value)))
         self.settings = {
             address: float(columns[name][0])
@@ -159,23 +137,16 @@ class Record:
             raise InputError(f"{source}: found no force > 0")
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
-        """Data for each row of values."""
-        forces = np.full((len(values), len(self.at)), np.nan)
+        """Data for each row of values at the addresses, shape (rows, n); nan without result."""
         impact = case.copy()
         for address, value in self.settings.items():
             impact[address] = value
-        for row, numbers in zip(forces, values, strict=True):
-            for address, number in zip(addresses, numbers, strict=True):
-                impact[address] = float(number)
-            try:
-                history = impact.history()
-            except Error:
-                continue
-            row[:] = self._shifted(history["time"].values, history["force"].values)
-        return forces
+        return _one_by_one(self._force, impact, addresses, values, len(self.at))
 
-    def _shifted(self, times: Floats, forces: Floats) -> Floats:
+    def _force(self, case: Case) -> Floats:
         """The force from the start that fits best, found by Gauss and Newton."""
+        history = case.history()
+        times, forces = history["time"].values, history["force"].values
         course = CubicSpline(times, forces)
         slope = course.derivative()
         start = float(self.at[np.argmax(self.value)] - times[np.argmax(forces)])
@@ -213,9 +184,7 @@ class Moduli:
         self.at = np.tile(self.points, len(names))
         self.quantity = [name for name in names for _ in self.points]
         self.value = np.concatenate([columns[name] for name in names])
-        self.sigma = np.concatenate(
-            [columns.get(f"{name}_sigma", np.full(len(self.points), np.nan)) for name in names]
-        )
+        self.sigma = np.concatenate([_sigma(columns, name) for name in names])
         at = columns.get("temperature", np.full(len(self.points), np.nan))
         if case[f"{material}.shift"] is None and np.ptp(at) < SAME_TEMPERATURE:
             at = np.full(len(at), np.nan)
@@ -234,20 +203,36 @@ class Moduli:
         return np.concatenate([found.real, found.imag]) if self.dynamic else found.real
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:
-        """Data for each row of values."""
-        moduli = np.full((len(values), len(self.at)), np.nan)
-        changed = case.copy()
-        for row, numbers in zip(moduli, values, strict=True):
-            with contextlib.suppress(Error):
-                for address, number in zip(addresses, numbers, strict=True):
-                    changed[address] = float(number)
-                row[:] = self._moduli(changed)
-        return moduli
+        """Data for each row of values at the addresses, shape (rows, n); nan without result."""
+        return _one_by_one(self._moduli, case.copy(), addresses, values, len(self.at))
 
     def windows(self, case: Case) -> Floats:
         """First and last time [s] that the data see and temperature [K] (nan: of the case)."""
         times = 1 / self.points if self.dynamic else self.points
         return np.array([[times[i].min(), times[i].max(), t] for t, i in self.groups.items()])
+
+
+#: Data of one file: `quantity`, what each datum is, `at`, its velocity, time or frequency in SI
+#: units, `value`, and `sigma`, nan where there is no standard error; of shape (n,)
+Block = Impacts | Record | Moduli
+
+
+def _one_by_one(
+    predict: Callable[[Case], Floats], case: Case, addresses: list[str], values: Floats, n: int
+) -> Floats:
+    """Data for each row of values at the addresses of a case, which is changed."""
+    found = np.full((len(values), n), np.nan)
+    for row, point in zip(found, values, strict=True):
+        with contextlib.suppress(Error):
+            for address, value in zip(addresses, point, strict=True):
+                case[address] = float(value)
+            row[:] = predict(case)
+    return found
+
+
+def _sigma(columns: Mapping[str, Floats], name: str) -> Floats:
+    """Standard errors of a column, nan where there are none."""
+    return columns.get(f"{name}_sigma", np.full(len(columns[name]), np.nan))
 
 
 def window(blocks: Sequence[Block], case: Case, material: str) -> tuple[float, float]:
@@ -273,8 +258,9 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
             columns[f"{name}_sigma"] = sigma
 
     def take(name: str) -> tuple[Floats, Floats]:
-        value = columns.pop(name)
-        return value, columns.pop(f"{name}_sigma", np.full(len(value), np.nan))
+        sigma = _sigma(columns, name)
+        columns.pop(f"{name}_sigma", None)
+        return columns.pop(name), sigma
 
     if "drop_height" in columns:
         if "velocity" in columns:
@@ -322,10 +308,7 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
     """Columns of a data file of impacts or of a record; moduli as `vcor master` reads them."""
     impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
     impacts -= {"loss_tangent", "steps"}
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
-    except OSError as error:
-        raise FileError(f"{os.fspath(path)}: {error.strerror}") from None
+    lines = read_text(path).splitlines()
     cells = {cell.strip() for line in lines[:40] for cell in re.split(r"[;,\t\[(]", line)}
     cells |= {word for line in lines[:40] for word in line.split()}
     words = {plain_name(cell) for cell in cells if cell}
@@ -345,12 +328,6 @@ def materials_of(addresses: Sequence[str]) -> list[str]:
     """Names of the materials that addresses belong to."""
     names = dict.fromkeys(address.rpartition(".")[0] for address in addresses)
     return [name for name in names if name not in ("impact", "sphere", "plate", "contact")]
-
-
-def number(case: Case, address: str) -> float:
-    """Number at an address, nan if there is none."""
-    value = case[address]
-    return float(value) if isinstance(value, (int, float)) else math.nan
 
 
 def gravity_of(case: Case) -> float:

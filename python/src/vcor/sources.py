@@ -12,17 +12,18 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from ._command import near, printable
-from ._library import Error, FileError, Handle, InputError, UsageError
+from ._command import near, printable, read_text
+from ._library import Error, Handle, InputError, UsageError
 from .case import Case
 from .data import ZERO_C, is_temperature
 from .results import open as open_results
 
 Source = str | os.PathLike[str] | xr.Dataset
-#: What completes a file of &material groups to a case that has their moduli
-_AROUND = "&impact velocity = 1.0 /\n&sphere radius = 1.0, mass = 1.0, material = '{name}' /\n" + (
-    "&plate waves = 'none', material = '{name}' /\n"
-)
+_IMPACT = """
+&impact velocity = 1.0 /
+&sphere radius = 1.0, mass = 1.0, material = '{0}' /
+&plate material = '{0}', waves = 'none' /
+"""
 
 
 class Result:
@@ -91,17 +92,19 @@ def _in_celsius(data: xr.Dataset) -> xr.Dataset:
     )
 
 
+def with_impact(text: str, material: str) -> str:
+    """A case; of &material groups alone, one with an impact on a material."""
+    has_impact = re.search(r"(?im)^\s*&impact\b", text)
+    return text if has_impact else text + _IMPACT.format(material)
+
+
 def _moduli_of(path: str) -> dict[str, xr.Dataset]:
     """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
-    try:
-        text = Path(path).read_text(encoding="utf-8")
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from None
+    text = read_text(path)
     names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
     if not names:
         raise InputError(f"{path}: there is no material with a name in this file")
-    alone = not re.search(r"^\s*&impact\b", text, re.MULTILINE | re.IGNORECASE)
-    case = Case(text + (_AROUND.format(name=names[0]) if alone else ""), name=path)
+    case = Case(with_impact(text, names[0]), name=path)
     parts: list[xr.Dataset] = []
     for name in names:
         address = name.replace(" ", "_")

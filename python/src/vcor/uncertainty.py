@@ -16,7 +16,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _command, _library
-from ._library import FileError, Floats, InputError, NumericalError, UsageError
+from ._library import Floats, InputError, NumericalError, UsageError
 from .case import Case, read
 from .observations import sharpen
 
@@ -314,9 +314,7 @@ class _Joint:
             return cls([], np.empty(0), np.empty((0, 0)))
         if not isinstance(source, Mapping):
             try:
-                source = json.loads(Path(source).read_text(encoding="utf-8"))
-            except OSError as error:
-                raise FileError(f"{source}: {error.strerror}") from None
+                source = json.loads(_command.read_text(source, "strict"))
             except ValueError as error:
                 raise InputError(f"{source}: {error}") from None
         try:
@@ -537,11 +535,7 @@ def _work(options: argparse.Namespace) -> None:
         seed=options.seed,
         threads=options.threads,
     )
-    texts = {".json": json.dumps(found.as_dict(), indent=1) + "\n"}
+    texts = {".json": found.as_dict()}
     figure = found.figure(str(found.table.quantity.values[0]))
     stem = f"{Path(options.case[0]).stem}_uncertainty"
     _command.finish(options, str(found), stem, texts, figure)
-
-
-if __name__ == "__main__":
-    main()
