@@ -29,6 +29,8 @@ UNITS = {
 _WIDTH = 20
 #: Relative difference of ratios that are meant to be the same, which cards have to a few digits
 _SAME = 1e-4
+_CONSTANTS = {"wlf": ("reference_temperature", "wlf_c1", "wlf_c2"),
+              "arrhenius": ("reference_temperature", "activation_energy")}  # fmt: skip
 Line = tuple[int, str]
 Terms = list[tuple[float, float]]
 Shift = Mapping[str, str | float]
@@ -57,6 +59,11 @@ class Card:
     def glassy_modulus(self) -> float:
         """Modulus at time zero."""
         return math.fsum([self.equilibrium_modulus, *self.moduli])
+
+    @property
+    def terms(self) -> Terms:
+        """Moduli and times."""
+        return list(zip(self.moduli, self.times, strict=True))
 
     @property
     def ratios(self) -> list[float]:
@@ -310,11 +317,8 @@ def _gas(units: str) -> float:
 
 def _number(value: float) -> str:
     """A number with 15 digits, fewer where the columns end."""
-    text, digits = f"{value:.15g}", 15
-    while len(text) > _WIDTH:
-        digits -= 1
-        text = f"{value:.{digits}g}"
-    return text
+    texts = (f"{value:.{digits}g}" for digits in range(15, 0, -1))
+    return next(text for text in texts if len(text) <= _WIDTH)
 
 
 def _rounded(value: str | float | tuple[float, ...]) -> str | float | tuple[float, ...]:
@@ -330,16 +334,14 @@ def _row(*values: float | str | None) -> str:
     return "".join(f"{text:>{_WIDTH}}" for text in texts).rstrip()
 
 
-def _head(mark: str, names: str) -> str:
-    """Names of columns as a comment."""
-    return mark + _row(*names.split())[1:]
+def _lines(mark: str, names: str, *values: float | str | None) -> list[str]:
+    """Names of columns as a comment, and a row of them if there are values."""
+    return [mark + _row(*names.split())[1:], *([_row(*values)] if values else [])]
 
 
 def _law(law: str, *constants: float) -> dict[str, str | float]:
     """Keys of a shift law."""
-    keys = ("wlf_c1", "wlf_c2") if law == "wlf" else ("activation_energy",)
-    names = ("shift", "reference_temperature", *keys)
-    return dict(zip(names, (law, *constants), strict=True))
+    return {"shift": law, **dict(zip(_CONSTANTS[law], constants, strict=True))}
 
 
 # --------------------------------------------------------------------------------------- Abaqus
@@ -513,18 +515,17 @@ def _write_general(card: Card) -> list[str]:
     g, k, constants = card.shear, card.bulk, [*card.constants, 0.0, 0.0, 0.0][:3]
     if card.shift:
         constants[1] *= math.log(10) if card.shift["shift"] == "wlf" else 1 / _gas(card.units)
-    terms = [(modulus, 1 / time) for modulus, time in zip(card.moduli, card.times, strict=True)]
+    terms = [(modulus, 1 / time) for modulus, time in card.terms]
     terms += [(card.equilibrium_modulus, 0.0)] * (card.equilibrium_modulus > 0)
     return [
         "*MAT_GENERAL_VISCOELASTIC_TITLE+",
         card.name,
-        _head("$", "mid ro bulk pcf ef tref a b"),
-        _row("1", card.density, k * card.glassy_modulus, 0.0, 0.0, *constants),
-        _head("$", "lcid nt bstart tramp lcidk ntk bstartk trampk"),
-        _row(*["0"] * 8),
-        _head("$", "gi betai ki betaki"),
+        *_lines("$", "mid ro bulk pcf ef tref a b",
+                "1", card.density, k * card.glassy_modulus, 0.0, 0.0, *constants),
+        *_lines("$", "lcid nt bstart tramp lcidk ntk bstartk trampk", *["0"] * 8),
+        *_lines("$", "gi betai ki betaki"),
         *(_row(g * modulus, rate, k * modulus, rate) for modulus, rate in terms),
-    ]
+    ]  # fmt: skip
 
 
 def _write_one_term(card: Card) -> list[str]:
@@ -532,9 +533,9 @@ def _write_one_term(card: Card) -> list[str]:
     return [
         "*MAT_VISCOELASTIC_TITLE+",
         card.name,
-        _head("$", "mid ro bulk g0 gi beta"),
-        _row("1", card.density, card.bulk * card.glassy_modulus, *moduli, 1 / card.times[0]),
-    ]
+        *_lines("$", "mid ro bulk g0 gi beta",
+                "1", card.density, card.bulk * card.glassy_modulus, *moduli, 1 / card.times[0]),
+    ]  # fmt: skip
 
 
 def _read_lsdyna(source: Source) -> Card:
@@ -593,21 +594,22 @@ def _one_term(
 
 
 def _write_ogden(card: Card) -> list[str]:
-    g, k, terms = card.shear, card.bulk, zip(card.moduli, card.times, strict=True)
+    g, k = card.shear, card.bulk
     return [
         "/MAT/LAW42/1",
         card.name,
-        _head("#", "RHO_I"),
-        _row(card.density),
-        _head("#", "Nu sigma_cut") + "           funIDbulk         Fscale_bulk         M    I_form",
+        *_lines("#", "RHO_I", card.density),
+        _lines("#", "Nu sigma_cut funIDbulk Fscale_bulk")[0] + "         M    I_form",
         _row(card.poisson_ratio),
-        *(_head("#", "Mu_1"), _row(g * card.equilibrium_modulus), _head("#", "Mu_6"), _row(0.0)),
-        *(_head("#", "alpha_1"), _row(2.0), _head("#", "alpha_6"), _row(0.0)),
+        *_lines("#", "Mu_1", g * card.equilibrium_modulus),
+        *_lines("#", "Mu_6", 0.0),
+        *_lines("#", "alpha_1", 2.0),
+        *_lines("#", "alpha_6", 0.0),
         "/VISC/PRONY/1",
         "#        M                           K_v      Itab    Ishape",
         f"{len(card.times):10d}{_row(None, 0.0)[10:]}{0:10d}{0:10d}",
-        _head("#", "G_i Beta_i K_i Beta_ki"),
-        *(_row(g * modulus, 1 / time, k * modulus, 1 / time) for modulus, time in terms),
+        *_lines("#", "G_i Beta_i K_i Beta_ki"),
+        *(_row(g * modulus, 1 / time, k * modulus, 1 / time) for modulus, time in card.terms),
     ]
 
 
@@ -616,10 +618,10 @@ def _write_boltzman(card: Card) -> list[str]:
     return [
         "/MAT/LAW34/1",
         card.name,
-        *(_head("#", "RHO_I"), _row(card.density)),
-        *(_head("#", "K"), _row(card.bulk * card.glassy_modulus)),
-        *(_head("#", "G_0 G_l Beta"), _row(*moduli, 1 / card.times[0])),
-        *(_head("#", "P_0 Phi Gamma_0"), _row(0.0, 0.0, 0.0)),
+        *_lines("#", "RHO_I", card.density),
+        *_lines("#", "K", card.bulk * card.glassy_modulus),
+        *_lines("#", "G_0 G_l Beta", *moduli, 1 / card.times[0]),
+        *_lines("#", "P_0 Phi Gamma_0", 0.0, 0.0, 0.0),
     ]
 
 
@@ -668,17 +670,16 @@ def _read_openradioss(source: Source) -> Card:
 
 
 def _write_comsol(card: Card) -> list[str]:
-    g, terms = card.shear, zip(card.moduli, card.times, strict=True)
     values = {
-        "density": card.density, "shear_modulus": g * card.equilibrium_modulus,
+        "density": card.density, "shear_modulus": card.shear * card.equilibrium_modulus,
         "bulk_modulus": card.bulk * card.glassy_modulus, **card.shift,
     }  # fmt: skip
     return [
         *(f"% {key} = {one if isinstance(one, str) else _number(one)}"
           for key, one in values.items() if one is not None),
         "% branch, shear modulus, relaxation time",
-        *(f"{i} {_number(g * modulus)} {_number(time)}"
-          for i, (modulus, time) in enumerate(terms, 1)),
+        *(f"{i} {_number(card.shear * modulus)} {_number(time)}"
+          for i, (modulus, time) in enumerate(card.terms, 1)),
     ]  # fmt: skip
 
 
@@ -697,9 +698,12 @@ def _read_comsol(source: Source) -> Card:
     else:
         modulus, ratio = source.elastic(None, None)
         rest = modulus / (2 * (1 + ratio)) - relaxing
-    keys = ("reference_temperature", "wlf_c1", "wlf_c2", "activation_energy")
-    law = [values[key] for key in keys if key in values]
-    shift = _law(given["shift"][1], *law) if "shift" in given and len(law) > 1 else {}
+    shift = {}
+    if "shift" in given:
+        line, law = given["shift"]
+        if not set(_CONSTANTS.get(law, [law])) <= set(values):
+            source.fail(line, f"found shift = {law}, expected wlf or arrhenius with its constants")
+        shift = _law(law, *(values[key] for key in _CONSTANTS[law]))
     return source.card(rows[0][0] if rows else 0, shear, rest, [], ratio,
                        density=values.get("density"), shift=shift)  # fmt: skip
 

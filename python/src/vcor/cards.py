@@ -17,7 +17,7 @@ from ._command import number
 from ._library import InputError, NumericalError, UsageError
 from .card_formats import FORMATS, UNITS, Card, Source
 from .case import Case
-from .sources import with_impact
+from .sources import material_case
 
 #: Times of an impact that matter, over the time of contact
 _BAND = (1e-2, 2.0)
@@ -72,9 +72,7 @@ def card(
     if isinstance(case, Case):
         case = case.copy()
     else:
-        text = _command.read_text(case)
-        whole = with_impact(text, material)
-        has_impact, case = whole == text, Case(whole, name=os.fspath(case))
+        case, _, has_impact = material_case(case, material)
     case.text()  # checks it
 
     def of(key: str) -> float:
@@ -295,10 +293,8 @@ def _work(options: argparse.Namespace) -> None:
 
 def _only(path: str) -> str:
     """The only material of a case that relaxes."""
-    groups = re.findall(r"(?ims)^\s*&material\b(.*?)^\s*/", _command.read_text(path))
-    found = [re.search(r"(?i)\bname\s*=\s*(['\"])(.+?)\1", group) for group in groups
-             if not re.search(r"(?i)\bmodel\s*=\s*['\"](rigid|elastic)\b", group)]  # fmt: skip
-    names = [name[2] for name in found if name]
+    case, names, _ = material_case(path)
+    names = [name for name in names if case[f"{name}.model"] not in ("rigid", "elastic")]
     if len(names) != 1:
         known = f", one of {', '.join(names)}" if names else ""
         raise UsageError(f"{path}: found {len(names)} materials that relax, expected --material "

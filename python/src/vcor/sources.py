@@ -92,19 +92,22 @@ def _in_celsius(data: xr.Dataset) -> xr.Dataset:
     )
 
 
-def with_impact(text: str, material: str) -> str:
-    """A case; of &material groups alone, one with an impact on a material."""
-    has_impact = re.search(r"(?im)^\s*&impact\b", text)
-    return text if has_impact else text + _IMPACT.format(material)
+def material_case(
+    path: str | os.PathLike[str], material: str | None = None
+) -> tuple[Case, list[str], bool]:
+    """A case, or &material groups with an impact on one of them; names, whether it has its own."""
+    text = read_text(path)
+    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
+    if not names:
+        raise InputError(f"{os.fspath(path)}: there is no material with a name in this file")
+    has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
+    text += "" if has_impact else _IMPACT.format(material or names[0])
+    return Case(text, name=os.fspath(path)), names, has_impact
 
 
 def _moduli_of(path: str) -> dict[str, xr.Dataset]:
     """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
-    text = read_text(path)
-    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
-    if not names:
-        raise InputError(f"{path}: there is no material with a name in this file")
-    case = Case(with_impact(text, names[0]), name=path)
+    case, names, _ = material_case(path)
     parts: list[xr.Dataset] = []
     for name in names:
         address = name.replace(" ", "_")
