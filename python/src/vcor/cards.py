@@ -259,7 +259,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    """Write a card or a group."""
     nu = options.poisson_ratio
     if nu is not None and not -1 < nu <= 0.5:
         raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")

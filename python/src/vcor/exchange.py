@@ -84,14 +84,9 @@ class Export:
 
     def figure(self) -> Any:
         """Figure (matplotlib) of e of vcor, and of the law of the program over it."""
-        from matplotlib import style
-        from matplotlib.figure import Figure
+        from .plot import COLUMN, HEIGHT, _label_decades, drawn
 
-        from .plot import COLUMN, HEIGHT, STYLE, _label_decades
-
-        with style.context(STYLE):
-            made = Figure(figsize=(COLUMN / 2.54, HEIGHT / 2.54))
-            axis = made.subplots()
+        with drawn(COLUMN, HEIGHT) as (made, axis):
             name = str(next(iter(self.table.dims)))
             x, e = self.table[name].values, self.table[self.table.attrs["e"]].values
             fine = np.geomspace(x[0], x[-1], 200)
@@ -99,10 +94,8 @@ class Export:
             if "e_law" in self.table:
                 axis.plot(x, self.table.e_law.values, label=f"law for {self.target}", ls="",
                           marker="s")  # fmt: skip
-            axis.set_xscale("log")
-            unit = self.table[name].attrs["units"]
-            axis.set_xlabel(f"{self.table[name].attrs['long_name']} [{unit}]")
-            axis.set_ylabel("coefficient of restitution")
+            what = "{long_name} [{units}]".format(**self.table[name].attrs)
+            axis.set(xscale="log", xlabel=what, ylabel="coefficient of restitution")
             _label_decades(axis.xaxis)
             axis.legend()
         return made
@@ -496,7 +489,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    """Export, and print or write the files."""
     try:
         low, high, count = options.velocities.split(":")
         velocities = np.geomspace(float(low), float(high), int(count))

@@ -173,16 +173,12 @@ class Identification:
 
     def figure(self) -> Any:
         """Figure (matplotlib): data, model with the band of cor, and residuals below."""
-        from matplotlib import style
-        from matplotlib.figure import Figure
-
-        from .plot import COLUMN, HEIGHT, PAGE, STYLE, _label_decades, _legend, _panel_label
+        from .plot import COLUMN, HEIGHT, PAGE, _label_decades, _legend, _panel_label, drawn
 
         names = list(dict.fromkeys(row["quantity"] for row in self.data))
         width = COLUMN if len(names) == 1 else PAGE
-        with style.context(STYLE):
-            made = Figure(figsize=(width / 2.54, 1.4 * HEIGHT / 2.54), layout="constrained")
-            axes = made.subplots(2, len(names), sharex="col", squeeze=False, height_ratios=(3, 1))
+        settings: dict[str, Any] = {"sharex": "col", "squeeze": False, "height_ratios": (3, 1)}
+        with drawn(width, 1.4 * HEIGHT, 2, len(names), **settings) as (made, axes):
             for (above, below), name in zip(axes.T, names, strict=True):
                 rows = sorted(
                     (r for r in self.data if r["quantity"] == name), key=lambda r: r["at"]
@@ -214,8 +210,7 @@ class Identification:
                 above.set_ylabel(label)
                 below.axhline(0, lw=0.5, color="grey", marker="")
                 below.plot(at, residual, "o", ms=3, color="black")
-                below.set_ylabel("residual/error")
-                below.set_xlabel(_ACROSS.get(name, "velocity [m/s]"))
+                below.set(xlabel=_ACROSS.get(name, "velocity [m/s]"), ylabel="residual/error")
                 if at.min() > 0 and at.max() > 8 * at.min():
                     above.set_xscale("log")
                 if "modulus" in name:
@@ -837,7 +832,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    """Identify with each model, and write the files of the best."""
     free = [word.strip() for word in options.free.split(",") if word.strip()]
     fix, errors = _pairs(options.fix, "--fix"), _pairs(options.error, "--error")
     found: list[Identification] = []

@@ -10,12 +10,13 @@ thermorheologically simple.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import math
 import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -166,34 +167,28 @@ class Master:
 
     def figure(self) -> Any:
         """Figure (matplotlib): the master curve, and the shift factors with their laws."""
-        from matplotlib import style
-        from matplotlib.figure import Figure
+        from .plot import HEIGHT, PAGE, drawn
 
-        from .plot import HEIGHT, PAGE, STYLE
-
-        with style.context(STYLE):
-            made = Figure(figsize=(PAGE / 2.54, HEIGHT / 2.54), layout="constrained")
-            left, right = made.subplots(1, 2)
+        with drawn(PAGE, HEIGHT, 1, 2) as (made, (left, right)):
             dynamic = self.curves[0].dynamic
             at, *moduli = self.curve()
             names = ("storage modulus", "loss modulus") if dynamic else ("relaxation modulus",)
             for name, row, mark in zip(names, moduli, "os", strict=False):
                 left.loglog(at, row / 1e6, mark, ms=2, label=name)
             what = "frequency [rad/s]" if dynamic else "time [s]"
-            left.set_xlabel(f"reduced {what} at {self.reference_temperature - ZERO_C:.1f} °C")
-            left.set_ylabel("modulus [MPa]")
+            what += f" at {self.reference_temperature - ZERO_C:.1f} °C"
+            left.set(xlabel=f"reduced {what}", ylabel="modulus [MPa]")
             left.legend()
             t = np.linspace(self.temperatures.min(), self.temperatures.max(), 200)
             for i, law in enumerate(self.laws):
-                shift = _shift(law, t, self.reference_temperature)
+                shift = _shift(list(law.values.values()), t, self.reference_temperature)
                 style_of = {"marker": "", "color": f"C{i + 1}", "ls": ("-", "--")[i % 2]}
                 right.plot(t - ZERO_C, shift, label=law.name, **style_of)
             right.errorbar(
                 self.temperatures - ZERO_C, self.log_shift, self.log_error, fmt="o", ms=3,
                 color="black", mfc="white", label="shift factors",
             )  # fmt: skip
-            right.set_xlabel("temperature [°C]")
-            right.set_ylabel("log$_{10}$ a$_T$")
+            right.set(xlabel="temperature [°C]", ylabel="log$_{10}$ a$_T$")
             right.legend()
         return made
 
@@ -247,12 +242,19 @@ def master(
     shift = np.concatenate([[0.0], np.cumsum(steps)])
     variance = np.concatenate([[0.0], np.cumsum(errors**2)])
     reference = float(temperatures[middle])
+    starts = {
+        "WLF": {"wlf_c1": 17.44, "wlf_c2": 51.6 - float(np.min(temperatures - reference))},
+        "Arrhenius": {"activation_energy": 1e5},
+    }
+    laws = [
+        _law(name, start, temperatures, steps, errors, reference) for name, start in starts.items()
+    ]
     return Master(
         reference,
         temperatures,
         shift - shift[middle],
         np.sqrt(np.abs(variance - variance[middle])),
-        _laws(temperatures, steps, errors, reference),
+        tuple(filter(None, laws)),
         tuple(curves),
     )
 
@@ -278,34 +280,33 @@ def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
     found = _TEMPERATURE.fullmatch(cells[place])
     units = [cell.strip().strip("[]()°") for cell in rows[head + 1]] if head + 1 < len(rows) else []
     unit = (found[1] if found else None) or (units[place] if place < len(units) else "")
-    numbers, groups = [], []
     which = next((i for i, cell in enumerate(cells) if cell.lower() == "set"), place)
-    for i in range(head + 1, len(rows)):
-        try:
-            numbers.append(float(rows[i][place].replace(",", ".")))
-            groups.append((i, float(rows[i][which].replace(",", "."))))
-        except (ValueError, IndexError):
-            continue
-    if not numbers:
+
+    def numbers(column: int) -> Floats:
+        """Numbers of a column, nan in lines without one."""
+        found = np.full(len(rows), np.nan)
+        for i in range(head + 1, len(rows)):
+            with contextlib.suppress(ValueError, IndexError):
+                found[i] = float(rows[i][column].replace(",", "."))
+        return found
+
+    temperature, group = numbers(place), numbers(which)
+    kept = np.flatnonzero(np.isfinite(temperature) & np.isfinite(group))
+    if not kept.size:
         raise InputError(f"{path}: found no temperatures in column {place + 1}")
     # the degree sign comes in several encodings
     unit = unit[-1:]
     if unit not in ("C", "K"):
         raise InputError(f"{path}: found no unit of the temperatures, expected T [C] or T [K]")
     zero = ZERO_C if unit == "C" else 0.0
-    first = min(i for i, _ in groups)
-    curves, part = [], [0]
-    for j in range(1, len(groups) + 1):
-        # a new curve where the set changes, or the temperature jumps
-        jump = 0.0 if which != place else 1.0
-        if j == len(groups) or abs(groups[j][1] - groups[j - 1][1]) > jump:
-            rest = [lines[groups[k][0]] for k in part]
-            kelvin = float(np.mean([numbers[k] for k in part])) + zero
-            if cells[0] in ("t", "time"):
-                rest.sort(key=lambda line: float(line.split(mark)[0].replace(",", ".")))
-            curves.append(_curve(path, [*lines[:first], *rest], kelvin))
-            part = []
-        part.append(j)
+    times = numbers(0) if cells[0] in ("t", "time") else np.arange(len(rows))
+    # a new curve where the set changes, or the temperature jumps
+    jumps = np.abs(np.diff(group[kept])) > (1.0 if which == place else 0.0)
+    curves = []
+    for part in np.split(kept, np.flatnonzero(jumps) + 1):
+        order = part[np.argsort(times[part], kind="stable")]
+        told = [*lines[: kept[0]], *(lines[i] for i in order)]
+        curves.append(_curve(path, told, float(np.mean(temperature[part])) + zero))
     return curves
 
 
@@ -364,49 +365,41 @@ def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
     return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature)
 
 
-def _shift(law: Law, t: Floats, reference: float) -> Floats:
-    """log10 a_T of a law."""
-    if law.name == "WLF":
-        c1, c2 = law.values.values()
-        shift: Floats = -c1 * (t - reference) / (c2 + t - reference)
-        return shift
-    energy = float(law.values["activation_energy"])
-    inverse: Floats = 1 / t - 1 / reference
-    return energy / GAS / math.log(10) * inverse
+def _shift(values: Sequence[float] | Floats, t: Floats, reference: float) -> Floats:
+    """log10 a_T by the constants of a law: two of WLF, or one of Arrhenius."""
+    shift: Floats
+    if len(values) == 2:
+        shift = -values[0] * (t - reference) / (values[1] + t - reference)
+    else:
+        shift = values[0] / GAS / math.log(10) * (1 / t - 1 / reference)
+    return shift
 
 
-def _laws(temperatures: Floats, steps: Floats, errors: Floats, reference: float) -> tuple[Law, ...]:
-    """WLF and Arrhenius laws by least squares of the steps, whose errors are independent."""
-    laws = []
-    lowest = float(np.min(temperatures - reference))
-    for name, keys, start in (
-        ("WLF", ("wlf_c1", "wlf_c2"), (17.44, 51.6 - lowest)),
-        ("Arrhenius", ("activation_energy",), (1e5,)),
-    ):
+def _law(
+    name: str, start: dict[str, float], temperatures: Floats, steps: Floats, errors: Floats,
+    reference: float,
+) -> Law | None:  # fmt: skip
+    """A law by least squares of the steps, whose errors are independent; None: too few."""
 
-        def law_of(x: Floats, name: str = name, keys: Sequence[str] = keys) -> Law:
-            return Law(name, dict(zip(keys, np.exp(x).tolist(), strict=True)), {}, 0.0)
+    def misfit(x: Floats) -> Floats:
+        rest: Floats = (np.diff(_shift(np.exp(x), temperatures, reference)) - steps) / errors
+        return rest
 
-        def misfit(x: Floats, law_of: Callable[[Floats], Law] = law_of) -> Floats:
-            shift = _shift(law_of(x), temperatures, reference)
-            rest: Floats = (np.diff(shift) - steps) / errors
-            return rest
-
-        dof = len(steps) - len(keys)
-        if dof < 0:
-            continue
-        found = least_squares(misfit, np.log(start), max_nfev=500)
-        values = np.exp(found.x)
-        if name == "WLF" and values[1] + lowest <= 0:
-            continue
-        square = 2 * found.cost / max(dof, 1)
-        variances = np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * max(1.0, square)
-        deviations = values * np.sqrt(variances)
-        rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
-        law = law_of(found.x)
-        found_errors = dict(zip(keys, deviations.tolist(), strict=True))
-        laws.append(Law(name, law.values, found_errors, rms, math.sqrt(square)))
-    return tuple(laws)
+    dof = len(steps) - len(start)
+    if dof < 0:
+        return None
+    found = least_squares(misfit, np.log(list(start.values())), max_nfev=500)
+    values = np.exp(found.x)
+    if name == "WLF" and values[1] + float(np.min(temperatures - reference)) <= 0:
+        return None
+    square = 2 * found.cost / max(dof, 1)
+    variances = np.diag(np.linalg.pinv(found.jac.T @ found.jac)) * max(1.0, square)
+    deviations = values * np.sqrt(variances)
+    rms = float(np.sqrt(np.mean((misfit(found.x) * errors) ** 2)))
+    constants, deviations = (
+        dict(zip(start, one.tolist(), strict=True)) for one in (values, deviations)
+    )
+    return Law(name, constants, deviations, rms, math.sqrt(square))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -431,7 +424,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    """Make a master curve and write its files."""
     given = options.reference
     reference = _kelvin(given, "--reference") if given is not None else None
     found = master(options.data, reference_temperature=reference)

@@ -7,13 +7,14 @@ Lengths, times and the like are shown in units that suit them; files are in SI u
 from __future__ import annotations
 
 import argparse
+import contextlib
 import io
 import math
 import os
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -232,8 +233,7 @@ def _history(wishes: _Wishes) -> Figure:
                 axes[0].annotate(words or f"{y:.4g}", (1.02, y + shift), va="center",
                                  xycoords=("axes fraction", "data"))  # fmt: skip
     for axis, label in zip(axes, ["normalised response"] if one else names.values(), strict=True):
-        axis.set_xlabel(f"time [{unit}]")
-        axis.set_ylabel(label)
+        axis.set(xlabel=f"time [{unit}]", ylabel=label)
         axis.set_xlim(0, factor * max(course["time"][-1] for course in courses))
         if not one:
             axis.locator_params(axis="x", nbins=4)
@@ -384,8 +384,8 @@ def _sweep(wishes: _Wishes) -> Figure:
         _points(axis, wishes.data, across, name, fx, fy)
         if all(_is_geometric(one.values) for one in at):
             axis.set_xscale("log")
-        axis.set_xlabel(_label(at[0], x_unit))
-        axis.set_ylabel(_label(results[0].summary[name], y_unit))
+        y_label = _label(results[0].summary[name], y_unit)
+        axis.set(xlabel=_label(at[0], x_unit), ylabel=y_label)
     _legend(made, *axes)
     return made
 
@@ -475,8 +475,7 @@ def _map(wishes: _Wishes) -> Figure:
                 "c": fz * pz, "norm": filled.norm, "cmap": _SHADES}  # fmt: skip
             axis.scatter(fx * px, fy * py, s=18, edgecolors="k", linewidths=0.6, zorder=5,
                          label=_stem(one), **options)  # fmt: skip
-        axis.set_xlabel(_label(x, x_unit))
-        axis.set_ylabel(_label(y, y_unit))
+        axis.set(xlabel=_label(x, x_unit), ylabel=_label(y, y_unit))
     _legend(made, *axes)
     return made
 
@@ -505,6 +504,16 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
 
 
 # ----------------------------------------------------------------------------- details
+
+
+@contextlib.contextmanager
+def drawn(
+    width: float, height: float, rows: int = 1, columns: int = 1, **settings: Any
+) -> Iterator[tuple[Figure, Any]]:
+    """A new figure of a size [cm] and its axes, in the style of the package while it is drawn."""
+    with mpl.style.context(STYLE):
+        made = Figure(figsize=(width / 2.54, height / 2.54))
+        yield made, made.subplots(rows, columns, **settings)
 
 
 def _new(wishes: _Wishes, panels: int, columns: int) -> tuple[Figure, list[Axes]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import json
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,8 @@ USUAL = ("cor", "cor_sphere", "contact_time", "max_force", "max_indentation",
 PERCENTILES = (2.5, 16.0, 50.0, 84.0, 97.5)
 #: Bootstrap samples for the errors of Sobol' indices
 RESAMPLES = 40
+#: Sobol' indices and their errors, as SALib names them
+INDICES = {"first": "S1", "first_error": "S1_conf", "total": "ST", "total_error": "ST_conf"}
 #: What the exact linear theory takes
 EXACT = {"contact.law": "receding", "contact.pair": "series", "plate.waves": "body"}
 
@@ -44,57 +47,38 @@ class Spread:
     """
 
     address: str
-    value: float
-    kind: str
-    low: float
-    high: float = math.nan
+    #: Standard deviation, in the unit of the parameter
+    deviation: float
+    #: Values at shares 0 < u < 1 of the distribution
+    sample: Callable[[Floats], Floats]
 
     @classmethod
     def read(cls, case: Case, address: str, text: str | float) -> Spread:
         """Distribution from its text; a number is a relative standard deviation."""
-        value = case[address]
-        if value is None:
+        given = case[address]
+        if given is None:
             raise UsageError(f"{address}: the case does not give it, expected a number that it "
                              "gives")  # fmt: skip
-        if not isinstance(value, (int, float)):
-            one = f"one of them, such as {address}(1)" if isinstance(value, list) else "a number"
-            raise UsageError(f"{address}: found {value}, expected {one}")
-        if not isinstance(text, str):
-            text = f"{100 * text!r}%"
-        try:
+        if not isinstance(given, (int, float)):
+            one = f"one of them, such as {address}(1)" if isinstance(given, list) else "a number"
+            raise UsageError(f"{address}: found {given}, expected {one}")
+        value = float(given)
+        text = text if isinstance(text, str) else f"{100 * text!r}%"
+        with contextlib.suppress(ValueError):
             if ":" in text:
                 low, high = (float(end) for end in text.split(":"))
-                good = low < high
-                found = cls(address, float(value), "uniform", low, high)
+                if low < high:
+                    deviation = (high - low) / math.sqrt(12)
+                    return cls(address, deviation, lambda share: low + (high - low) * share)
             elif text.endswith("%"):
-                found = cls(address, float(value), "log-normal", float(text[:-1]) / 100)
-                good = found.low > 0 and value > 0
-            else:
-                found = cls(address, float(value), "normal", float(text))
-                good = found.low > 0
-        except ValueError:
-            good = False
-        if not good:
-            raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
-                             "larger than 0")  # fmt: skip
-        return found
-
-    @property
-    def deviation(self) -> float:
-        """Standard deviation, in the unit of the parameter."""
-        if self.kind == "uniform":
-            return (self.high - self.low) / math.sqrt(12)
-        return self.low * (self.value if self.kind == "log-normal" else 1)
-
-    def sample(self, share: Floats) -> Floats:
-        """Values at shares 0 < u < 1 of the distribution."""
-        if self.kind == "uniform":
-            return self.low + (self.high - self.low) * share
-        normal: Floats = ndtri(share)
-        if self.kind == "normal":
-            return self.value + self.low * normal
-        values: Floats = self.value * np.exp(self.low * normal)
-        return values
+                relative = float(text[:-1]) / 100
+                if relative > 0 and value > 0:
+                    return cls(address, relative * value,
+                               lambda share: value * np.exp(relative * ndtri(share)))  # fmt: skip
+            elif (deviation := float(text)) > 0:
+                return cls(address, deviation, lambda share: value + deviation * ndtri(share))
+        raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
+                         "larger than 0")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -137,18 +121,12 @@ class Uncertainty:
 
     def figure(self, quantity: str = "cor") -> Any:
         """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
-        from matplotlib import style
-        from matplotlib.figure import Figure
-
-        from .plot import COLUMN, STYLE, _name_of, _panel_label
+        from .plot import COLUMN, _name_of, _panel_label, drawn
 
         row = self.table.sel(quantity=quantity)
         below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
         order = np.argsort(np.abs(above - below))
-        with style.context(STYLE):
-            made = Figure(figsize=(COLUMN / 2.54, (2.5 + 0.6 * len(order)) / 2.54),
-                          layout="constrained")  # fmt: skip
-            axis = made.subplots()
+        with drawn(COLUMN, 2.5 + 0.6 * len(order)) as (made, axis):
             joint = f"{row.parameter.size - row.source.size + 1} parameters together"
             names = [_name_of(str(name)) if "." in str(name) else joint
                      for name in row.source.values[order]]  # fmt: skip
@@ -282,21 +260,20 @@ def propagate(
     if kept.sum() < 8:
         raise NumericalError(f"{case.name}: {(~good).sum()} of {good.size} samples have no result")
     values = found.reshape(blocks, -1, len(quantities))[kept].reshape(-1, len(quantities))
-    first, total = np.zeros((2, 2, len(quantities), len(names)))
-    for k in range(len(quantities)):
-        column = values[:, k]
+    sobol = {key: np.zeros((len(quantities), len(names))) for key in INDICES}
+    for k, column in enumerate(values.T):
         if np.ptp(column) <= 1e-12 * np.abs(column).max():
             continue
         if len(names) == 1:
             # SALib takes a single group for none
-            first[0, k] = total[0, k] = 1.0
+            sobol["first"][k] = sobol["total"][k] = 1.0
             continue
         indices = analysis.analyze(
             problem, column, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
         )
-        first[:, k] = indices["S1"], indices["S1_conf"]
-        total[:, k] = indices["ST"], indices["ST_conf"]
-    return _put_together(case, spreads, joint, list(quantities), found, names, first, total)
+        for key, name in INDICES.items():
+            sobol[key][k] = indices[name]
+    return _put_together(case, spreads, joint, list(quantities), found, names, sobol)
 
 
 @dataclass(frozen=True)
@@ -352,17 +329,15 @@ def _put_together(
     quantities: list[str],
     found: Floats,
     names: list[str],
-    first: Floats,
-    total: Floats,
+    sobol: Mapping[str, Floats],
 ) -> Uncertainty:
     """The table of results."""
     parameters = [spread.address for spread in spreads] + joint.addresses
-    value = np.array(list(case.solve(quantities=quantities).values()), dtype=float)
+    value = _values(case, quantities)
     judged = case.solve(quantities=["validity", "validity_cause", "cor_error", "cor_sphere_error"])
     stated = [judged.get(f"{name}_error", 0.0) for name in quantities]
-    accurate = np.array(list(_accurate(case).solve(quantities=quantities).values()), dtype=float)
+    numerical = np.fmax(np.abs(value - _values(_accurate(case), quantities)), stated)
     shown = found[np.isfinite(found).all(axis=1)]
-    exact = _exact(case, quantities)
     middle = np.array([_number(case, address, zero=True) for address in parameters])
     elastic = np.full((len(quantities), len(parameters)), np.nan)
     apart = [i for i, number in enumerate(middle) if number != 0]
@@ -386,17 +361,14 @@ def _put_together(
     table = xr.Dataset(
         {
             "value": (over, value),
-            "numerical": (over, np.fmax(np.abs(value - accurate), stated)),
+            "numerical": (over, numerical),
             "material": (over, shown.std(axis=0, ddof=1)),
-            "model": (over, np.abs(exact - value)),
+            "model": (over, np.abs(_exact(case, quantities) - value)),
             "mean": (over, shown.mean(axis=0)),
             "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
             "elasticity": (both, elastic),
             "swing": (("quantity", "source", "side"), swing),
-            "first": (("quantity", "source"), first[0]),
-            "first_error": (("quantity", "source"), first[1]),
-            "total": (("quantity", "source"), total[0]),
-            "total_error": (("quantity", "source"), total[1]),
+            **{key: (("quantity", "source"), indices) for key, indices in sobol.items()},
         },
         coords={
             "quantity": quantities,
@@ -424,7 +396,7 @@ def _exact(case: Case, quantities: list[str]) -> Floats:
         trial = exact.copy()
         try:
             trial[address] = value
-            found = np.array(list(trial.solve(quantities=quantities).values()), dtype=float)
+            found = _values(trial, quantities)
         except InputError:
             # what has no part in this impact, such as the pair of a rigid sphere
             continue
@@ -432,6 +404,10 @@ def _exact(case: Case, quantities: list[str]) -> Floats:
             found = np.full(len(quantities), np.nan)
         exact = trial
     return found
+
+
+def _values(case: Case, quantities: list[str]) -> Floats:
+    return np.array(list(case.solve(quantities=quantities).values()), dtype=float)
 
 
 def _accurate(case: Case | str | os.PathLike[str]) -> Case:
@@ -519,7 +495,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
-    """Propagate and write the files."""
     vary: dict[str, str | float] = {}
     for word in options.vary:
         address, _, vary[address] = word.partition("=")
