@@ -330,11 +330,10 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
     between = spline(np.log(curve.velocity.values))
     misfit = float(np.abs(between - curve[curve.attrs["e"]].values).max())
     columns = ("e", "e_sphere", "contact_time", "max_force")
-    rows = zip(v, *(shown[name].values for name in columns), strict=True)
     nodes = [f"{x:.17g}" for x in v]
     coefficients = [[f"{c:.17g}" for c in row] for row in spline.c.T[:, ::-1]]
     values = {
-        "rows": "\n".join(",".join(f"{x:.17g}" for x in row) for row in rows),
+        "rows": _rows(v, *(shown[name].values for name in columns)),
         "nodes": "(" + ", ".join(nodes) + ")",
         "coefficients": "(\n" + "".join(f"    ({', '.join(c)}),\n" for c in coefficients) + ")",
         "c_nodes": "{" + ", ".join(nodes) + "}",
@@ -456,10 +455,13 @@ def _master(case: Case, target: str, curve: xr.Dataset) -> Export:
         "these materials: e and t_c/x depend on x alone",
         f"x [{attrs['units']}], e [1], t_c/x [s per unit of x]",
     ]
-    rows = [f"{a:.17g},{b:.17g},{c:.17g}" for a, b, c in zip(
-        shown.x.values, shown[curve.attrs["e"]].values, ratio, strict=True)]  # fmt: skip
-    text = "\n".join([*("# " + _command.printable(line) for line in lines), "x,e,t_c/x", *rows])
-    return Export("master", shown, {".csv": text + "\n"}, lines, 0.0, {})
+    rows = _rows(shown.x.values, shown[curve.attrs["e"]].values, ratio)
+    head = "".join(f"# {_command.printable(line)}\n" for line in lines)
+    return Export("master", shown, {".csv": f"{head}x,e,t_c/x\n{rows}\n"}, lines, 0.0, {})
+
+
+def _rows(*columns: Floats) -> str:
+    return "\n".join(",".join(f"{x:.17g}" for x in row) for row in zip(*columns, strict=True))
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

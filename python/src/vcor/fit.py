@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from . import _library
 from ._library import InputError
 
-#: Largest Poisson's ratio; beyond it: not given
-_INCOMPRESSIBLE = 0.5
+#: Poisson's ratio that says that there is none
+_NOT_GIVEN = 1.0
 
 
 class _Fit(Structure):
@@ -132,7 +132,7 @@ def fit(
         fixed_count=len(fix),
         fixed_names=" ".join(fix).encode(),
         fixed_values=fixed.ctypes.data,
-        poisson_ratio=2 * _INCOMPRESSIBLE if poisson_ratio is None else poisson_ratio,
+        poisson_ratio=_NOT_GIVEN if poisson_ratio is None else poisson_ratio,
         density=density or 0.0,
     )
     if isinstance(data, (str, os.PathLike)):
@@ -179,17 +179,10 @@ def read_moduli(
         `loss_modulus` [Pa], of shape (n,), rising.
     """
     n, dynamic, values = c_int(), c_int(), c_void_p()
-    ratio = 2 * _INCOMPRESSIBLE if poisson_ratio is None else poisson_ratio
-    _library._call(
-        "vcor_read_moduli",
-        os.fsencode(path),
-        ratio,
-        ctypes.byref(n),
-        ctypes.byref(dynamic),
-        ctypes.byref(values),
-    )
-    names = ("frequency", "storage_modulus", "loss_modulus")
-    if not dynamic:
-        names = ("time", "relaxation_modulus")  # type: ignore[assignment]
+    ratio = _NOT_GIVEN if poisson_ratio is None else poisson_ratio
+    results = map(ctypes.byref, (n, dynamic, values))
+    _library._call("vcor_read_moduli", os.fsencode(path), ratio, *results)
+    names = ["frequency", "storage_modulus", "loss_modulus"]
+    names = names if dynamic else ["time", "relaxation_modulus"]
     table = _library._take_numbers(values, len(names) * n.value).reshape(len(names), -1)
     return dict(zip(names, table, strict=True))

@@ -232,6 +232,10 @@ class _Problem:
         errors: Mapping[str, float],
     ) -> None:
         self.case, self.free, self.blocks = case, list(free), list(blocks)
+        self.impacts = [block for block in blocks if isinstance(block, Impacts)]
+        #: Velocities of the first impacts, or of the case [m/s]
+        own = np.array([velocity_of(case)])
+        self.speeds = next((block.velocity for block in self.impacts), own)
         self.quantity = [name for block in blocks for name in block.quantity]
         self.value = np.concatenate([block.value for block in blocks])
         scale = np.concatenate([getattr(b, "scale", np.abs(b.value)) for b in blocks])
@@ -286,6 +290,15 @@ class _Problem:
             np.isnan(above), below, np.where(np.isnan(below), above, (above + below) / 2)
         )
         return slope.T / STEP
+
+    def elasticities(self, x: Floats, probe: Impacts, names: Sequence[str]) -> Floats:
+        """Derivatives of logarithms of quantities, shape (impacts and names, parameters)."""
+
+        def logarithms(points: Floats) -> Floats:
+            found = probe.quantities(self.case, self.free, np.exp(points), list(names))
+            return np.log(np.abs(found.reshape(len(points), -1)))
+
+        return self.derivatives(x, logarithms)
 
     def slopes(self, x: Floats, which: Sequence[int]) -> Floats:
         """Derivatives of the residuals by some of the parameters, one-sided: good for descent."""
@@ -505,7 +518,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
 
 def _validity(problem: _Problem, case: Case) -> str:
     """Where the model of the impact does not hold for measured impacts, in words."""
-    found = [pair for block in _impacts(problem) for pair in block.validity(case)]
+    found = [pair for block in problem.impacts for pair in block.validity(case)]
     words = [
         f"{kind} at {sum(one == kind for one, _ in found)} of {len(found)} impacts, by "
         + ", ".join(sorted({cause for one, cause in found if one == kind}))
@@ -547,15 +560,9 @@ def _not_determined(problem: _Problem, x: Floats, lost: Floats) -> str:
 
 def _responds(problem: _Problem, x: Floats, lost: Floats, name: str) -> bool:
     """Whether a measured quantity would respond to every combination that is lost."""
-    if not _impacts(problem):
+    if not problem.impacts:
         return False
-
-    def logarithms(points: Floats) -> Floats:
-        block = _impacts(problem)[0]
-        found = block.quantities(problem.case, problem.free, np.exp(points), [name])
-        return np.log(np.abs(found[:, :, 0]))
-
-    slopes = problem.derivatives(x, logarithms)
+    slopes = problem.elasticities(x, problem.impacts[0], [name])
     known = np.linalg.svd(slopes @ lost, compute_uv=False)
     return len(known) >= lost.shape[1] and bool(known.min() > NEXT_ERROR)
 
@@ -618,16 +625,6 @@ def _ends(
     return ends
 
 
-def _impacts(problem: _Problem) -> list[Impacts]:
-    return [block for block in problem.blocks if isinstance(block, Impacts)]
-
-
-def _speeds(problem: _Problem) -> Floats:
-    """Velocities of the first impacts, or of the case [m/s]."""
-    own = np.array([velocity_of(problem.case)])
-    return next((block.velocity for block in _impacts(problem)), own)
-
-
 def _probe(case: Case, grid: Floats, name: str = "cor") -> Impacts:
     """Impacts of the case at other velocities."""
     return Impacts("", {"velocity": grid, name: np.ones(len(grid))}, case)
@@ -635,17 +632,12 @@ def _probe(case: Case, grid: Floats, name: str = "cor") -> Impacts:
 
 def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) -> str:
     """The measurement that would bring the worst combination down most."""
-    case, free, speeds = problem.case, problem.free, _speeds(problem)
+    case, free, speeds = problem.case, problem.free, problem.speeds
     grid = np.geomspace(speeds.min() / NEXT_REACH, speeds.max() * NEXT_REACH, 13)
     probe = _probe(case, grid)
     measured = (grid >= speeds.min()) & (grid <= speeds.max())
     feasible = measured | [kind != "outside" for kind, _ in probe.validity(case)]
-
-    def logarithms(points: Floats) -> Floats:
-        found = probe.quantities(case, free, np.exp(points), list(NEXT))
-        return np.log(np.abs(found.reshape(len(points), -1)))
-
-    slopes = problem.derivatives(x, logarithms) / NEXT_ERROR
+    slopes = problem.elasticities(x, probe, NEXT) / NEXT_ERROR
     fisher = (vectors * eigenvalues) @ vectors.T
     now = np.sqrt(np.diag(np.linalg.inv(fisher)))
     best, where = 1.0, None
@@ -665,7 +657,7 @@ def _next(problem: _Problem, x: Floats, eigenvalues: Floats, vectors: Floats) ->
 
 def _band(problem: _Problem, x: Floats, covariance: Floats) -> dict[str, list[float]]:
     """Prediction of cor, or what was measured of it, over velocity with its 95 % band."""
-    grid = np.geomspace(_speeds(problem).min() / 2, _speeds(problem).max() * 2, 41)
+    grid = np.geomspace(problem.speeds.min() / 2, problem.speeds.max() * 2, 41)
     name = "cor_sphere" if {"cor", "cor_sphere"} & {*problem.quantity} == {"cor_sphere"} else "cor"
     probe = _probe(problem.case, grid, name)
 
@@ -689,6 +681,8 @@ def _with_model(
         raise UsageError("--model: the free parameters must be those of one material")
     name = names[0]
     kind, _, terms = model.partition(":")
+    if not re.fullmatch(r"(prony:0*[1-9]\d*)?[^:]*", model):
+        raise UsageError(f"--model {model}: expected the name of a model, or such as prony:2")
     first, last = window([observations(case, one, free) for one in sources], case, name)
     times = np.geomspace(first, last, 60)
     reference = case.copy()

@@ -68,8 +68,7 @@ class _Wishes:
     """What a figure shows, and how."""
 
     results: list[Result]
-    #: A text for each result, and whether the user gave them
-    texts: list[str]
+    #: Whether the user gave the texts of the results
     given: bool
     data: list[Data]
     quantities: Sequence[str]
@@ -147,11 +146,10 @@ def figure(
                 f"{result.path}: this file is for a figure of kind {result.kind()}, "
                 f"{results[0].path} for one of kind {results[0].kind()}"
             )
-    texts = list(map(printable, legends)) or legends_of(results)
+    for result, text in zip(results, legends or legends_of(results), strict=True):
+        result.text = printable(text)
     names = [NAMES.get(name, name) for name in quantities or ("cor",)]
-    wishes = _Wishes(
-        results, texts, bool(legends), data, names, log, ranges or {}, levels, hatch, width
-    )
+    wishes = _Wishes(results, bool(legends), data, names, log, ranges or {}, levels, hatch, width)
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
         made = draw(wishes)
@@ -203,12 +201,12 @@ def _history(wishes: _Wishes) -> Figure:
     if one and wishes.given:
         raise UsageError("found --legend, which a history of one file does not show")
     made, axes = _new(wishes, 1 if one else 3, 1 if one else 3)
-    for i, (result, course, text) in enumerate(
-        zip(wishes.results, courses, wishes.texts, strict=True)
-    ):
+    for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
         end, cor = factor * course["end"], result.number("cor")
         ended = np.isfinite(end)
-        text += f": COR {cor:.4g}, t₀ = {end:.4g} {unit}" if ended else ": no separation"
+        text = result.text + (
+            f": COR {cor:.4g}, t₀ = {end:.4g} {unit}" if ended else ": no separation"
+        )
         for k, (name, label) in enumerate(names.items()):
             axis, number, shown = (axes[0], k, label) if one else (axes[k], i, text)
             size = result.number({"indentation": "max_indentation"}.get(name, "max_force"))
@@ -247,9 +245,7 @@ def _loop(wishes: _Wishes) -> Figure:
     fx, x_unit = _scale("m", *[course["indentation"] for course in courses])
     fy, y_unit = _scale("N", *[course["force"] for course in courses])
     made, (axis,) = _new(wishes, 1, 1)
-    for i, (result, course, text) in enumerate(
-        zip(wishes.results, courses, wishes.texts, strict=True)
-    ):
+    for i, (result, course) in enumerate(zip(wishes.results, courses, strict=True)):
         lost = result.number("hysteresis_energy")
         # three times the stated error of cor, as an energy
         error = np.nan_to_num(6.0 * result.number("initial_energy") * result.number("cor_error"))
@@ -257,7 +253,7 @@ def _loop(wishes: _Wishes) -> Figure:
         words = f"energy loss {factor * lost:.4g} {unit}"
         if abs(lost) < error:
             words = f"energy loss < {factor * error:.1g} {unit}"
-        parts = [text] if len(courses) > 1 or wishes.given else []
+        parts = [result.text] if len(courses) > 1 or wishes.given else []
         contact = course["contact"]
         _curve(axis, i, fx * course["indentation"][contact], fy * course["force"][contact],
                ", ".join([*parts, words] if np.isfinite(lost) else parts), marker="")  # fmt: skip
@@ -275,13 +271,11 @@ def _moduli(wishes: _Wishes) -> Figure:
     columns = ("relaxation_modulus", "storage_modulus", "loss_modulus", "loss_tangent")
     curves = []
     several = len(wishes.results) > 1
-    for result, text in zip(wishes.results, wishes.texts, strict=True):
+    for result in wishes.results:
         needed = "moduli (vcor material makes a file of them)"
         both = [result.group("relaxation", needed, "time", columns[0]),
                 result.group("dynamic", needed, "frequency", *columns[1:])]  # fmt: skip
-        ends = [
-            float(both[0].attrs.get(key, math.nan)) for key in ("contact_time", "min_frequency")
-        ]
+        ends = [float(both[0].attrs.get(k, math.nan)) for k in ("contact_time", "min_frequency")]
         # what does not relax is no curve
         loss = both[1].loss_modulus
         names = [name for name in loss.material.values if (loss.sel(material=name) > 0).any()]
@@ -290,7 +284,7 @@ def _moduli(wishes: _Wishes) -> Figure:
         for name in names:
             words = printable(str(name))
             if several or wishes.given:
-                words = text if len(names) == 1 else f"{text}: {words}"
+                words = result.text if len(names) == 1 else f"{result.text}: {words}"
             curves.append((words, [one.sel(material=name) for one in both], ends))
     if len(curves) > MOST:
         raise InputError(f"found {len(curves)} materials, expected at most {MOST} in one figure")
@@ -340,7 +334,7 @@ def _sweep(wishes: _Wishes) -> Figure:
     results, names = wishes.results, wishes.quantities
     lines: list[tuple[str | None, xr.Dataset]] = []
     across = _across(results[0])
-    for result, text in zip(results, wishes.texts, strict=True):
+    for result in results:
         if _across(result) != across:
             raise InputError(
                 f"{result.path}: this sweep is over '{_across(result)}', that of the first file "
@@ -348,7 +342,7 @@ def _sweep(wishes: _Wishes) -> Figure:
             )
         if len(result.axes) == 1:
             shown = len(results) > 1 or wishes.given
-            lines.append((text if shown else None, result.summary))
+            lines.append((result.text if shown else None, result.summary))
             continue
         if len(results) > 1:
             raise InputError(
@@ -363,13 +357,9 @@ def _sweep(wishes: _Wishes) -> Figure:
                 f"than the {MOST} that can be told apart; expected --kind map"
             )
         factor, unit = _scale(values.attrs.get("units", ""), values.values)
-        lines += [
-            (
-                f"{_name_of(other)} = {factor * float(value):.5g} {unit}".strip(),
-                result.summary.sel({other: value}),
-            )
-            for value in values
-        ]
+        for value in values:
+            name = f"{_name_of(other)} = {factor * float(value):.5g} {unit}".strip()
+            lines.append((name, result.summary.sel({other: value})))
     made, axes = _new(wishes, len(names), min(2, len(names)))
     lines = [(words, line.sortby(across)) for words, line in lines]
     at = [line[across] for _, line in lines]
@@ -491,10 +481,9 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
             raise InputError(f"found values from {low:g} to {high:g}, of which no logarithm is")
         first, last = math.floor(math.log10(low)), math.ceil(math.log10(high))
         steps = (1, 2, 5) if 3 * (last - first) <= 2 * wishes.levels else (1,)
-        levels = [m * 10.0**k for k in range(first, last + 1) for m in steps]
-        below = [level for level in levels if level <= low * (1 + 1e-9)]
-        above = [level for level in levels if level >= high * (1 - 1e-9)]
-        levels = [level for level in levels if below[-1] <= level <= above[0]]
+        rounds = np.array([m * 10.0**k for k in range(first, last + 1) for m in steps])
+        below, above = rounds[rounds <= low * (1 + 1e-9)], rounds[rounds >= high * (1 - 1e-9)]
+        levels = rounds[(rounds >= below[-1]) & (rounds <= above[0])].tolist()
     else:
         ticks = MaxNLocator(wishes.levels, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)
         levels = [float(round(tick, 12)) for tick in ticks]
@@ -743,7 +732,11 @@ def _settings(options: Any) -> dict[str, Any]:
         for word in options.range:
             name, _, ends = word.partition("=")
             low, high = (float(end) if end else None for end in ends.split(":"))
-            if name not in ("x", "y", "z") or low == high or not _is_finite(low, high):
+            if (
+                name not in ("x", "y", "z")
+                or low == high
+                or not np.isfinite([low or 0, high or 0]).all()
+            ):
                 raise ValueError
             ranges[name] = (low, high)
     except ValueError:
@@ -756,7 +749,6 @@ def _settings(options: Any) -> dict[str, Any]:
 
 
 def _width(word: str) -> float:
-    """A width [cm]."""
     unit = next((unit for unit in _UNITS if word.endswith(unit)), "")
     try:
         return float(word.removesuffix(unit)) * _UNITS.get(unit, 1.0)
@@ -764,10 +756,6 @@ def _width(word: str) -> float:
         raise argparse.ArgumentTypeError(
             f"found '{word}', expected a number of cm, or such as 85mm"
         ) from None
-
-
-def _is_finite(*ends: float | None) -> bool:
-    return all(end is None or math.isfinite(end) for end in ends)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -793,20 +781,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _script(files: Sequence[str], settings: dict[str, Any], target: Path) -> str:
     """Python script that makes the same figure."""
     names = [os.path.relpath(name, target.parent) for name in files]
-    lines = [f"    {name}={value!r}," for name, value in settings.items()]
-    return "\n".join(
-        [
-            '"""Figure made by vcor plot; change it here, and run it in its folder."""',
-            "",
-            "import vcor.plot",
-            "",
-            "figure = vcor.plot.figure(",
-            f"    {names!r},",
-            *lines,
-            ")",
-            f"vcor.plot.save(figure, {target.name!r})",
-            "",
-        ]
+    lines = "".join(f"    {name}={value!r},\n" for name, value in settings.items())
+    return (
+        '"""Figure made by vcor plot; change it here, and run it in its folder."""\n\n'
+        f"import vcor.plot\n\nfigure = vcor.plot.figure(\n    {names!r},\n{lines})\n"
+        f"vcor.plot.save(figure, {target.name!r})\n"
     )
 
 

@@ -50,11 +50,9 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
             attrs = dict(root.attrs)
         with xr.open_dataset(path, group=group, **options) as data:
             result = data.load()
-    except (KeyError, OSError) as error:
+    except (KeyError, OSError, ValueError, TypeError, RuntimeError, AttributeError) as error:
         if isinstance(error, KeyError) or "group not found" in str(error):
             raise InputError(f"{path}: there is no group '{group}' of vcor in this file") from error
-        raise FileError(f"{path}: this file cannot be read: {error}") from None
-    except (ValueError, TypeError, RuntimeError, AttributeError) as error:
         raise FileError(f"{path}: this file cannot be read: {error}") from None
     if "impact" in result.dims:
         result = result.isel(impact=0, drop=True)

@@ -12,7 +12,7 @@ import h5netcdf
 import numpy as np
 import xarray as xr
 
-from ._command import near, printable, read_text
+from ._command import near, number, printable, read_text
 from ._library import Error, Handle, InputError, UsageError
 from .case import Case
 from .data import ZERO_C, is_temperature
@@ -45,6 +45,8 @@ class Result:
         self.summary = _in_celsius(self.summary)
         self.axes = [str(dim) for dim in self.summary.dims if str(dim) != "material"]
         self.case = str(self.summary.attrs.get("case", ""))
+        #: What stands for it in a legend
+        self.text = ""
         self.title = printable(str(self.summary.attrs.get("title", "")))
 
     def group(self, name: str, what: str, *columns: str) -> xr.Dataset:
@@ -108,29 +110,27 @@ def material_case(
 def _moduli_of(path: str) -> dict[str, xr.Dataset]:
     """Moduli of the materials of a case, or of &material groups alone such as `vcor fit` writes."""
     case, names, _ = material_case(path)
-    parts: list[xr.Dataset] = []
+    relaxation, dynamic = [], []
     for name in names:
         address = name.replace(" ", "_")
-        first, last = (case[f"{address}.valid_{end}"] for end in ("from", "to"))
-        if not (isinstance(first, float) and isinstance(last, float)):
+        first, last = (number(case, f"{address}.valid_{end}") for end in ("from", "to"))
+        if math.isnan(first + last):
             continue
         time = np.geomspace(first, last, 200)
         material, frequency = case.material(name), 1.0 / time[::-1]
         modulus = material.complex_modulus(frequency)
-        dynamic = {"storage_modulus": modulus.real, "loss_modulus": modulus.imag}
-        dynamic["loss_tangent"] = modulus.imag / modulus.real
-        for at, over, columns in (
-            ("time", time, {"relaxation_modulus": material.relaxation(time)}),
-            ("frequency", frequency, dynamic),
-        ):
-            data = {key: (at, column) for key, column in columns.items()}
-            parts.append(xr.Dataset(data, {at: over, "material": name}))
-    if not parts:
+        columns = {"storage_modulus": modulus.real, "loss_modulus": modulus.imag,
+                   "loss_tangent": modulus.imag / modulus.real}  # fmt: skip
+        relaxation.append(xr.Dataset({"relaxation_modulus": ("time", material.relaxation(time))},
+                                     {"time": time, "material": name}))  # fmt: skip
+        dynamic.append(xr.Dataset({key: ("frequency", one) for key, one in columns.items()},
+                                  {"frequency": frequency, "material": name}))  # fmt: skip
+    if not relaxation:
         raise InputError(
             f"{path}: no material has valid_from and valid_to, between which its moduli are drawn; "
             "draw the file that vcor material makes"
         )
-    both = {"relaxation": parts[::2], "dynamic": parts[1::2]}
+    both = {"relaxation": relaxation, "dynamic": dynamic}
     return {key: xr.concat(some, "material", join="outer") for key, some in both.items()}
 
 
@@ -153,15 +153,10 @@ def legends_of(results: list[Result]) -> list[str]:
             with contextlib.suppress(Error):
                 unit = Handle(results[0].case, results[0].path).describe(key).unit
                 units[key] = unit if unit != "1" else ""
-        words = [
-            ", ".join(
-                f"{key.rpartition('.')[2].replace('_', ' ')} = "
-                f"{one[key].removesuffix('.0')} {units.get(key, '')}".strip()
-                for key in keys
-                if key in one
-            )
-            for one in values
-        ]
+        names = {key: key.rpartition(".")[2].replace("_", " ") for key in keys}
+        words = [", ".join(f"{name} = {one[key].removesuffix('.0')} {units.get(key, '')}".strip()
+                           for key, name in names.items() if key in one)
+                 for one in values]  # fmt: skip
         if len(set(words)) == len(words):
             return words
     return [printable(Path(result.path).stem) for result in results]
