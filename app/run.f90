@@ -144,7 +144,7 @@ contains
       if (job%method == 'ive' .and. job%case%given('solver', 'time_step')) &
          call add('solver.time_step is without effect: method ive takes its own steps')
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
-         //'(cor_sphere below zero): the plate has run away from it')
+         //'(cor_sphere below zero): the plate has run away from it, and it will strike again')
       if (len(beyond_data(job, outcome)) > 0) call add(beyond_data(job, outcome))
 
    contains

@@ -82,8 +82,9 @@ contains
 
          remark = ''
          if (name == 'cor') remark = '+- '//short(found%cor_error)//' numerical'
-         if (name == 'cor_sphere') remark = '+- '//short(found%cor_sphere_error) &
-            //' numerical; a drop test reads this'
+         if (name == 'cor_sphere') remark = '+- '//short(found%cor_sphere_error)//' numerical'
+         if (name == 'cor_sphere' .and. found%cor_sphere > 0.0_wp) &
+            remark = remark//'; a drop test reads this'
       end function remark
    end function report
 

@@ -117,8 +117,42 @@ def test_an_end_before_the_sum_holds_is_refused(vcor):
     )
     done = vcor("run", "case.nml", "--print", "cor_sphere")
     assert done.code == NUMERICAL
-    assert "the contact ends at once" in done.err
+    assert "before the sum of exponentials of the plate begins to hold" in done.err
     assert done.err.count("\n") == 1
+
+
+LIGHT = '''
+&impact velocity = 0.19 /
+&sphere radius = 0.00072, material = 'ball' /
+&plate material = 'plate', waves = 'body', half_thickness = 2.6e-5 /
+&contact law = '{law}' /
+&material name = 'ball', density = 7800.0, model = 'rigid' /
+&material name = 'plate', density = 1040.0, poisson_ratio = 0.13, model = 'elastic', modulus = 3e8 /
+'''
+
+
+@pytest.mark.parametrize(("law", "reason"), [("boltzmann", "the bodies do not separate"), ("receding", "too light")])
+def test_contacts_that_do_not_end(vcor, law, reason):
+    """A light plate takes up the blow: the contact lasts, and its radius has more than one maximum."""
+    vcor.write(LIGHT.format(law=law))
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and reason in done.err
+
+
+def test_glassy_modulus_that_lasts_for_no_time(vcor):
+    """Steel on a Kelvin-Voigt layer, Eq. (1): direct takes no steps of the time that steel would need."""
+    vcor.write(
+        "&impact velocity = 0.11 /\n&sphere radius = 0.00051, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'body', half_thickness = 1.54e-4 /\n&contact pair = 'series' /\n"
+        "&material name = 'ball', density = 7800.0, poisson_ratio = 0.3, model = 'elastic', modulus = 2.1e11 /\n"
+        "&material name = 'plate', density = 1100.0, poisson_ratio = 0.0, model = 'prony', "
+        "equilibrium_modulus = 8e7, viscosity = 4.9 /\n"
+    )
+    found = [
+        float(vcor.succeeds("run", "case.nml", "--print", "cor_sphere", "--set", f"solver.method={method}"))
+        for method in ("ive", "direct")
+    ]
+    assert abs(found[1] - found[0]) <= 1e-6
 
 
 def test_exact_mechanics(vcor):

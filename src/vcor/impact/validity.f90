@@ -138,7 +138,7 @@ contains
 
       frequency = pi/outcome%contact_time
       outcome%resilience = outcome%cor_sphere**2
-      if (around%drops) outcome%rebound_height = &
+      if (around%drops .and. outcome%cor_sphere >= 0.0_wp) outcome%rebound_height = &
          outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
       outcome%contact_radius = impact%contact_radius(outcome%max_indentation)
       outcome%weight_ratio = impact%mass*around%gravity/outcome%max_force

@@ -100,11 +100,11 @@ contains
          if (complete .or. allocated(error)) exit
          window = growth*window
       end do
-      if (impact%plate%layered() .and. .not. allocated(error)) then
+      if (impact%plate%layered() .and. trajectory%status == contact_separated) then
          if (trajectory%time_of_max_force < layer_start*window) then
-            call raise(error, error_numerical, 'the contact ends at once, before the sum of ' &
-               //'exponentials of the plate begins to hold: the plate is too soft or too thin ' &
-               //'for this sphere')
+            call raise(error, error_numerical, 'the force is largest before the sum of ' &
+               //'exponentials of the plate begins to hold: the plate is too soft, too thin or ' &
+               //'too light for this sphere')
             return
          end if
       end if

@@ -124,8 +124,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       if (impact%plate%moves() .or. impact%gravity > 0.0_wp) then
-         call raise(error, error_numerical, "the contact grows again before it has ended, which " &
-            //"law = 'receding' does not cover: use law = 'boltzmann'")
+         call raise(error, error_numerical, "the contact grows again before it has ended, as on " &
+            //"a plate that is too light for the sphere, which law = 'receding' does not cover: " &
+            //"use law = 'boltzmann'")
       else
          call raise(error, error_numerical, "the sphere comes to rest in contact and is pushed " &
             //"back too slowly for law = 'receding' to be followed: use law = 'boltzmann'")

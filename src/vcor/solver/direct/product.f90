@@ -106,9 +106,11 @@ contains
          if (time_step > 0.0_wp) then
             dt = 4.0_wp*time_step
          else
-            ! a glassy modulus that lasts for no time at all is no reason for tiny steps
-            dt = impact%law%contact_time/real(first_steps, wp)*max(impact%fast_time_scale(), &
-               impact%time_scale()/least_part)
+            ! a glassy modulus that lasts for no time at all is no reason for tiny steps, nor is any
+            ! where steps are dear
+            dt = impact%time_scale()
+            if (.not. impact%plate%layered()) dt = max(impact%fast_time_scale(), dt/least_part)
+            dt = impact%law%contact_time/real(first_steps, wp)*dt
             ! the last step ends where the computation is to end
             if (end_time > 0.0_wp) &
                dt = end_time/real(ceiling(min(end_time/dt, real(most_steps(impact), wp))), wp)
