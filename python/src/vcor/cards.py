@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import os
 import re
 import sys
@@ -15,7 +14,7 @@ import numpy as np
 from . import _command
 from ._command import number
 from ._library import InputError, NumericalError, UsageError
-from .card_formats import FORMATS, UNITS, Card, Source
+from .card_formats import FORMATS, UNITS, Card, Source, Terms
 from .case import Case
 from .sources import material_case
 
@@ -78,8 +77,8 @@ def card(
     def of(key: str) -> float:
         return number(case, f"{material}.{key}", 0.0)
 
-    def series(key: str) -> tuple[float, ...]:
-        return tuple(np.atleast_1d(case[f"{material}.{key}"] or ()).tolist())
+    def series(key: str) -> list[float]:
+        return list(np.atleast_1d(case[f"{material}.{key}"] or ()))
 
     model = str(case[f"{material}.model"])
     if of("viscosity") > 0:
@@ -98,22 +97,19 @@ def card(
     size = 2 * (1 + of("poisson_ratio")) if case[f"{material}.modulus_kind"] == "shear" else 1.0
     if poisson_ratio is not None and size == 1.0:
         case[f"{material}.poisson_ratio"] = poisson_ratio
-    remarks: tuple[str, ...] = ()
-    moduli: tuple[float, ...]
-    times: tuple[float, ...]
-    if model in ("rigid", "elastic"):
-        equilibrium, moduli, times = 0.0, (), ()
-    elif model == "sls":
-        share = of("alpha") / of("beta") if of("beta") else 1.0
-        equilibrium, moduli = of("glassy_modulus") * share, (of("glassy_modulus") * (1 - share),)
-        times = (1 / of("beta") if of("beta") else 1.0,)
+    remarks: list[str] = []
+    equilibrium = of("equilibrium_modulus")
+    found: Terms = []
+    if model == "sls":
+        beta, glassy = of("beta"), of("glassy_modulus")
+        share = of("alpha") / beta if beta else 1.0
+        equilibrium, found = glassy * share, [(glassy * (1 - share), 1 / (beta or 1.0))]
     elif model == "prony":
-        equilibrium, moduli, times = of("equilibrium_modulus"), series("moduli"), series("times")
-        times = times or tuple(1 / rate for rate in series("rates"))
+        rates = series("rates")
+        found = list(zip(series("moduli"), series("times") or [1 / x for x in rates], strict=True))
     elif model == "mittag_leffler" and of("exponent") == 1:
-        equilibrium, moduli = of("equilibrium_modulus"), (of("relaxing_modulus"),)
-        times = (of("time"),)
-    else:
+        found = [(of("relaxing_modulus"), of("time"))]
+    elif model not in ("rigid", "elastic"):
         if band is None and of("valid_from") and of("valid_to"):
             band = of("valid_from"), of("valid_to")
         if band is None:
@@ -124,25 +120,25 @@ def card(
             except NumericalError as error:
                 raise UsageError(f"{error}; expected --band FROM:TO for the card") from None
             band = _BAND[0] * contact, _BAND[1] * contact
-        equilibrium, moduli, times, misfit = _sum(case, material, band, accuracy, terms)
-        remarks = (f"{len(moduli)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
-                   f"from {band[0]:.3g} to {band[1]:.3g} s",)  # fmt: skip
+        equilibrium, found, misfit = _sum(case, material, band, accuracy, terms)
+        remarks = [f"{len(found)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
+                   f"from {band[0]:.3g} to {band[1]:.3g} s"]  # fmt: skip
         size = 1.0
-    if not any(moduli):
+    if not any(modulus for modulus, _ in found):
         raise InputError(f"{case.name}: '{material}' does not relax, which needs no such card")
-    ratio = of("poisson_ratio") if poisson_ratio is None else poisson_ratio
-    made = Card(material, ratio, size * equilibrium, tuple(size * one for one in moduli), times,
-                of("density") or None, shift if use_shift else {}, remarks)  # fmt: skip
     if shift and not use_shift:
-        note = f"without its shift: the material at {of('reference_temperature'):g} K"
-        made = dataclasses.replace(made, remarks=(*remarks, note))
-    return made
+        remarks.append(f"without its shift: the material at {of('reference_temperature'):g} K")
+        shift = {}
+    moduli, times = zip(*((size * modulus, time) for modulus, time in found), strict=True)
+    ratio = of("poisson_ratio") if poisson_ratio is None else poisson_ratio
+    return Card(material, ratio, size * equilibrium, moduli, times, of("density") or None, shift,
+                tuple(remarks))  # fmt: skip
 
 
 def _sum(
     case: Case, material: str, band: tuple[float, float], accuracy: float, most: int
-) -> tuple[float, tuple[float, ...], tuple[float, ...], float]:
-    """The shortest sum of exponentials that follows E(t): constant, moduli, times and error.
+) -> tuple[float, Terms, float]:
+    """The shortest sum of exponentials that follows E(t): constant, terms and error.
 
     What relaxes before the band loses energy as a dashpot does: the integral of E up to the band
     is kept by a fast term. Without it the COR of a power law is wrong by 0.015, with it by 1e-4.
@@ -168,9 +164,8 @@ def _sum(
         error = float(np.abs(np.append(values @ found, areas @ found) - 1).max())
         best = min(best, error)
         if error <= accuracy:
-            used = found[1:] > 0
-            moduli = found[1:][used].tolist()
-            return float(found[0]), tuple(moduli), tuple(times[used].tolist()), error
+            kept = zip(found[1:].tolist(), times.tolist(), strict=True)
+            return float(found[0]), [term for term in kept if term[0] > 0], error
     raise InputError(
         f"{case.name}: sums of {most} exponentials follow '{material}' to {best:.1g} from "
         f"{first:.3g} to {last:.3g} s, wanted {accuracy:g}; expected a shorter --band, another "

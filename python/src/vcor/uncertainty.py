@@ -231,9 +231,9 @@ def propagate(
     Uncertainty
         Errors, percentiles, elasticities and Sobol' indices.
     """
-    from SALib.analyze import sobol as analysis
     from SALib.sample import sobol as sampling
 
+    quantities = list(quantities)
     case = (case if isinstance(case, Case) else read(case)).copy()
     joint = _Joint.read(case, covariance)
     spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()]
@@ -250,30 +250,99 @@ def propagate(
     blocks = 2 ** max(3, round(math.log2(max(8, samples / (len(names) + 2)))))
     share = sampling.sample(problem, blocks, calc_second_order=False, seed=seed)
     share = np.clip(share, 1e-12, 1 - 1e-12)
-    table = np.hstack([
+    points = np.hstack([
         *[spread.sample(share[:, [i]]) for i, spread in enumerate(spreads)],
         joint.sample(share[:, len(spreads) :]),
     ])  # fmt: skip
-    found = case._solve_all(addresses, table, list(quantities), threads, None)
+    found = case._solve_all(addresses, points, quantities, threads, None)
     good = np.isfinite(found).all(axis=1).reshape(blocks, -1)
     kept = good.all(axis=1)
     if kept.sum() < 8:
         raise NumericalError(f"{case.name}: {(~good).sum()} of {good.size} samples have no result")
     values = found.reshape(blocks, -1, len(quantities))[kept].reshape(-1, len(quantities))
-    sobol = {key: np.zeros((len(quantities), len(names))) for key in INDICES}
+    sobol = _sobol(problem, values, names, seed)
+    value = _values(case, quantities)
+    judged = case.solve(quantities=["validity", "validity_cause", "cor_error", "cor_sphere_error"])
+    stated = [judged.get(f"{name}_error", 0.0) for name in quantities]
+    numerical = np.fmax(np.abs(value - _values(_accurate(case), quantities)), stated)
+    shown = found[np.isfinite(found).all(axis=1)]
+    elastic = np.full((len(quantities), len(addresses)), np.nan)
+    apart = [i for i, address in enumerate(addresses) if case[address] != 0]
+    if apart:
+        elastic[:, apart] = sensitivities(case, [addresses[i] for i in apart], quantities)
+    swing = _swing(case, spreads, joint, elastic, value, quantities)
+    columns = _library.columns(0)
+    over, both = ("quantity",), ("quantity", "parameter")
+    table = xr.Dataset(
+        {
+            "value": (over, value),
+            "numerical": (over, numerical),
+            "material": (over, shown.std(axis=0, ddof=1)),
+            "model": (over, np.abs(_exact(case, quantities) - value)),
+            "mean": (over, shown.mean(axis=0)),
+            "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
+            "elasticity": (both, elastic),
+            "swing": (("quantity", "source", "side"), swing),
+            **{key: (("quantity", "source"), indices) for key, indices in sobol.items()},
+        },
+        coords={
+            "quantity": quantities,
+            "units": ("quantity", [columns[name].unit for name in quantities]),
+            "parameter": addresses,
+            "source": names,
+            "percent": list(PERCENTILES),
+            "side": ["below", "above"],
+        },
+    )
+    row = table.isel(quantity=0)
+    errors = {key: float(row[key]) for key in ("numerical", "material", "model")}
+    errors = {key: error for key, error in errors.items() if math.isfinite(error)}
+    dominant = max(errors, key=errors.__getitem__)
+    words = [str(judged[name]) for name in ("validity", "validity_cause")]
+    return Uncertainty(table, len(found), len(found) - len(shown), dominant, *words)
+
+
+def _swing(
+    case: Case, spreads: list[Spread], joint: _Joint, elastic: Floats, value: Floats,
+    quantities: list[str],
+) -> Floats:  # fmt: skip
+    """Quantities at one deviation to each side of each source, shape (quantities, sources, 2)."""
+    n, addresses = len(spreads), [spread.address for spread in spreads] + joint.addresses
+    middle = [_number(case, address, zero=True) for address in addresses]
+    ends = np.tile(middle, (len(quantities), n + bool(joint.addresses), 2, 1))
+    for i, spread in enumerate(spreads):
+        ends[:, i, :, i] += spread.deviation * np.array([-1, 1])
+    if joint.addresses:
+        # correlated parameters move together, as they do where the quantity is off by one deviation
+        pull = np.nan_to_num(elastic[:, n:]) * np.sign(value)[:, None] @ joint.root
+        pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
+        steps = (pull @ joint.root.T)[:, None] * np.array([[-1], [1]])
+        ends[:, n, :, n:] *= np.exp(steps)
+    found = _solve(case, addresses, ends.reshape(-1, len(addresses)), quantities)
+    own: Floats = np.einsum("kijk->kij", found.reshape(*ends.shape[:3], len(quantities)))
+    return own
+
+
+def _sobol(
+    problem: Mapping[str, Any], values: Floats, names: Sequence[str], seed: int
+) -> dict[str, Floats]:
+    """INDICES of each column of the samples, shape (columns, names)."""
+    from SALib.analyze import sobol as analysis
+
+    found = {key: np.zeros((values.shape[1], len(names))) for key in INDICES}
     for k, column in enumerate(values.T):
         if np.ptp(column) <= 1e-12 * np.abs(column).max():
             continue
         if len(names) == 1:
             # SALib takes a single group for none
-            sobol["first"][k] = sobol["total"][k] = 1.0
+            found["first"][k] = found["total"][k] = 1.0
             continue
         indices = analysis.analyze(
             problem, column, calc_second_order=False, num_resamples=RESAMPLES, seed=seed
         )
         for key, name in INDICES.items():
-            sobol[key][k] = indices[name]
-    return _put_together(case, spreads, joint, list(quantities), found, names, sobol)
+            found[key][k] = indices[name]
+    return found
 
 
 @dataclass(frozen=True)
@@ -320,71 +389,6 @@ class _Joint:
         """Values at shares of independent normal numbers."""
         found: Floats = self.values * np.exp(ndtri(share) @ self.root.T)
         return found
-
-
-def _put_together(
-    case: Case,
-    spreads: list[Spread],
-    joint: _Joint,
-    quantities: list[str],
-    found: Floats,
-    names: list[str],
-    sobol: Mapping[str, Floats],
-) -> Uncertainty:
-    """The table of results."""
-    parameters = [spread.address for spread in spreads] + joint.addresses
-    value = _values(case, quantities)
-    judged = case.solve(quantities=["validity", "validity_cause", "cor_error", "cor_sphere_error"])
-    stated = [judged.get(f"{name}_error", 0.0) for name in quantities]
-    numerical = np.fmax(np.abs(value - _values(_accurate(case), quantities)), stated)
-    shown = found[np.isfinite(found).all(axis=1)]
-    middle = np.array([_number(case, address, zero=True) for address in parameters])
-    elastic = np.full((len(quantities), len(parameters)), np.nan)
-    apart = [i for i, number in enumerate(middle) if number != 0]
-    if apart:
-        elastic[:, apart] = sensitivities(case, [parameters[i] for i in apart], quantities)
-    n = len(spreads)
-    ends = np.tile(middle, (len(quantities), len(names), 2, 1))
-    for i, spread in enumerate(spreads):
-        ends[:, i, :, i] += spread.deviation * np.array([-1, 1])
-    if joint.addresses:
-        # correlated parameters move together, as they do where the quantity is off by one deviation
-        pull = np.nan_to_num(elastic[:, n:]) * np.sign(value)[:, None] @ joint.root
-        pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
-        steps = (pull @ joint.root.T)[:, None] * np.array([[-1], [1]])
-        ends[:, n, :, n:] *= np.exp(steps)
-    swing = _solve(case, parameters, ends.reshape(-1, len(parameters)), quantities)
-    swing = swing.reshape(len(quantities), -1, len(quantities))
-    swing = np.stack([part[:, k] for k, part in enumerate(swing)]).reshape(len(quantities), -1, 2)
-    columns = _library.columns(0)
-    over, both = ("quantity",), ("quantity", "parameter")
-    table = xr.Dataset(
-        {
-            "value": (over, value),
-            "numerical": (over, numerical),
-            "material": (over, shown.std(axis=0, ddof=1)),
-            "model": (over, np.abs(_exact(case, quantities) - value)),
-            "mean": (over, shown.mean(axis=0)),
-            "percentiles": (("quantity", "percent"), np.percentile(shown, PERCENTILES, axis=0).T),
-            "elasticity": (both, elastic),
-            "swing": (("quantity", "source", "side"), swing),
-            **{key: (("quantity", "source"), indices) for key, indices in sobol.items()},
-        },
-        coords={
-            "quantity": quantities,
-            "units": ("quantity", [columns[name].unit for name in quantities]),
-            "parameter": parameters,
-            "source": names,
-            "percent": list(PERCENTILES),
-            "side": ["below", "above"],
-        },
-    )
-    row = table.isel(quantity=0)
-    errors = {key: float(row[key]) for key in ("numerical", "material", "model")}
-    errors = {key: error for key, error in errors.items() if math.isfinite(error)}
-    dominant = max(errors, key=errors.__getitem__)
-    words = [str(judged[name]) for name in ("validity", "validity_cause")]
-    return Uncertainty(table, len(found), len(found) - len(shown), dominant, *words)
 
 
 def _exact(case: Case, quantities: list[str]) -> Floats:
