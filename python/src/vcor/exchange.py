@@ -58,9 +58,8 @@ class Target:
     run: str = ""
 
 
-TARGETS = {name: Target(name, **keys)
-           for name, keys in tomllib.loads((TEMPLATES / "programs.toml").read_text()).items()
-           }  # fmt: skip
+_PROGRAMS = tomllib.loads(_command.read_text(TEMPLATES / "programs.toml"))
+TARGETS = {name: Target(name, **keys) for name, keys in _PROGRAMS.items()}
 
 
 @dataclass(frozen=True)

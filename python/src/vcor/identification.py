@@ -225,11 +225,7 @@ class _Problem:
     """Residuals of all data over the logarithms x of the parameters."""
 
     def __init__(
-        self,
-        case: Case,
-        free: Sequence[str],
-        blocks: Sequence[Block],
-        errors: Mapping[str, float],
+        self, case: Case, free: Sequence[str], blocks: Sequence[Block], errors: Mapping[str, float]
     ) -> None:
         self.case, self.free, self.blocks = case, list(free), list(blocks)
         self.impacts = [block for block in blocks if isinstance(block, Impacts)]

@@ -26,11 +26,10 @@ from scipy.optimize import least_squares, minimize_scalar
 
 from . import _command, _library
 from ._library import Error, Floats, InputError, NumericalError, UsageError
+from .card_formats import GAS
 from .data import ZERO_C
 from .fit import read_moduli
 
-#: Gas constant [J/(mol K)]
-GAS = 8.31446261815324
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
 #: Smallest scatter of a curve that is believed, relative

@@ -30,14 +30,13 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from . import _command, _library
-from ._command import printable
+from ._command import FORMATS, printable
 from ._library import Floats, InputError, UsageError
 from .data import NAMES, PREFIXES, Data
 from .sources import Result, Source, is_result, legends_of
 
 STYLE = Path(__file__).with_name("vcor.mplstyle")
 KINDS = ("history", "loop", "moduli", "sweep", "map")
-FORMATS = ("svg", "pdf", "png")
 #: Width of a column and of a page, height of a panel [cm]
 COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
 #: Widths that are drawn [cm], and units of length [cm]
