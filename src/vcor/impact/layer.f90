@@ -91,8 +91,8 @@ contains
 
       ! Panels grow geometrically from where nothing has happened yet; among the poles of the
       ! propagating modes they follow their distance from the real axis, further out the footprint
-      real(wp), parameter :: start = 1.0e-3_wp, growth = 0.35_wp, near_poles = 0.7_wp
-      real(wp), parameter :: slow_share = 0.3_wp, beyond_rayleigh = 1.4_wp, oscillation = 2.0_wp
+      real(wp), parameter :: start = 1.0e-3_wp, growth = 0.5_wp, near_poles = 1.4_wp
+      real(wp), parameter :: slow_share = 0.3_wp, beyond_rayleigh = 1.4_wp, oscillation = 5.0_wp
       real(wp), parameter :: around_bending(2) = [0.7_wp, 1.6_wp]
       ! The integrand is its asymptote from here on
       real(wp), parameter :: far_footprint = 40.0_wp, far_wave = 15.0_wp, far_face = 30.0_wp
