@@ -8,9 +8,9 @@
 !> - time: trades time only
 !> - guard: makes no difference to the reference impacts; it stops what leads nowhere, or serves
 !>   fluids and others that are not among them
-!> - open: test_reference, test_solver and test_volterra pass when it is spoilt; others were not
-!>   tried
-!> - no word: not spoilt yet
+!> - open: it may cost accuracy, yet no test fails when it is spoilt: test_impacts, test_solver and
+!>   test_volterra with `least_order`, `near_part` and `error_of_t1`, the references on layers by
+!>   method direct with a tenth of `enough_steps`; `most_for_layers` was not tried
 module vcor_solver_tuning
    use vcor_kinds, only : wp
    implicit none
@@ -47,7 +47,7 @@ module vcor_solver_tuning
    !> what it is in the whole window, and the time over that of the force at which the error, which
    !> oscillates, is looked up a second time
    real(wp), parameter :: early_force = 0.05_wp ! guard
-   real(wp), parameter :: second_look = 1.5_wp
+   real(wp), parameter :: second_look = 1.5_wp ! guard
    !> Accuracy of `cor` on a layer where none is asked for, or one that product integration does not
    !> reach: the velocity of its face at the end is another matter than the sphere's
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
@@ -62,9 +62,9 @@ module vcor_solver_tuning
    !> Maximum iterations
    integer, parameter :: most_iterations = 40 ! tested
    !> Correction over the one before that no longer falls
-   real(wp), parameter :: no_better = 0.25_wp ! open
+   real(wp), parameter :: no_better = 0.25_wp ! guard
    !> Error of a position that what follows mends
-   real(wp), parameter :: roughly = 1.0e-3_wp
+   real(wp), parameter :: roughly = 1.0e-3_wp ! time
    !> What it may leave of an error over the accuracy: of a panel; of one that is solved with the
    !> Jacobian of another, and of the condition of a rebound
    real(wp), parameter :: newton_tolerance = 1.0e-5_wp ! tested
@@ -112,8 +112,8 @@ module vcor_solver_tuning
    ! Acceptance of a panel
 
    !> Panels, refused ones included, after which a contact is given up, and a rebound
-   integer, parameter :: most_panels = 20000
-   integer, parameter :: most_rebound_panels = 400
+   integer, parameter :: most_panels = 20000 ! tested
+   integer, parameter :: most_rebound_panels = 400 ! guard
    !> Share of the accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 1.2_wp ! tested
    !> The same for the first panel on a frozen plate
@@ -179,7 +179,7 @@ module vcor_solver_tuning
    ! Maxima
 
    !> Error of the position of the largest indentation, by polynomials, that it is looked for from
-   real(wp), parameter :: peak_guess = 1.0e-8_wp
+   real(wp), parameter :: peak_guess = 1.0e-8_wp ! tested
    !> Error of the position of a maximum: its square is what the maximum feels
    real(wp), parameter :: peak_position = 1.0e-6_wp ! tested
    !> The force is better than that of the companion by this factor at least
@@ -207,8 +207,6 @@ module vcor_solver_tuning
    real(wp), parameter :: smallest_share = 0.45_wp ! time
    real(wp), parameter :: largest_share = 0.67_wp ! time
    real(wp), parameter :: margin_of_rest = 0.95_wp ! tested
-   !> Last panel over the rest from which on the rest is dealt out in equal shares
-   real(wp), parameter :: smallest_rest = 1.0e-3_wp
    !> A refused panel is cut to these shares of its length at most and at least, aiming at this
    !> error over what is allowed, which falls with this order of the last panel at least
    real(wp), parameter :: cut_least = 0.8_wp ! time
@@ -221,16 +219,12 @@ module vcor_solver_tuning
    integer, parameter :: enough_closings = 5 ! guard
    !> Error of the time of the end over the accuracy
    real(wp), parameter :: closest_end = 0.1_wp ! tested
-   !> The least one: rounding
-   real(wp), parameter :: least_end = 1.0e-13_wp
    !> t1 at the end, extrapolated, over that at the start of the last panel, that is zero
    real(wp), parameter :: close_to_zero = 0.3_wp ! guard
    !> No correction of the last panel goes farther than this, over its length
    real(wp), parameter :: farthest_closing = 0.4_wp ! guard
    !> A panel over its start that is rounding: it has been cut and cut again
    real(wp), parameter :: shortest_panel = 1.0e-14_wp ! guard
-   !> Time to the end over the approach from which on the fall of the condition says nothing
-   real(wp), parameter :: farthest_end = 1.0e3_wp
    !> What is left of the rate of t1' where a parabola goes on
    real(wp), parameter :: bend_kept = 0.6_wp ! time
    !> Of what t1 falls, as a guess, and for how long
@@ -252,37 +246,37 @@ module vcor_solver_tuning
    !> Steps of the first run in the contact time of an elastic impact, and the least part of that
    !> time that a fast glassy modulus may make of it
    integer, parameter :: first_steps = 64 ! tested
-   real(wp), parameter :: least_part = 32.0_wp ! open
+   real(wp), parameter :: least_part = 32.0_wp ! tested
    !> A run of more steps is given up: its sums take seconds, or the compliance of a layer does
    integer, parameter :: most_for_all = 60000 ! tested
-   integer, parameter :: most_for_layers = 8000
+   integer, parameter :: most_for_layers = 8000 ! open
    !> Steps beyond which the face of a layer is not followed for the sake of `cor` alone
-   integer, parameter :: enough_steps = 1000
+   integer, parameter :: enough_steps = 1000 ! open
    !> Error of the largest force over the accuracy
-   real(wp), parameter :: share_of_force = 10.0_wp
+   real(wp), parameter :: share_of_force = 10.0_wp ! tested
    !> Order of three runs from which on their limit is better than the last one
    real(wp), parameter :: least_order = 1.5_wp ! open
    !> Part of the approach that the last step of a rebound may take back
-   real(wp), parameter :: last_part = 0.125_wp ! open
+   real(wp), parameter :: last_part = 0.125_wp ! guard
    !> Rate of the indentation over the velocity of a free fall that is beyond all bounds
-   real(wp), parameter :: beyond_all_motion = 1.0e10_wp ! open
+   real(wp), parameter :: beyond_all_motion = 1.0e10_wp ! guard
    !> Decay rate times the step from which on trapezoids are used: Adams and Moulton's rule is
    !> stable up to 6
    real(wp), parameter :: stiff_step = 2.0_wp ! tested
    !> Steps next to t = 0 on which the rate of the drift is no parabola, over which kernels are
    !> integrated in parts, and over parts of which the kernel's integral is taken exactly
-   integer, parameter :: near_drift = 16 ! open
+   integer, parameter :: near_drift = 16 ! tested
    integer, parameter :: near_kernel = 16 ! tested
    integer, parameter :: near_part = 12 ! open
    !> What the rule over a step makes of alpha' of a frozen plate may be off by, over the rise of
    !> alpha in the step: beyond, the step does not resolve it
-   real(wp), parameter :: unresolved_rise = 0.1_wp ! open
+   real(wp), parameter :: unresolved_rise = 0.1_wp ! guard
    !> Share of the weights of a layer after the last one that is added to the first ones
-   real(wp), parameter :: aliased = 1.0e-10_wp
+   real(wp), parameter :: aliased = 1.0e-10_wp ! tested
    !> Distance of the exponent from an integer that is none: the force is smooth at first
-   real(wp), parameter :: next_to_integer = 1.0e-3_wp ! open
+   real(wp), parameter :: next_to_integer = 1.0e-3_wp ! tested
    !> Growth of t1 over the time step that is more than rounding
-   real(wp), parameter :: noticeable_growth = 1.0e-6_wp ! open
+   real(wp), parameter :: noticeable_growth = 1.0e-6_wp ! guard
    !> Error of t1 over the time step, and of its condition over its parts
    real(wp), parameter :: error_of_t1 = 1.0e-13_wp ! open
 

@@ -19,10 +19,10 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_step, only : step_of
    use vcor_solver_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, cut_most, &
       end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, end_slow, &
-      expected_rebound, farthest_end, farthest_rebound, fast, first_rate, largest_share, &
-      least_end, margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
+      expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
+      margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
       rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
-      shortest_panel, slowest_fall, smallest_rest, smallest_share, solution_share, sure_growth, &
+      shortest_panel, slowest_fall, smallest_share, solution_share, sure_growth, &
       tolerable, unreliable_kernel, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
@@ -144,7 +144,7 @@ contains
       if (.not. self%ends) then
          part = largest_share
          left = margin_of_rest*self%end_length/self%rest
-         if (left > smallest_rest) then
+         if (left > 0.0_wp) then
             panels = ceiling(log(left)/log(1.0_wp - largest_share))
             part = max(smallest_share, 1.0_wp - left**(1.0_wp/real(panels, wp)))
          end if
@@ -172,8 +172,8 @@ contains
          self%step = step_of(merge(closing, self%kind, self%ends), self%taken)
          call guess(self)
          if (self%ends) then
-            call close_contact(problem, self%start, max(closest_end &
-               *min(self%accuracy, usual_accuracy), least_end), self%taken, panel, self%inverse)
+            call close_contact(problem, self%start, closest_end*min(self%accuracy, &
+               usual_accuracy), self%taken, panel, self%inverse)
             self%step = step_of(closing, self%taken)
          else
             call solve(problem, rule, self%step, self%start, panel, self%inverse)
@@ -383,9 +383,8 @@ contains
          call end_rates(panel%condition, fall, fall_rate)
          fall = -fall
          self%rest = huge(1.0_wp)
-         if (panel%condition(n) < farthest_end*self%approach%end*fall) self%rest = &
-            2.0_wp*panel%condition(n)/(fall + sqrt(max(0.0_wp, &
-            fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
+         if (fall > 0.0_wp) self%rest = 2.0_wp*panel%condition(n)/(fall &
+            + sqrt(max(0.0_wp, fall**2 - 2.0_wp*panel%condition(n)*fall_rate)))
          call self%problem%advance(rule, self%step, panel, self%start)
       end associate
       self%kind = linear
