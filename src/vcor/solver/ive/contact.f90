@@ -319,9 +319,10 @@ contains
       ! what a shorter panel did not reduce has been handed down by the panels before
       is_refused = .not. (self%excess <= 1.0_wp &
          .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
-      ! away from branch points where the motion is known, its end may not be
-      if (is_refused .and. self%ends .and. .not. (self%branches .or. self%shallow) &
-          .and. self%growth <= panel_share*self%accuracy) is_refused = .not. self%is_best_end()
+      ! where the motion is known its end may not be, next to a branch point because of rounding
+      if (is_refused .and. self%ends .and. self%growth <= panel_share*self%accuracy &
+          .and. (self%excess <= tolerable .or. .not. (self%branches .or. self%shallow))) &
+         is_refused = .not. self%is_best_end()
       if (.not. is_refused) then
          self%refused = huge(1.0_wp)
          return
