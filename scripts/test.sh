@@ -138,7 +138,7 @@ run_tests release
 build debug -DVCOR_BENCHMARKS=OFF
 run_tests debug
 # What several ranks do is compared with what one does, and takes no time
-build mpi -DVCOR_BENCHMARKS=OFF -DCMAKE_Fortran_FLAGS_RELEASE=-O0
+build mpi -DVCOR_BENCHMARKS=OFF -DCMAKE_Fortran_FLAGS_RELEASE=-O1
 # Ranks wait more than they compute: beside them fpm builds, without its own flags, which take a third
 # longer; the project that depends on vcor has them
 find_hdf5
