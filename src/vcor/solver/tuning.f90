@@ -184,6 +184,10 @@ module vcor_solver_tuning
    real(wp), parameter :: peak_position = 1.0e-6_wp ! tested
    !> The force is better than that of the companion by this factor at least
    real(wp), parameter :: force_better = 3.0_wp ! tested
+   !> Difference of the largest force, at the end of a panel, to that of the companion, over the
+   !> accuracy, from which on it is solved anew although its improvement has changed little: with
+   !> fractional kernels it is 60 times the error
+   real(wp), parameter :: force_unsure = 40.0_wp ! tested
 
    ! Rebound: times over that of the approach
 

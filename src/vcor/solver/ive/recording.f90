@@ -11,7 +11,7 @@ module vcor_solver_ive_recording
    use vcor_solver_ive_panel, only : panel_t, plate_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : force_better, peak_position
+   use vcor_solver_tuning, only : force_better, force_unsure, peak_position
    implicit none
    private
 
@@ -98,23 +98,24 @@ contains
       !> The trajectory, the panel added
       type(trajectory_t), intent(inout) :: trajectory
 
-      real(wp) :: peak, time
+      real(wp) :: peak, change, time
       !> Whether the force rose up to the start of the panel
       logical :: rises
 
       associate (n => panel%stages)
-         call find_peak(problem, start, panel, panel%indentation, .true., accuracy, peak, time)
+         call find_peak(problem, start, panel, panel%indentation, .true., accuracy, peak, change, &
+            time)
          if (peak > trajectory%max_indentation &
              .or. trajectory%time_of_max_indentation >= panel%time(0)) then
             trajectory%max_indentation = peak
             trajectory%time_of_max_indentation = time
          end if
-         call find_peak(problem, start, panel, panel%force, .false., accuracy, peak, time)
+         call find_peak(problem, start, panel, panel%force, .false., accuracy, peak, change, time)
          rises = trajectory%time_of_max_force >= panel%time(0)
          ! where it rises up to the end of the panel, the end is none yet
          if ((rises .or. peak > trajectory%max_force) .and. time > 0.0_wp &
-             .and. time < panel%time(n)) &
-            call refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+             .and. time < panel%time(n)) call refine_force(problem, start, panel, doubt, before, &
+            accuracy, change, time, peak)
          if (rises .or. peak > trajectory%max_force) then
             trajectory%max_force = peak
             trajectory%time_of_max_force = time
@@ -124,7 +125,7 @@ contains
 
    !> Maximum in a panel, by improving the panel up to there: the polynomials of the panel are less
    !> accurate inside of it than at its end
-   subroutine find_peak(problem, start, panel, value, of_indentation, accuracy, peak, time)
+   subroutine find_peak(problem, start, panel, value, of_indentation, accuracy, peak, change, time)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
@@ -136,6 +137,8 @@ contains
       real(wp), intent(in) :: accuracy
       !> Maximum
       real(wp), intent(out) :: peak
+      !> What the improvement has changed of it
+      real(wp), intent(out) :: change
       !> Its time [s]
       real(wp), intent(out) :: time
 
@@ -148,6 +151,7 @@ contains
       ! a maximum is next to the largest of the values, on the side to which they rise there
       j = maxloc(value(0:n), 1) - 1
       peak = value(j)
+      change = 0.0_wp
       time = panel%time(j)
       associate (rule => problem%collocator%rule)
          slopes = rule%slopes(value)
@@ -168,18 +172,22 @@ contains
          step = step_to(start%time, time)
          call guess(problem, panel, step, start, cut)
          call improve(problem, step, start, accuracy, cut)
-         peak = rule%interpolate(value, theta)
+         change = rule%interpolate(value, theta)
+         peak = change
          if (cut%converged) peak = merge(cut%indentation(n), cut%force(n), of_indentation)
+         change = abs(peak - change)
          time = start%time + time
       end associate
    end subroutine find_peak
 
-   !> Largest force anew with the panel halved that decides it, where it is not accurate enough.
-   !> The force of modes that settle at once follows the rate of u, and that is the derivative of
-   !> a polynomial: the impulse hardly feels its error but the force does. What the panel before has
-   !> left of it fades along the panel. And a panel in t that begins next to the branch point at
-   !> t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
-   subroutine refine_force(problem, start, panel, doubt, before, accuracy, time, peak)
+   !> Largest force anew with the panel halved that decides it, where it is not accurate enough by
+   !> the companion, which is worse by far, and by what its improvement has changed, the more the
+   !> later it comes: that feels nothing of what the panel before has left, which fades along the
+   !> panel. The force of modes that settle at once follows the rate of u, and that is the derivative
+   !> of a polynomial: the impulse hardly feels its error but the force does. And a panel in t that
+   !> begins next to the branch point at t = 0 has an error of rho^-2n, rho = (sqrt(b)
+   !> + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
+   subroutine refine_force(problem, start, panel, doubt, before, accuracy, change, time, peak)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
@@ -189,6 +197,8 @@ contains
       type(forerunner_t), intent(in) :: before
       !> Wanted relative accuracy
       real(wp), intent(in) :: accuracy
+      !> What its improvement has changed of the largest force [N]
+      real(wp), intent(in) :: change
       !> Time of the largest force [s]
       real(wp), intent(in) :: time
       !> Largest force [N]
@@ -196,7 +206,7 @@ contains
 
       type(start_t) :: now
       type(panel_t) :: last
-      real(wp) :: root, branch, part, here
+      real(wp) :: root, branch, part, here, allowed
       logical :: handed_down
 
       associate (n => panel%stages)
@@ -207,7 +217,9 @@ contains
          root = sqrt(start%time/time)
          branch = 0.0_wp
          if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
-         if (max(here/(force_better*peak), branch) <= accuracy) return
+         allowed = accuracy
+         if (.not. change > accuracy*peak) allowed = max(1.0_wp, force_unsure*part)*accuracy
+         if (max(here/peak, branch) <= allowed) return
          now = start
          last = panel
          if (handed_down) then
