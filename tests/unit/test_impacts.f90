@@ -68,9 +68,42 @@ program test_impacts
    call test_set("shapes.txt", 38, 1.0e-12_wp)
    call test_set("found.txt", 10, 1.0e-12_wp)
    call test_set("temperature.txt", 35, 1.2e-11_wp)
+   call test_missed_drift()
    call finish()
 
 contains
+
+   !> A frozen plate whose alpha has risen before the first stages of the first panel: both
+   !> solutions miss the same of it, and the error is stated
+   subroutine test_missed_drift()
+      character(len=*), parameter :: text = &
+         "&impact velocity = 0.8315 /"//new_line("a") &
+         //"&sphere radius = 0.06044, material = 'glass' /"//new_line("a") &
+         //"&plate half_thickness = 0.0749, material = 'plate', waves = 'frozen' /"//new_line("a") &
+         //"&contact law = 'receding', pair = 'series' /"//new_line("a") &
+         //"&material name = 'plate', density = 1370.0, poisson_ratio = 0.35, model = 'prony', " &
+         //"equilibrium_modulus = 5.86e5, moduli = 1.488e6, 6.53e5, 1.619e6, 1.059e6, 1.316e6, " &
+         //"9.46e5, 1.675e6, times = 4.9e-6, 8.7e-6, 8.2e-5, 1.05e-3, 4.3e-3, 1.82e-2, 4.82e-2 /" &
+         //new_line("a")//"&material name = 'glass', density = 2500.0, model = 'elastic', " &
+         //"modulus = 70.0e9, poisson_ratio = 0.22 /"//new_line("a")
+      real(wp), parameter :: asked(2) = [1.0e-6_wp, 1.0e-10_wp]
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome(2)
+      type(error_t), allocatable :: error
+      integer :: i
+
+      call build(row, "a frozen plate", text)
+      do i = 1, size(asked)
+         call make_ive(asked(i), ive)
+         call ive%solve(row%impact, trajectory, error)
+         call success(error, "a frozen plate that relaxes at once is solved")
+         outcome(i) = evaluate(row%impact, trajectory)
+      end do
+      call check_difference(abs(outcome(1)%cor_sphere - outcome(2)%cor_sphere), &
+         honest_share*outcome(1)%cor_sphere_error, "what the first panel misses is stated")
+   end subroutine test_missed_drift
 
    !> Every impact of a set by both methods
    subroutine test_set(filename, count, accuracy)

@@ -14,6 +14,7 @@ module vcor_solver_ive_contact
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, trajectory_t
    use vcor_kinds, only : wp
+   use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t, most_steps
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
@@ -53,6 +54,8 @@ module vcor_solver_ive_contact
       real(wp) :: largest_force = 0.0_wp
       !> What the panel adds to the error of the motion, and the most that one has added [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
+      !> What the first panel misses of the drift of a frozen plate [-]
+      real(wp) :: missed_drift = 0.0_wp
       !> What a rebound feels of the difference of the two solutions inside the panel, and the most
       !> that it has felt [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
@@ -240,10 +243,13 @@ contains
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
-         ! alpha' of a frozen plate is infinite at first contact: the quadrature of the solution is
-         ! no better than that of the companion, and its error stays for the rest of the contact
-         if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) &
-            self%excess = self%growth/(first_drift*self%accuracy)
+         ! alpha' of a frozen plate is infinite at first contact, or a spike that both solutions
+         ! miss: the quadrature of the solution is no better than that of the companion, and its
+         ! error stays for the rest of the contact
+         if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) then
+            self%missed_drift = drift_error(collocator%rule, panel)/self%speed
+            self%excess = max(self%growth, self%missed_drift)/(first_drift*self%accuracy)
+         end if
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
             self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
@@ -281,6 +287,23 @@ contains
          end do
       end associate
    end subroutine judge
+
+   !> Error of the drift of a frozen plate over a panel: int alpha' F dt is alpha F - int alpha dF,
+   !> whose integrand has no spike where alpha rises at once
+   pure function drift_error(rule, panel) result(error)
+      type(collocation_t), intent(in) :: rule
+      type(panel_t), intent(in) :: panel
+      !> Error [m/s]
+      real(wp) :: error
+
+      real(wp) :: rise(0:width)
+
+      rise = rule%slopes(panel%force)
+      associate (n => panel%stages, alpha => panel%alpha, force => panel%force)
+         error = abs(alpha(n)*force(n) - alpha(0)*force(0) - sum(rule%weight(1:n)*alpha(1:n) &
+            *rise(1:n)) - (panel%drift(n) - panel%drift(0)))
+      end associate
+   end function drift_error
 
    !> What the panel adds to the error of the energy that the plate takes, int alpha F^2, over that
    !> of the impact: forces inside a panel are less accurate than the motion, and their square keeps
@@ -502,7 +525,8 @@ contains
    end function plate_error
 
    !> Error of the impulse. What the panels add to the difference to the companion may cancel, which
-   !> says nothing about the solution: what one of them has added to that of the motion counts, too
+   !> says nothing about the solution: what one of them has added to that of the motion counts, too,
+   !> and what the first one has missed
    pure function impulse_error(self, part) result(error)
       !> The contact, its panel accepted
       type(contact_t), intent(in) :: self
@@ -513,7 +537,7 @@ contains
 
       associate (n => self%panel%stages, impact => self%problem%impact)
          error = max(part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)), &
-            min(solution_share*self%largest_growth, harmless*self%accuracy) &
+            min(max(part*self%largest_growth, self%missed_drift), harmless*self%accuracy) &
             *impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
          if (self%branches) error = max(error, self%growth*impact%mass*self%speed)

@@ -183,10 +183,10 @@ contains
    !> Largest force anew with the panel halved that decides it, where it is not accurate enough by
    !> the companion, which is worse by far, and by what its improvement has changed, the more the
    !> later it comes: that feels nothing of what the panel before has left, which fades along the
-   !> panel. The force of modes that settle at once follows the rate of u, and that is the derivative
-   !> of a polynomial: the impulse hardly feels its error but the force does. And a panel in t that
-   !> begins next to the branch point at t = 0 has an error of rho^-2n, rho = (sqrt(b)
-   !> + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
+   !> panel. The force of modes that settle at once follows the rate of u, the derivative of a
+   !> polynomial: the impulse hardly feels its error, the force does. And a panel in t that begins
+   !> next to the branch point at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b)
+   !> - sqrt(a)) from a to b
    subroutine refine_force(problem, start, panel, doubt, before, accuracy, change, time, peak)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
