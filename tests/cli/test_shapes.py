@@ -64,6 +64,29 @@ def test_elastic_cone(vcor):
         assert time == pytest.approx(2 * depth / 2.0 * half, rel=near)
 
 
+@pytest.mark.parametrize("power", [1.5, 3, 4.5])
+def test_branch_point_of_a_profile(vcor, power):
+    """F = K s^(1 + 1/p) is no polynomial in sqrt(t) at first, which a rebound feels."""
+    sphere = f"shape = 'power', profile_coefficient = {0.3 * 330**power}"
+    sphere += f", profile_power = {power}, mass = 0.002"
+    rubber = "model = 'prony', equilibrium_modulus = 2.5e7, moduli = 3.9e7, 5e7, 1.2e7"
+    rubber += ", times = 9e-6, 1.2e-5, 5e-3"
+    plate = "waves = 'constant', half_thickness = 0.03"
+    text = case(sphere, rubber, 0.07, plate, "&contact law = 'receding' /\n")
+
+    def solved(accuracy, method="ive"):
+        words = ["--set", f"solver.accuracy={accuracy}"]
+        words += ["--set", f"solver.method={method}"]
+        return numbers(vcor, text, "cor,cor_error", *words)
+
+    best, _ = solved(1e-11)
+    direct, direct_error = solved(1e-7, "direct")
+    assert best == pytest.approx(direct, abs=3 * direct_error)
+    for accuracy in (1e-6, 1e-8, 1e-10):
+        cor, error = solved(accuracy)
+        assert abs(cor - best) < min(accuracy, 3 * error)
+
+
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("plate", [0.0, 0.3])
 def test_damped_punch(vcor, method, plate):

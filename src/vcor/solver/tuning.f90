@@ -102,6 +102,9 @@ module vcor_solver_tuning
    !> Power of the accuracy where the contact recedes: the rebound feels the solution between the
    !> ends of the panels, too
    real(wp), parameter :: first_receding_growth = 0.1_wp ! tested
+   !> What a rebound feels of the error of the polynomials of the first panel for x^(2 n), 2e-5 for
+   !> x^2.4, over the distance of 2 n from the next integer
+   real(wp), parameter :: branch_error = 5.0e-5_wp ! tested
    !> With a continuous spectrum what the first panel adds to the error falls by `levels_base` with
    !> each halving from `levels_error` on
    real(wp), parameter :: levels_error = 3.3e-7_wp ! tested

@@ -28,7 +28,7 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_rebound, only : follow_rebound
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
-   use vcor_solver_tuning, only : cut_at_end, error_of_kernel, fast, &
+   use vcor_solver_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
@@ -59,6 +59,8 @@ module vcor_solver_ive_contact
       !> What a rebound feels of the difference of the two solutions inside the panel, and the most
       !> that it has felt [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
+      !> What a rebound feels of the branch point of the force at first contact [-]
+      real(wp) :: branch = 0.0_wp
       !> Whether the panel ends next to s = 0, and with it next to the branch point of u(s)
       logical :: shallow = .false., branches = .false.
       !> End of the contact that was refused [s], and panels to come before it is tried again
@@ -167,10 +169,30 @@ contains
          end if
          if (self%recedes .and. finer < 1.0_wp) reach = reach*finer**first_receding_growth
          self%step%reach = reach*sqrt(impact%law%contact_time*self%time_scale)
+         if (self%recedes) call shorten_at_branch(self)
          self%step%length = self%step%reach
          if (continuous) self%step%length = self%step%reach*0.5_wp**levels(self%accuracy)
       end associate
    end subroutine start
+
+   !> Shorten the first step of a contact that recedes where the force, x^(2 n) at first, is no
+   !> polynomial in x = sqrt(t). The rebound takes it from that of the panel; the error falls as
+   !> the force and the time that it acts
+   pure subroutine shorten_at_branch(self)
+      type(contact_t), intent(inout) :: self
+
+      real(wp) :: power, allowed
+
+      associate (law => self%problem%impact%law)
+         power = 1.0_wp + law%exponent
+         self%branch = branch_error*abs(2.0_wp*power - anint(2.0_wp*power)) &
+            *(self%step%reach**2/(0.5_wp*law%contact_time*self%time_scale))**power
+         allowed = inner_allowed*self%accuracy
+         if (self%branch <= allowed) return
+         self%step%reach = self%step%reach*(allowed/self%branch)**(0.5_wp/power)
+         self%branch = allowed
+      end associate
+   end subroutine shorten_at_branch
 
    !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
    !> collocation does not resolve the internal variables that settle within the step
@@ -457,7 +479,8 @@ contains
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact)
          part = error_over_difference(self, trajectory%steps)
-         sphere_error = self%largest_inner + impulse_error(self, part)/(impact%mass*impact%velocity)
+         sphere_error = self%largest_inner + self%branch + impulse_error(self, part) &
+            /(impact%mass*impact%velocity)
          cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity &
             + plate_error(self, part)
       end associate
