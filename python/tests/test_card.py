@@ -277,6 +277,15 @@ def test_shifts_have_the_sign_and_base_of_each_program(tmp_path):
     assert abaqus_of(tmp_path, head, rest="*Trs, definition=USER", use_shift=False).shift == {}
 
 
+def test_a_shift_that_lacks_a_constant_is_refused(tmp_path):
+    for keys, constant in ((WLF, "wlf_c1"), (ARRHENIUS, "activation_energy")):
+        text = vcor.card(case_of(PRONY + keys), "rubber").text("comsol")
+        flawed = re.sub(rf"% {constant} = .*\n", "", text)
+        assert flawed != text
+        with pytest.raises(vcor.InputError, match=r"some\.card:\d+: found shift = "):
+            back(tmp_path, flawed)
+
+
 def test_the_card_is_at_the_reference_temperature():
     keys = MODELS["cerf"] + WLF
     text = HEAD.format(nu=0.4, keys=keys).replace("5.0 /", "5.0, temperature = 250.0 /")
@@ -469,6 +478,13 @@ def test_the_command_refuses_in_one_line(tmp_path, capsys):
     given = [tmp_path / "card.inp", "--accuracy", "0.01"]
     assert "--accuracy is for writing" in command(capsys, *given, code=2)
     assert "--poisson-ratio" in command(capsys, *words, "--poisson-ratio", "0.6", code=2)
+
+
+def test_the_only_material_is_found_however_its_group_is_written(tmp_path, capsys):
+    keys = f"name = 'rubber', density = 1100.0, poisson_ratio = 0.45, {PRONY}"
+    for text in (f"&material {keys} /\n", f"&MATERIAL\n   {keys}\n/\n"):
+        (tmp_path / "rubber.nml").write_text(text)
+        assert "rubber" in command(capsys, tmp_path / "rubber.nml", "--for", "abaqus").out
 
 
 PAGES = sorted((ROOT / "docs" / "exchange").glob("*.md"))

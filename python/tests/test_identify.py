@@ -309,6 +309,18 @@ def test_command_writes_case_numbers_and_figure(tmp_path, capsys):
     assert (tmp_path / "out" / "rubber_identified.svg").read_text().startswith("<?xml")
 
 
+def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
+    (tmp_path / "rubber.nml").write_text(guess("sls").text())
+    words = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv", "--free", "rubber.beta"]
+    words += ["--model", "prony:x"]
+    with pytest.raises(SystemExit) as ended:
+        identification.main([str(word) for word in words])
+    said = capsys.readouterr().err
+    assert ended.value.code == 2
+    assert "prony:x" in said
+    assert said.count("\n") == 1
+
+
 @pytest.mark.parametrize(
     ("data", "free", "said"),
     [
