@@ -168,9 +168,12 @@ contains
          real(wp), intent(in) :: energy
          character(len=10) :: percent
 
+         real(wp) :: part
+
          ! a thousandth of a percent is the last digit shown; zero has no sign
-         write (percent, '(f8.3, a)') &
-            1.0e-3_wp*max(0, nint(1.0e5_wp*energy/outcome%initial_energy)), ' %'
+         part = 1.0e-3_wp*anint(1.0e5_wp*energy/outcome%initial_energy)
+         write (percent, '(f8.3, a)') part + 0.0_wp, ' %'
+         if (abs(part) >= 1.0e3_wp) percent = right(short(part), 8)//' %'
       end function share
    end function budget
 

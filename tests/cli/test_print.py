@@ -117,3 +117,25 @@ def test_exponents_of_three_digits(vcor):
     (line,) = (line for line in screen.splitlines() if "energy before the impact" in line)
     assert re.search(r" [0-9]\.[0-9]{7}E-10[0-9] J", line)
     assert not re.search(r"[0-9][+-][0-9]{3}\b", screen)
+
+
+FLEEING = """&impact velocity = 15.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate half_thickness = 0.0033, material = 'rubber', waves = 'frozen' /
+&contact law = 'receding' /
+&material name = 'steel', model = 'rigid', density = 7800 /
+&material name = 'rubber', density = 1100, poisson_ratio = 0.45, model = 'sls',
+   glassy_modulus = 1.5e7, alpha = 0.2167694, beta = 3217.4 /
+"""
+
+
+def test_a_plate_that_gives_energy_back_is_seen(vcor):
+    """A share below zero is no zero, and one of many times the whole has room."""
+    vcor.write(FLEEING)
+    screen = vcor("run", "case.nml").out
+    assert "**" not in screen
+    (line,) = (line for line in screen.splitlines() if "radiated into" in line)
+    value, _, share, percent = line.split("W_wave")[1].split()
+    assert percent == "%"
+    assert float(value) < 0
+    assert float(share) == pytest.approx(100 * float(value) / 3.6756634, rel=0.02)
