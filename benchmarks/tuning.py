@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 """Spoil the tuning constants of the solvers one by one.
 
-Builds a copy of the tree in which the constants of src/vcor/solver/tuning.f90 are variables read
-from a file, solves the reference impacts of tests/reference and counts instructions with each constant
-multiplied by each factor, and prints a table: instructions per impact of the paper's cases over those
-without a change, impacts that miss the reference as tests/unit/test_impacts.f90 counts them, and
-impacts whose contact time or residual indentation misses where that test does not look (receding);
-last, impacts on layers that miss it as tests/cli/test_body_reference.py counts them, and impacts by
-product integration. With --tests it runs these tests of CTest, too, and names those that fail.
+Builds a copy of the tree in which the constants of src/vcor/material/tuning.f90 and of
+src/vcor/solver/tuning.f90 are variables read from a file, solves the reference impacts of
+tests/reference and counts instructions with each constant multiplied by each factor, and prints a
+table: instructions per impact of the paper's cases over those without a change, impacts that miss the
+reference as tests/unit/test_impacts.f90 counts them, and impacts whose contact time or residual
+indentation misses where that test does not look (receding); last, impacts on layers that miss it as
+tests/cli/test_body_reference.py counts them, and impacts by product integration. With --tests it runs
+these tests of CTest, too, and names those that fail.
 
     benchmarks/tuning.py [--factors 0.5,2] [--only REGEX] [--build DIR] [--accuracies 1e-6,1e-8,1e-10]
                          [--cases REGEX] [--tests REGEX]
@@ -25,9 +26,11 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-TUNING = "src/vcor/solver/tuning.f90"
+TUNING = {"material": "src/vcor/material/tuning.f90", "solver": "src/vcor/solver/tuning.f90"}
 CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
                       re.MULTILINE)
+FIRST = "      if (data%is_shear) then\n"
+"""Where a material is made, which every impact begins with."""
 SETS = {"practical": 1.0e-11, "random": 1.0e-12, "designed": 3.0e-12, "found": 1.0e-12}
 COLUMNS = ("cor cor_sphere contact_time max_indentation max_force residual_indentation "
            "hysteresis_energy wave_energy cor_error cor_sphere_error status").split()
@@ -82,19 +85,20 @@ def build(folder):
         target = folder / name
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, target)
-    tuning = folder / TUNING
-    text = tuning.read_text()
-    found = constants(text)
-    cases = "\n".join(f"         case ('{name}')\n            {name} = "
-                      + ("nint(value)" if kind == "integer" else "value") for name, kind, _ in found)
-    text = CONSTANT.sub(r"   \1, protected :: \2 = \3\4", text)
-    tuning.write_text(text.replace("\nend module", READER % cases + "\nend module"))
-    solver = folder / "src/vcor/solver.f90"
-    text = solver.read_text()
-    text = text.replace("      if (settings%method == 'ive') then\n", "      call read_tuning()\n"
-                        "      if (settings%method == 'ive') then\n", 1)
-    text = text.replace("   implicit none\n", "   use vcor_solver_tuning, only : read_tuning\n   implicit none\n", 1)
-    solver.write_text(text)
+    uses = calls = ""
+    for part, name in TUNING.items():
+        text = (folder / name).read_text()
+        cases = "\n".join(f"         case ('{name}')\n            {name} = "
+                          + ("nint(value)" if kind == "integer" else "value")
+                          for name, kind, _ in constants(text))
+        text = CONSTANT.sub(r"   \1, protected :: \2 = \3\4", text)
+        (folder / name).write_text(text.replace("\nend module", READER % cases + "\nend module"))
+        uses += f"   use vcor_{part}_tuning, only : read_{part} => read_tuning\n"
+        calls += f"      call read_{part}()\n"
+    material = folder / "src/vcor/material.f90"
+    text = material.read_text()
+    text = text.replace("   implicit none\n", uses + "   implicit none\n", 1)
+    material.write_text(text.replace(FIRST, calls + FIRST, 1))
     subprocess.run(["cmake", "--preset", "release", f"-DVCOR_PYTHON={ROOT / 'build/venv/bin/python'}"],
                    cwd=folder, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", "build/release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
@@ -241,7 +245,7 @@ def main():
         print(f"missed at {name}:", "; ".join(sorted(" ".join(miss) for miss in missed)) or "none")
     print(f"{'constant':24} {'factor':>6} " + " ".join(f"{name:>10}" for name in cases)
           + " ".join(f"{name:>9}" for name in sets) + "   new misses + receding (mended) of each set", flush=True)
-    for name, kind, value in constants((ROOT / TUNING).read_text()):
+    for name, kind, value in (one for file in TUNING.values() for one in constants((ROOT / file).read_text())):
         if not re.search(options.only, name):
             continue
         for factor in map(float, options.factors.split(",")):

@@ -7,28 +7,13 @@
 module vcor_material_exponential_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_tuning, only : fastest_of_data, good_misfit, least_gain, merging_loss, &
+      most_refinements, rates_per_decade, slowest_of_data
    use vcor_numeric_nnls, only : solve_nnls
    implicit none
    private
 
    public :: fit_exponentials
-
-   !> Largest rate times the first, smallest rate times the last time. Wider, and the sum runs
-   !> further away from the modulus outside of the data for digits that no data have: for t^-0.5
-   !> these give a misfit of 2e-5 and at t = 0 2.7 times the first modulus; 2 and 0.5 1e-3 and 2.1
-   real(wp), parameter :: fastest = 4.0_wp, slowest = 0.25_wp
-   !> Rates per decade of the first grid: for t^-0.5 2 give a misfit of 5e-4, 3 and 4 2e-5
-   real(wp), parameter :: per_decade = 3.0_wp
-   !> Times the grid is refined: the rates are then known to 0.3 %, and the merging of two of them
-   !> costs 1e-6
-   integer, parameter :: most_refinements = 8
-   !> Misfit that is good enough: the default accuracy of the restitution
-   real(wp), parameter :: goal = 1.0e-6_wp
-   !> A refinement must reduce the residual times the square of the number of terms to this part:
-   !> where the spectrum is continuous, twice the terms halve the residual for ever
-   real(wp), parameter :: gain = 0.7_wp
-   !> All mergers may increase the misfit by this factor
-   real(wp), parameter :: loss = 1.25_wp
 
 contains
 
@@ -46,8 +31,9 @@ contains
       integer :: i, n
 
       ! u = ln l
-      associate (lower => log(slowest/time(size(time))), upper => log(fastest/time(1)))
-         n = 1 + ceiling((upper - lower)/log(10.0_wp)*per_decade)
+      associate (lower => log(slowest_of_data/time(size(time))), &
+                 upper => log(fastest_of_data/time(1)))
+         n = 1 + ceiling((upper - lower)/log(10.0_wp)*rates_per_decade)
          spacing = (upper - lower)/real(n - 1, wp)
          allocate (grid(n))
          grid = [(lower + real(i, wp)*spacing, i=0, n - 1)]
@@ -57,19 +43,19 @@ contains
       call fit(time, modulus, rate, weight, residual, misfit)
       width = spacing
       do i = 1, most_refinements
-         if (misfit <= goal) exit
+         if (misfit <= good_misfit) exit
          width = 0.5_wp*width
          finer = refined(rate, width, grid)
          call fit(time, modulus, finer, better, new_residual, new_misfit, guess=rate)
          if (.not. new_residual*real(size(finer), wp)**2 &
-            < gain*residual*real(size(rate), wp)**2) exit
+            < least_gain*residual*real(size(rate), wp)**2) exit
          call move_alloc(finer, rate)
          call move_alloc(better, weight)
          residual = new_residual
          misfit = new_misfit
       end do
 
-      bound = max(goal, loss*misfit)
+      bound = max(good_misfit, merging_loss*misfit)
       do while (width < 2.0_wp*spacing .and. size(rate) > 1)
          finer = merged(rate, weight(1:), 1.01_wp*width)
          width = 2.0_wp*width

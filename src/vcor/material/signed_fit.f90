@@ -13,6 +13,9 @@
 module vcor_material_signed_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_tuning, only : digits_lost, earliest_sample, fast_rate, faster_term, &
+      fastest_rate, full_weight, integral_felt, most_digits_lost, rate_spacing, samples_per_rate, &
+      slowest_rate, weight_power, wide_spacing
    use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
    use vcor_numeric_quadrature, only : graded_rule
    implicit none
@@ -74,30 +77,20 @@ contains
    pure subroutine set_nodes(self)
       type(signed_fit_t), intent(inout) :: self
 
-      ! slowest rate, and the fastest that counts one by one; ratio of two, logarithmic
-      real(wp), parameter :: slowest = 0.2_wp, fast = 1.0e7_wp, spacing = 0.15_wp
-      integer, parameter :: usual = 2 + int(log(fast/slowest)/spacing)
-      ! beyond, a modulus such as t^-a takes rates up to 1e10: what is lumped above rate l leaves an
-      ! error of l^(a - 2)
-      real(wp), parameter :: fastest = 1.0e10_wp, wide_spacing = 0.3_wp
-      integer, parameter :: more = nint(log(fastest/fast)/wide_spacing)
-      ! samples per rate; the first one over the time of the fastest rate
-      integer, parameter :: per_rate = 3
-      real(wp), parameter :: earliest = 0.3_wp
-      ! from here on errors count in full, before by a power of the time: with a higher one the sum
-      ! may become negative there, with a lower one t^-a takes digits from the rest
-      real(wp), parameter :: full_weight = 0.03_wp, power = 1.5_wp
       real(wp), allocatable :: time(:), node(:)
-      integer :: i, n
+      integer :: usual, more, i, n
 
-      self%rate = [0.0_wp, slowest*exp(spacing*[(real(i, wp), i=0, usual - 2)])]
+      usual = 2 + int(log(fast_rate/slowest_rate)/rate_spacing)
+      more = nint(log(fastest_rate/fast_rate)/wide_spacing)
+      self%rate = [0.0_wp, slowest_rate*exp(rate_spacing*[(real(i, wp), i=0, usual - 2)])]
       self%rate = [self%rate, self%rate(usual)*exp(wide_spacing*[(real(i, wp), i=1, more)])]
-      n = per_rate*usual
-      time = [(exp(log(earliest/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
-      n = per_rate*more
-      time = [time(1)*exp(-wide_spacing/real(per_rate, wp)*[(real(n + 1 - i, wp), i=1, n)]), time]
+      n = samples_per_rate*usual
+      time = [(exp(log(earliest_sample/self%rate(usual))*real(n - i, wp)/real(n - 1, wp)), i=1, n)]
+      n = samples_per_rate*more
+      time = [time(1)*exp(-wide_spacing/real(samples_per_rate, wp) &
+         *[(real(n + 1 - i, wp), i=1, n)]), time]
       self%samples = size(time)
-      self%weight = min(1.0_wp, time/full_weight)**power
+      self%weight = min(1.0_wp, time/full_weight)**weight_power
 
       call graded_rule(ends, node, self%share, self%last)
       self%time = [time, node]
@@ -153,8 +146,6 @@ contains
       !> `error_of_integral`, or that of the integral at earlier times
       type(exponential_sum_t), intent(out) :: terms
 
-      ! how much faster the term is that has decayed by the first sample
-      real(wp), parameter :: faster = 1.0e3_wp
       real(wp) :: moduli(size(self%rate)), integrals(size(ends)), excess(checked), mean
       integer :: i, n
 
@@ -173,7 +164,7 @@ contains
       call find_moduli(self, modulus(:self%samples)/mean, integrals(checked)/mean, moduli, n, &
          terms%error)
       terms%equilibrium = mean*moduli(1)
-      terms%rates = [self%rate(2:n), faster*maxval(self%rate)]/window
+      terms%rates = [self%rate(2:n), faster_term*maxval(self%rate)]/window
       terms%moduli = mean*[moduli(2:n), 0.0_wp]
       ! the fastest term makes the integral up to the time from which on values count
       do i = 1, checked
@@ -200,7 +191,6 @@ contains
       !> Relative error
       real(wp) :: error
 
-      real(wp), parameter :: felt = 3.0_wp
       real(wp) :: lost, whole, step
       integer :: i
 
@@ -212,7 +202,7 @@ contains
          step = 0.5_wp*(self%time(i) - self%time(i - 1))
          lost = lost + step*(deviation(i - 1) + deviation(i))
          whole = whole + step*(sample(i - 1) + sample(i))
-         error = max(error, felt*abs(lost)/whole)
+         error = max(error, integral_felt*abs(lost)/whole)
       end do
    end function error_of_integral
 
@@ -230,9 +220,6 @@ contains
       !> Error that an impact feels
       real(wp), intent(out) :: error
 
-      ! what a unit of the moduli costs: moduli of opposite signs cost digits, and so do the
-      ! eigenvectors of the panels; 4e-15 were measured, more where the contact recedes
-      real(wp), parameter :: lost = 2.0e-14_wp, lost_at_most = 1.0e-12_wp
       real(wp), dimension(size(self%rate)) :: right, x, late
       real(wp), dimension(size(sample)) :: weighted, deviation
       real(wp) :: misfit, size_of_all, cost, least
@@ -253,12 +240,12 @@ contains
          deviation = matmul(self%decay, x) - sample
          misfit = maxval(abs(deviation), mask=self%time(:self%samples) >= ends(checked))
          size_of_all = sum(abs(x*late))
-         cost = misfit + lost_at_most*size_of_all
+         cost = misfit + most_digits_lost*size_of_all
          if (cost >= least) cycle
          least = cost
          n = self%ranks(i)
          moduli = x
-         error = error_of_integral(self, deviation, sample, early) + lost*size_of_all
+         error = error_of_integral(self, deviation, sample, early) + digits_lost*size_of_all
       end do
    end subroutine find_moduli
 

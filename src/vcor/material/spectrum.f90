@@ -17,17 +17,14 @@ module vcor_material_spectrum
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_tuning, only : above_peak, below_peak, farther_above, farther_below, &
+      inversion_rounding, loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
    use vcor_material_type, only : material_t
    implicit none
    private
 
    public :: sum_of_spectrum, sum_of_resolved_spectrum, rule_for_spectrum
 
-   !> Where exp(-l t) becomes 1 - l t + .., as l times the window
-   real(wp), parameter :: slow = 0.5_wp
-   !> ln of the rate of the peak over those below which, and of those over it above which, the
-   !> spectrum is a power of the rate; what is fast counts less
-   real(wp), parameter :: below_peak = 4.0_wp, above_peak = 1.0_wp
    !> A rate this small against that of the window is a constant, its inverse a dashpot
    real(wp), parameter :: constant = 1.0e-14_wp
 
@@ -74,17 +71,15 @@ contains
       real(wp), intent(in), optional :: above
 
       ! beyond all rates that can be computed with
-      real(wp), parameter :: farthest = 600.0_wp, fewest_digits = 1.0e-2_wp
-      ! what the last node adds to the dashpot, over the dashpot and the accuracy
-      real(wp), parameter :: negligible = 1.0e-3_wp
+      real(wp), parameter :: farthest = 600.0_wp
       real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
       real(wp) :: ratio, run_low, run_high, beyond_peak
       real(wp), allocatable :: rates(:), moduli(:)
       integer :: first, last, j, n
 
-      h = -pi**2/log(min(accuracy, fewest_digits))
-      turn_low = log(slow)
-      turn_high = -log(min(accuracy, fewest_digits))/3.0_wp
+      h = -pi**2/log(min(accuracy, loosest_sum))
+      turn_low = log(slow_run)
+      turn_high = -log(min(accuracy, loosest_sum))/3.0_wp
       if (present(finer)) h = h/finer
       if (present(below)) turn_low = turn_low - below
       if (present(above)) turn_high = turn_high + above
@@ -141,7 +136,7 @@ contains
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
       ! an exponent next to 1 has a part of its dashpot beyond all rates: the integral tells it
-      if (tail > negligible*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
+      if (tail > negligible_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
          + (material%integral(window) - terms%integral(window))
    end subroutine rule_for_spectrum
 
@@ -157,21 +152,16 @@ contains
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
 
-      integer, parameter :: most_refinements = 3
-      ! the impact feels the fast part of a modulus through integrals over its own time only, and
-      ! numerical inversion leaves that much
-      real(wp), parameter :: share_of_integral = 0.3_wp, rounding = 3.0e-12_wp
       real(wp), parameter :: part(2) = [1.0_wp, 0.01_wp]
-      ! how much farther out the runs begin with each refinement, as ln of the rate
-      real(wp), parameter :: below = 3.0_wp, above = 5.0_wp
       type(exponential_sum_t) :: sum_now
       real(wp) :: expected, found
       integer :: i, refinement
 
       terms%error = huge(1.0_wp)
-      do refinement = 0, most_refinements
+      do refinement = 0, most_runs
          call rule_for_spectrum(material, window, accuracy, sum_now, finer=2.0_wp**refinement, &
-            below=below*real(refinement, wp), above=above*real(refinement, wp))
+            below=farther_below*real(refinement, wp), &
+            above=farther_above*real(refinement, wp))
          sum_now%error = largest_error(material, window, sum_now)
          do i = 1, size(part)
             expected = material%integral(part(i)*window)
@@ -179,7 +169,7 @@ contains
             sum_now%error = max(sum_now%error, share_of_integral*abs(found/expected - 1.0_wp))
          end do
          if (sum_now%error < terms%error) terms = sum_now
-         if (terms%error <= max(2.0_wp*accuracy, rounding)) exit
+         if (terms%error <= max(2.0_wp*accuracy, inversion_rounding)) exit
       end do
    end subroutine sum_of_resolved_spectrum
 

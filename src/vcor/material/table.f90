@@ -5,6 +5,7 @@ module vcor_material_table
    use vcor_material_exponential_fit, only : fit_exponentials
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : parameter_t, poisson_ratio
+   use vcor_material_tuning, only : fewest_samples, samples_per_decade
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
@@ -28,10 +29,6 @@ module vcor_material_table
    integer, parameter :: order = 8
    !> Largest change of ln t, and of ln E, over a panel
    real(wp), parameter :: longest_panel = 1.0_wp
-   !> Samples per decade for the sum of exponentials, whose terms are three to the decade
-   real(wp), parameter :: samples_per_decade = 20.0_wp
-   !> Fewest samples
-   integer, parameter :: fewest_samples = 48
 
    !> E(t) through given points: ln E is a monotone piecewise cubic of ln t, exact for a power law;
    !> constant before the first point and after the last. With x = ln(t/t_1) and y = ln(E/E_1)
