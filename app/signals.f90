@@ -74,8 +74,9 @@ contains
       if (transfer(before, ignoring) == ignoring) ignored = c_signal(number, before)
    end subroutine end_by
 
-   !> Signal that has come
-   function caught_signal() result(number)
+   !> Signal that has come. Threads ask at the same time, which the checks of a debug build take for
+   !> a recursion
+   recursive function caught_signal() result(number)
       !> Its number; 0 if there was none
       integer :: number
 
