@@ -138,4 +138,5 @@ def test_a_plate_that_gives_energy_back_is_seen(vcor):
     value, _, share, percent = line.split("W_wave")[1].split()
     assert percent == "%"
     assert float(value) < 0
+    # two digits of it are shown
     assert float(share) == pytest.approx(100 * float(value) / 3.6756634, rel=0.02)
