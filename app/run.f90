@@ -4,14 +4,13 @@ module vcor_app_run
    use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
       write_numbers
    use vcor_app_job, only : job_t
-   use vcor_app_screen, only : percent, report, short, significant
-   use vcor_app_validity, only : about_numbers, measures_remark, measures_report, mechanics_of, &
-      seen_from, solve_exact, times_of_table, warn_of_bands
+   use vcor_app_screen, only : report, short, significant
+   use vcor_app_validity, only : about_numbers, beyond_data, joined, measures_remark, &
+      measures_report, mechanics_of, solve_exact, warn_of_bands
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       trajectory_t
-   use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_stdout
    use vcor_io_identity, only : identity_of, identity_t
    use vcor_text, only : integer_text
@@ -43,7 +42,7 @@ contains
       type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
-      character(len=:), allocatable :: files, words
+      character(len=:), allocatable :: files
       logical :: is_finished
 
       identity = identity_of(job%case, job%part)
@@ -74,10 +73,9 @@ contains
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, tables(1), trouble)
-         words = beyond_data(job, outcome)
-         if (words /= '' .and. outcome%misses()) words = words//'; '
-         if (.not. request%quiet) call remark(about_numbers(job, words//inexact(outcome), &
-            measures_remark(outcome, worker%problem%around)))
+         if (.not. request%quiet) call remark(about_numbers(job, &
+            joined(joined(uncovered(job, outcome), inexact(outcome)), &
+            measures_remark(outcome, worker%problem%around))))
       else if (.not. request%quiet) then
          call write_screen()
       end if
@@ -145,7 +143,7 @@ contains
          call add('solver.time_step is without effect: method ive takes its own steps')
       if (outcome%cor_sphere < 0.0_wp) call add('the sphere goes on in its direction ' &
          //'(cor_sphere below zero): the plate has run away from it, and it will strike again')
-      if (len(beyond_data(job, outcome)) > 0) call add(beyond_data(job, outcome))
+      if (uncovered(job, outcome) /= '') call add(uncovered(job, outcome))
 
    contains
 
@@ -158,42 +156,23 @@ contains
    end function remarks_on
 
    !> What is said of data that do not cover the contact
-   function beyond_data(job, outcome) result(text)
+   function uncovered(job, outcome) result(text)
       type(job_t), intent(in) :: job
       type(outcome_t), intent(in) :: outcome
       !> Words; nothing where they do
       character(len=:), allocatable :: text
 
+      integer :: sphere, plate
+
       text = ''
       if (outcome%status /= contact_separated) return
-      call add_body('sphere')
-      call add_body('plate')
-      if (len(text) > 0) text = text(3:)
-
-   contains
-
-      !> Those of a body
-      subroutine add_body(body)
-         !> Group of the body
-         character(len=*), intent(in) :: body
-
-         character(len=:), allocatable :: name
-         real(wp), allocatable :: times(:)
-         integer :: item
-
-         item = job%case%material_of(body)
-         allocate (times, source=times_of_table(job%case, item))
-         if (size(times) == 0) return
-         name = '; the data of the '//body//' ('//data_file(job%case, item)//') '
-         if (times(1) > seen_from*outcome%contact_time) text = text//name//'begin at ' &
-            //short(times(1))//' s: '//percent(times(1)/outcome%contact_time, 'all') &
-            //' of the contact lies before, where the modulus is taken as constant'
-         if (times(size(times)) < outcome%contact_time) text = text//name//'end at ' &
-            //short(times(size(times)))//' s: '//percent(1.0_wp - times(size(times)) &
-            /outcome%contact_time)//' of the contact lies after, where the modulus is taken as ' &
-            //'constant'
-      end subroutine add_body
-   end function beyond_data
+      sphere = job%case%material_of('sphere')
+      plate = job%case%material_of('plate')
+      text = beyond_data(job%case, plate, trim(merge('both bodies', 'the plate  ', &
+         plate == sphere)), [outcome%contact_time])
+      if (plate /= sphere) text = joined(beyond_data(job%case, sphere, 'the sphere', &
+         [outcome%contact_time]), text)
+   end function uncovered
 
    !> What is said of a result that is less accurate than asked for
    pure function inexact(outcome) result(text)

@@ -11,7 +11,8 @@ module vcor_app_sweep
    use vcor_app_screen, only : heading, padded, right, shown, significant
    use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
       signal_name
-   use vcor_app_validity, only : about_numbers, points_remark, points_report, warn_of_bands
+   use vcor_app_validity, only : about_numbers, joined, points_remark, points_report, &
+      warn_of_bands
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
    use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points, &
@@ -277,7 +278,7 @@ contains
             if (request%quiet) return
             less = ''
             if (failures%inexact%count > 0) less = inexact(job, failures)
-            call remark(about_numbers(job, less, validity))
+            call remark(about_numbers(job, joined(less, validity)))
          else if (.not. request%quiet) then
             call write_stdout(report(job, identity%title, failures, files, &
                tables(1), validity), error)

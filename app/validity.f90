@@ -30,10 +30,8 @@ module vcor_app_validity
    private
 
    public :: mechanics_of, solve_exact, measures_report, measures_remark, points_report, &
-      points_remark, about_numbers, warn_of_slips, warn_of_bands, times_of_table, seen_from
+      points_remark, about_numbers, joined, warn_of_slips, warn_of_bands, beyond_data
 
-   !> What counts of a material is what is between the contact time and so small a part of it
-   real(wp), parameter :: seen_from = 0.01_wp
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
 
@@ -266,20 +264,25 @@ contains
    end function points_remark
 
    !> What is said of bare numbers, in one line
-   pure function about_numbers(job, inexact, validity) result(text)
+   pure function about_numbers(job, words) result(text)
       type(job_t), intent(in) :: job
-      !> What there is to say of their accuracy; nothing is fine
-      character(len=*), intent(in) :: inexact
-      !> And of their validity
-      character(len=*), intent(in) :: validity
+      !> What there is to say of their accuracy and validity; nothing is fine
+      character(len=*), intent(in) :: words
       !> The line, or nothing
       character(len=:), allocatable :: text
 
-      text = inexact
-      if (inexact /= '' .and. validity /= '') text = text//'; '
-      text = text//validity
-      if (text /= '') text = job%case%source//': '//text
+      text = ''
+      if (words /= '') text = job%case%source//': '//words
    end function about_numbers
+
+   !> Two things that are said, in one line; either may be nothing
+   pure function joined(first, second) result(text)
+      character(len=*), intent(in) :: first, second
+      character(len=:), allocatable :: text
+
+      text = first//second
+      if (first /= '' .and. second /= '') text = first//'; '//second
+   end function joined
 
    !> Between what values of the parameters points lie
    function place_of(grid, chosen) result(text)
@@ -356,25 +359,6 @@ contains
       end subroutine warn_of_one
    end subroutine warn_of_bands
 
-   !> Times of the data of a table at the temperature of the impact
-   function times_of_table(case, item) result(times)
-      type(case_t), intent(in) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      !> Times [s], ascending; none of a material that is no table
-      real(wp), allocatable :: times(:)
-
-      class(material_t), allocatable :: material
-      type(error_t), allocatable :: error
-
-      allocate (times(0))
-      if (data_file(case, item) == '') return
-      call material_of_case(case, item, material, error)
-      if (allocated(error)) return
-      call case%get('material', 'times', times, item)
-      times = times*time_factor_of(material)
-   end function times_of_table
-
    !> Warn of contacts of a sweep that a table of data does not cover; of a single impact its report
    !> says so. Data that move with a swept temperature are left out
    subroutine warn_of_table(job, summary, item)
@@ -382,34 +366,66 @@ contains
       type(summary_t), intent(in) :: summary
       integer, intent(in) :: item
 
-      character(len=:), allocatable :: name, data, what
-      real(wp), allocatable :: times(:), contacts(:)
-      real(wp) :: first, last
+      character(len=:), allocatable :: name, words
       integer :: i
 
-      allocate (times, source=times_of_table(job%case, item))
-      if (size(times) == 0 .or. .not. job%sweep%is_grid()) return
+      if (.not. job%sweep%is_grid()) return
       do i = 1, size(job%sweep%grid%axes)
          if (job%sweep%grid%axes(i)%name == 'impact.temperature' &
              .and. job%case%given('material', 'shift', item)) return
       end do
-      allocate (contacts, source=pack(summary%values(quantity_place('contact_time'))%reals, &
-         summary%status == contact_separated))
-      if (size(contacts) == 0) return
       call job%case%get('material', 'name', name, item)
-      data = 'vcor: warning: '//job%case%source//": the data of '"//printable(name)//"' (" &
-         //data_file(job%case, item)//') '
-      first = times(1)
-      last = times(size(times))
-      what = percent(first/minval(contacts))//' of the shortest contact lies before'
-      if (any(contacts <= first)) what = integer_text(count(contacts <= first))//' of ' &
-         //integer_text(size(contacts))//' contacts lie wholly before'
-      if (first > seen_from*minval(contacts)) write (error_unit, '(a)') data//'begin at ' &
-         //short(first)//' s: '//what//', where the modulus is taken as constant'
-      if (last < maxval(contacts)) write (error_unit, '(a)') data//'end at '//short(last) &
-         //' s: '//percent(1.0_wp - last/maxval(contacts)) &
-         //' of the longest contact lies after, where the modulus is taken as constant'
+      words = beyond_data(job%case, item, "'"//printable(name)//"'", &
+         pack(summary%values(quantity_place('contact_time'))%reals, &
+         summary%status == contact_separated))
+      if (words /= '') write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': '//words
    end subroutine warn_of_table
+
+   !> What is said of contacts that the data of a table do not cover
+   function beyond_data(case, item, owner, contacts) result(text)
+      type(case_t), intent(in) :: case
+      !> Number of the material
+      integer, intent(in) :: item
+      !> Whose data they are, in words
+      character(len=*), intent(in) :: owner
+      !> Contact times [s]
+      real(wp), intent(in) :: contacts(:)
+      !> Words; nothing where they do, or the material is no table
+      character(len=:), allocatable :: text
+
+      !> What counts is what is between the contact time and so small a part of it
+      real(wp), parameter :: seen_from = 0.01_wp
+      character(len=*), parameter :: constant = ', where the modulus is taken as constant'
+      class(material_t), allocatable :: material
+      type(error_t), allocatable :: error
+      character(len=:), allocatable :: before, after
+      real(wp), allocatable :: times(:)
+      integer :: unseen
+
+      text = ''
+      if (data_file(case, item) == '' .or. size(contacts) == 0) return
+      call material_of_case(case, item, material, error)
+      if (allocated(error)) return
+      call case%get('material', 'times', times, item)
+      times = times*time_factor_of(material)
+      before = ''
+      after = ''
+      associate (first => times(1), last => times(size(times)), shortest => minval(contacts), &
+                 longest => maxval(contacts), some => size(contacts) > 1)
+         unseen = count(contacts <= first)
+         if (first > seen_from*shortest) before = 'begin at '//short(first)//' s: ' &
+            //percent(min(1.0_wp, first/shortest), 'all')//' of the ' &
+            //trim(merge('shortest contact', 'contact         ', some))//' lies before'//constant
+         if (some .and. unseen > 0) before = 'begin at '//short(first)//' s: ' &
+            //integer_text(unseen)//' of '//integer_text(size(contacts)) &
+            //' contacts lie wholly before'//constant
+         if (last < longest) after = 'end at '//short(last)//' s: ' &
+            //percent(1.0_wp - last/longest)//' of the ' &
+            //trim(merge('longest contact', 'contact        ', some))//' lies after'//constant
+      end associate
+      if (before//after /= '') text = 'the data of '//owner//' ('//data_file(case, item)//') ' &
+         //joined(before, after)
+   end function beyond_data
 
    !> Warn of temperatures beyond the data behind the shift of a material
    subroutine warn_of_temperatures(job, item)

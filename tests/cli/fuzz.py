@@ -94,6 +94,11 @@ def command(chance, folder):
     return words
 
 
+def is_nan(text):
+    """Whether it holds a nan as a word of its own."""
+    return re.search(rb"\bnan\b", text, re.IGNORECASE)
+
+
 def limit():
     """What the program may use."""
     resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
@@ -125,8 +130,8 @@ def fault_of(seed):
             fault = "a file is left on refusal"
         elif (folder / "z").exists():
             fault = "a name was run"
-        elif done.returncode == SUCCESS and b"nan" in done.stdout.lower() and not any(
-            b"nan" in path.read_bytes().lower() for path in folder.glob("*.*")
+        elif done.returncode == SUCCESS and is_nan(done.stdout) and not any(
+            is_nan(path.read_bytes()) for path in folder.glob("*.*")
         ):
             fault = "nan where a result is said to be"
         return f"seed {seed}: {' '.join(words)}: {fault}: {' | '.join(lines)[:300]}" if fault else ""
