@@ -219,7 +219,9 @@ contains
       else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d - 1)) then
          buffer = scientific(value, d - 1)
       else
-         write (form, '(a, i0, a)') '(f24.', d - max(0, floor(log10(abs(value))) + 1), ')'
+         ! with what rounding makes of 0.9999999999
+         write (form, '(a, i0, a)') '(f24.', d - max(0, &
+            floor(log10(abs(value)*(1.0_wp + 0.5_wp*10.0_wp**(-d)))) + 1), ')'
          write (buffer, form) value
       end if
       buffer = adjustl(buffer)

@@ -160,8 +160,8 @@ contains
             else if (this%outcome%status /= contact_separated) then
                text = text//right(status_name(this%outcome%status), 16)//nl
             else
-               text = text//significant(this%outcome%cor, 8, 16) &
-                  //significant(this%outcome%cor_sphere, 8, 16) &
+               text = text//known(this%outcome%cor, this%outcome%cor_error) &
+                  //known(this%outcome%cor_sphere, this%outcome%cor_sphere_error) &
                   //significant(this%outcome%contact_time, 8, 18) &
                   //significant(visible(this%outcome%residual_indentation, &
                   this%outcome%max_indentation), 8, 26)//nl
@@ -169,6 +169,16 @@ contains
          end associate
       end do
       text = text//nl
+
+   contains
+
+      !> A coefficient with the digits that its error leaves, eight at most
+      function known(value, error) result(digits)
+         real(wp), intent(in) :: value, error
+         character(len=:), allocatable :: digits
+
+         digits = significant(value, max(2, min(8, floor(-log10(max(error, tiny(error)))))), 16)
+      end function known
    end function models_text
 
    !> How each solution was made, and whether its error is what it says
