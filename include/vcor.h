@@ -121,11 +121,11 @@ int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, cons
  * in separation has one, too. */
 int vcor_history(vcor_case *self, int *rows, double **values, vcor_error *error);
 
-/* Relaxation modulus E(t) [Pa] of a material at n times [s] */
+/* Relaxation modulus E(t) [Pa] of a material at n times >= 0 [s] */
 int vcor_relaxation(const vcor_case *self, const char *material, int n, const double *times,
                     double *moduli, vcor_error *error);
 
-/* Storage and loss modulus [Pa] of a material at n angular frequencies [rad/s] */
+/* Storage and loss modulus [Pa] of a material at n angular frequencies >= 0 [rad/s] */
 int vcor_complex_modulus(const vcor_case *self, const char *material, int n,
                          const double *frequencies, double *storage, double *loss,
                          vcor_error *error);

@@ -258,11 +258,37 @@ def test_errors_of_files(tmp_path, program):
         vcor.Case("&impct velocity = 1.0 /")
 
 
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda case: case.points({"impact.velocity": [1, 2], "sphere.radius": [1, 2, 3]}),
+         "impact.velocity: found 2 values, and 3 of sphere.radius"),
+        (lambda case: case.points({"plate.waves": ["none", "body"]}),
+         "plate.waves: expected numbers"),
+        (lambda case: case.sweep({"impact.velocity": [[1, 2]]}), "of one dimension"),
+        (lambda case: case.points({"impact.velocity": 1.0}, threads=0), "threads: found 0"),
+        (lambda case: case.material("rubber").relaxation(-1.0), "found a negative time"),
+        (lambda case: case.material("rubber").complex_modulus([-1.0]),
+         "found a negative frequency"),
+        (lambda case: vcor.Case("sls.nml"), "vcor.read reads a file"),
+        (lambda case: vcor.Case(PAPER / "sls.nml"), "vcor.read reads a file"),
+    ],
+)  # fmt: skip
+def test_what_a_call_does_not_take(sls, call, words):
+    with pytest.raises(vcor.InputError, match=words):
+        call(sls)
+
+
 def test_points_without_a_result(sls):
     with pytest.warns(vcor.NoResultWarning, match="2 of 3 points have no result"):
         found = sls.points({"impact.velocity": [-1.0, 10.0, np.nan]})
     assert list(found.status) == ["invalid", "separated", "invalid"]
     assert np.isnan(found.cor[0]) and found.cor[1] == sls.run().cor
+    for odd in (np.nan, np.inf):
+        with pytest.warns(vcor.NoResultWarning, match="1 of 2 points have no result"):
+            assert list(sls.copy().points({"impact.velocity": [odd, 10.0]}).status) == [
+                "invalid", "separated"
+            ]  # fmt: skip
     with pytest.raises(vcor.InputError, match="out of range"):
         sls.solve({"impact.velocity": -1.0})
     with pytest.raises(vcor.UsageError, match=r"^impact\.velocty: .*did you mean 'velocity'"):

@@ -3,7 +3,7 @@
 !> One thread at a time handles texts, in the critical section `vcor_c_api`: gfortran 12 keeps the
 !> length of a text that a function returns in static storage. Impacts are solved outside of it.
 module vcor_c_api
-   use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
       c_loc, c_null_char, c_null_ptr, c_ptr, c_size_t
    use vcor_case_address, only : material_names, resolve, swept_addresses
@@ -440,6 +440,8 @@ contains
       type(error_t), allocatable :: trouble
 
       call find_body(self, material, body, trouble)
+      if (.not. allocated(trouble) .and. any(times < 0.0_wp)) &
+         call raise(trouble, error_input, 'found a negative time, expected times >= 0 [s]')
       if (.not. allocated(trouble)) moduli = body%relaxation(times)
       code = told(trouble, error)
    end function vcor_relaxation
@@ -460,6 +462,8 @@ contains
       complex(wp) :: modulus(n)
 
       call find_body(self, material, body, trouble)
+      if (.not. allocated(trouble) .and. any(frequencies < 0.0_wp)) &
+         call raise(trouble, error_input, 'found a negative frequency, expected them >= 0 [rad/s]')
       if (.not. allocated(trouble)) then
          modulus = body%complex_modulus(cmplx(0.0_wp, frequencies, wp))
          storage = real(modulus, wp)
@@ -584,7 +588,8 @@ contains
          entry%text = fortran(addresses(i))
          entry%origin = shortened(entry%text)
          call case%set(case%address('sweep', 'parameter', item), entry)
-         call case%set(case%address('sweep', 'values', item), values(i, :1), given=.true.)
+         call case%set(case%address('sweep', 'values', item), &
+            merge(values(i, :1), 1.0_wp, ieee_is_finite(values(i, :1))), given=.true.)
       end do
       call check(case, .false., error)
       if (.not. allocated(error)) call new_sweep(handle%sweep, case, error)

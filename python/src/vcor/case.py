@@ -94,6 +94,9 @@ class Case:
     """
 
     def __init__(self, source: str | Groups | None, *, name: str = "case.nml") -> None:
+        if isinstance(source, os.PathLike) or (isinstance(source, str) and "&" not in source):
+            raise InputError(f"{source}: expected the text of a case or its groups; vcor.read "
+                             "reads a file")  # fmt: skip
         text = source if source is None or isinstance(source, str) else _namelists(source)
         self.name = name
         self._handle = Handle(text, name)
@@ -251,10 +254,13 @@ class Case:
             The columns over the dimension `point`. A point without a result has nan and a `status`
             that says why; a `NoResultWarning` says how many there are. Ctrl-C ends the computation.
         """
-        arrays = np.broadcast_arrays(*[np.asarray(v, dtype=float) for v in values.values()])
-        if not arrays or arrays[0].ndim > 1:
-            raise InputError("expected at least one address, with values of one dimension")
-        columns = [np.atleast_1d(array) for array in arrays]
+        given = _arrays(values)
+        longest = max(given, key=lambda address: len(given[address]))
+        for address, array in given.items():
+            if len(array) not in (1, len(given[longest])):
+                raise InputError(f"{address}: found {len(array)} values, and {len(given[longest])} "
+                                 f"of {longest}; expected as many, or one")  # fmt: skip
+        columns = np.broadcast_arrays(*given.values())
         names = _names(quantities)
         table = np.stack(columns, axis=1)
         results = self._solve_all(list(values), table, names, threads, progress)
@@ -287,9 +293,7 @@ class Case:
         xarray.Dataset
             The columns over a dimension for each address, named by it. Otherwise as `points`.
         """
-        axes = {address: np.atleast_1d(np.asarray(v, dtype=float)) for address, v in values.items()}
-        if not axes or any(axis.ndim > 1 for axis in axes.values()):
-            raise InputError("expected at least one address, with values of one dimension")
+        axes = _arrays(values)
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
@@ -360,6 +364,9 @@ class Case:
         """Solve points in parts that take a moment each, for the bar and Ctrl-C."""
         if threads is None:
             threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
+        elif not isinstance(threads, (int, np.integer)) or threads < 1:
+            raise InputError(f"threads: found {threads!r}, expected a whole number > 0")
+        threads = int(threads)
         results = np.empty((len(table), len(names)))
         remarks = []
         length, start = 64, 0
@@ -442,12 +449,12 @@ class Material:
         self.relaxation([])
 
     def relaxation(self, times: ArrayLike) -> NDArray[np.float64]:
-        """Relaxation modulus E(t) [Pa] at times [s], in their shape."""
+        """Relaxation modulus E(t) [Pa] at times >= 0 [s], in their shape."""
         t = np.asarray(times, dtype=float)
         return self._case._handle.relaxation(self.name, t.ravel()).reshape(t.shape)
 
     def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
-        """Complex modulus E' + i E'' [Pa] at angular frequencies [rad/s], in their shape."""
+        """Complex modulus E' + i E'' [Pa] at angular frequencies >= 0 [rad/s], in their shape."""
         w = np.asarray(frequencies, dtype=float)
         return self._case._handle.complex_modulus(self.name, w.ravel()).reshape(w.shape)
 
@@ -499,6 +506,20 @@ def _value(text: str) -> Value:
     if len(numbers) != 1:
         return numbers
     return int(text) if text.lstrip("+-").isdigit() else numbers[0]
+
+
+def _arrays(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Values at addresses as arrays of one dimension."""
+    arrays = {}
+    for address, given in values.items():
+        try:
+            arrays[address] = np.atleast_1d(np.asarray(given, dtype=float))
+        except (TypeError, ValueError):
+            raise InputError(f"{address}: expected numbers; other values are set beforehand, "
+                             f"case[{address!r}] = ...") from None  # fmt: skip
+    if not arrays or any(array.ndim > 1 for array in arrays.values()):
+        raise InputError("expected at least one address, with values of one dimension")
+    return arrays
 
 
 def _names(quantities: Sequence[str] | None) -> list[str]:
