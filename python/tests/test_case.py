@@ -265,7 +265,7 @@ def test_errors_of_files(tmp_path, program):
          "impact.velocity: found 2 values, and 3 of sphere.radius"),
         (lambda case: case.points({"plate.waves": ["none", "body"]}),
          "plate.waves: expected numbers"),
-        (lambda case: case.sweep({"impact.velocity": [[1, 2]]}), "of one dimension"),
+        (lambda case: case.sweep({"impact.velocity": [[1, 2]]}), "each of one dimension"),
         (lambda case: case.points({"impact.velocity": 1.0}, threads=0), "threads: found 0"),
         (lambda case: case.material("rubber").relaxation(-1.0), "found a negative time"),
         (lambda case: case.material("rubber").complex_modulus([-1.0]),

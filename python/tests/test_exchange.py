@@ -200,6 +200,14 @@ def test_two_beads_without_arithmetic():
     assert (heavy["sphere.mass"], heavy["impact.velocity"]) == (pytest.approx(2e-5), 0.3)
     with pytest.raises(vcor.InputError, match="density"):
         vcor.pair({"name": "light", "model": "elastic", "modulus": 1e9}, (1e-3,))
+    with pytest.raises(vcor.InputError, match="two different materials of the name"):
+        vcor.pair([ACETATE, ACETATE | {"poisson_ratio": 0.3}], (1e-3, 1e-3))
+    for radii in ((0.0, 1e-3), (1e-3, 1e-3, 1e-3), "r"):
+        with pytest.raises(vcor.InputError, match="expected two radii"):
+            vcor.pair(ACETATE, radii)
+    with pytest.raises(vcor.InputError, match="masses > 0"):
+        vcor.pair(ACETATE, (1e-3, 1e-3), masses=(0.0, 1e-3))
+    assert vcor.pair(ACETATE, 1e-3)["sphere.radius"] == 1e-3
 
 
 def test_the_header_says_what_the_default_mechanics_cost():

@@ -5,6 +5,7 @@ import math
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 from conftest import ROOT
 
@@ -81,8 +82,9 @@ def test_coefficients_alone_do_not_fix_a_modulus():
     assert "rubber.glassy_modulus^-0.4*rubber.beta" in text
     assert "contact_time" in text
     assert "cor_sphere" not in text.split("give a")[1]
+    table = pd.DataFrame(data)
     found = vcor.identify(
-        guess("sls"), data, free, fix={"rubber.glassy_modulus": 1.5e7}, errors={"cor": 0.01}
+        guess("sls"), table, free, fix={"rubber.glassy_modulus": 1.5e7}, errors={"cor": 0.01}
     )
     assert [one.address for one in found.estimates] == ["rubber.alpha", "rubber.beta"]
     assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
@@ -331,6 +333,8 @@ def test_the_number_of_terms_of_a_model_is_a_number(tmp_path, capsys):
         ({"velocity": [1.0], "cor": [0.5]}, ["rubber.beta"], "expected more"),
         ({"velocity": [1.0, 2.0], "cor": [0.5, -0.4]}, ["rubber.beta"], "row 2: found a cor of -0"),
         ({"velocity": [1.0, 2.0], "cor": [1.2, 0.4]}, ["rubber.beta"], "row 1: found a cor of 1.2"),
+        ({"velocity": [1.0, -2.0], "cor": [0.5, 0.4]}, ["rubber.beta"], "row 2: found a velocity"),
+        ({"velocity": ["a"], "cor": [0.5]}, ["rubber.beta"], "velocity: expected numbers"),
         ({"bounce_time": [0.3, 0.2, 0.25]}, ["rubber.beta"], "row 2: found a cor_sphere of 1.25"),
         ("none.csv", ["rubber.beta"], "none.csv"),
     ],

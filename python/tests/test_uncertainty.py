@@ -105,6 +105,8 @@ def test_elasticities_at_the_end_of_a_range(half_space):
     )
     modulus, ratio = found.sel(quantity="cor").values
     assert ratio == pytest.approx(modulus * 2 * 0.25 / 0.75, rel=1e-7)
+    alone = vcor.sensitivities(half_space, "rubber.glassy_modulus", "cor")
+    assert alone.item() == pytest.approx(modulus, rel=1e-12)
 
 
 def test_small_spreads_are_linear(sls):

@@ -254,7 +254,7 @@ class Case:
             The columns over the dimension `point`. A point without a result has nan and a `status`
             that says why; a `NoResultWarning` says how many there are. Ctrl-C ends the computation.
         """
-        given = _arrays(values)
+        given = arrays(values)
         longest = max(given, key=lambda address: len(given[address]))
         for address, array in given.items():
             if len(array) not in (1, len(given[longest])):
@@ -293,7 +293,7 @@ class Case:
         xarray.Dataset
             The columns over a dimension for each address, named by it. Otherwise as `points`.
         """
-        axes = _arrays(values)
+        axes = arrays(values)
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
@@ -508,25 +508,27 @@ def _value(text: str) -> Value:
     return int(text) if text.lstrip("+-").isdigit() else numbers[0]
 
 
-def _arrays(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
-    """Values at addresses as arrays of one dimension."""
-    arrays = {}
+def arrays(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """Columns of numbers, each as an array of one dimension."""
+    columns = {}
     for address, given in values.items():
         try:
-            arrays[address] = np.atleast_1d(np.asarray(given, dtype=float))
+            columns[address] = np.atleast_1d(np.asarray(given, dtype=float))
         except (TypeError, ValueError):
-            raise InputError(f"{address}: expected numbers; other values are set beforehand, "
-                             f"case[{address!r}] = ...") from None  # fmt: skip
-    if not arrays or any(array.ndim > 1 for array in arrays.values()):
-        raise InputError("expected at least one address, with values of one dimension")
-    return arrays
+            raise InputError(f"{address}: expected numbers") from None
+    if not columns or any(column.ndim > 1 for column in columns.values()):
+        raise InputError("expected at least one column of numbers, each of one dimension")
+    return columns
 
 
 def _names(quantities: Sequence[str] | None) -> list[str]:
-    """Names of columns; None: all, a text: one."""
-    if isinstance(quantities, str):
-        return [quantities]
-    return list(_library.columns(0) if quantities is None else quantities)
+    """Names of columns; None: all."""
+    return listed(list(_library.columns(0)) if quantities is None else quantities)
+
+
+def listed(names: Sequence[str]) -> list[str]:
+    """Names as a list; a text is one."""
+    return [names] if isinstance(names, str) else list(names)
 
 
 def _reason(remark: str) -> str:

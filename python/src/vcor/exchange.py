@@ -102,7 +102,7 @@ class Export:
 
 def pair(
     materials: Mapping[str, Any] | Sequence[Mapping[str, Any]],
-    radii: Sequence[float],
+    radii: ArrayLike,
     *,
     velocity: float = 1.0,
     masses: Sequence[float] | None = None,
@@ -129,18 +129,22 @@ def pair(
         The case, without waves.
     """
     both = [materials] * 2 if isinstance(materials, Mapping) else list(materials)
-    first, second = radii if len(radii) == 2 else (*radii, math.inf)
-    if not (0 < first < math.inf and second > 0 and len(both) == 2):
-        raise InputError("expected two radii > 0 [m], of which the second may be infinite, and one "
-                         "or two materials")  # fmt: skip
     try:
+        first, second = np.append(np.asarray(radii, dtype=float), math.inf)[:2]
         weights = masses or [4 / 3 * math.pi * r**3 * float(one["density"])
                              for r, one in zip((first, second), both, strict=True)
                              if r < math.inf]  # fmt: skip
     except KeyError:
         raise InputError("expected the density of the material of each bead, or masses") from None
+    except (TypeError, ValueError):
+        first = math.nan
+    if not (0 < first < math.inf and second > 0 and np.size(radii) < 3 and min(weights) > 0):
+        raise InputError("expected two radii > 0 [m], of which the second may be infinite, one or "
+                         "two materials, and masses > 0")  # fmt: skip
     reduced = 1 / sum(1 / weight for weight in (*weights, math.inf)[:2])
     known = {str(one["name"]): one for one in both}
+    if len(known) == 1 and dict(both[0]) != dict(both[1]):
+        raise InputError(f"found two different materials of the name '{both[0]['name']}'")
     given: dict[str, dict[str, Any]] = {
         "impact": {"velocity": velocity},
         "sphere": {"radius": first, "mass": reduced, "material": both[0]["name"]},

@@ -394,7 +394,7 @@ def identify(
     case
         The case; the values of the free parameters are a first guess.
     data
-        Files, or mappings of columns in SI units. Impacts have a row each: `velocity` or
+        Files, or columns in SI units (a mapping or a DataFrame). Impacts have a row: `velocity` or
         `drop_height`, `temperature`, `radius`, `mass` or any address, and measured columns of the
         summary, such as `cor`, `cor_sphere`, `resilience`, `rebound_height`, `contact_time`,
         `max_force`; `bounce_time` are the times in flight of one sequence of bounces. `time` and
@@ -429,7 +429,9 @@ def identify(
     free = free.split(",") if isinstance(free, str) else free
     for address, value in (fix or {}).items():
         case[address] = float(value)
-    sources = [data] if isinstance(data, (str, os.PathLike, Mapping)) else list(data)
+    alone: Any = [data] if isinstance(data, (str, os.PathLike)) or hasattr(data, "keys") else data
+    # a DataFrame is no Mapping
+    sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
     free = [address for address in free if address not in (fix or {})]
     if model:
         case, free = _with_model(case, free, model, fix or {}, sources)

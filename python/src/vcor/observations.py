@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from . import _library
 from ._command import near, number, read_text
 from ._library import Error, Floats, InputError, NoResultWarning
-from .case import Case
+from .case import Case, arrays
 from .data import Data, plain_name
 from .master_curve import read_curves
 
@@ -49,10 +49,10 @@ class Impacts:
         for name, column in columns.items():
             if name.endswith("_sigma") and name[:-6] in columns:
                 continue
-            if name in SETTINGS or "." in name:
-                self.settings[SETTINGS.get(name, name)] = column
+            if "." in name:
+                self.settings[name] = column
                 continue
-            if name not in known or known[name].labels:
+            if name not in SETTINGS and (name not in known or known[name].labels):
                 hint = near(name, [*known, *SETTINGS, "drop_height", "bounce_time"])
                 raise InputError(f"{source}: found column '{name}', expected a column of the "
                                  f"summary, {', '.join(SETTINGS)} or an address{hint}")  # fmt: skip
@@ -61,6 +61,9 @@ class Impacts:
                 limit = " and <= 1" if most == 1 else ""
                 raise InputError(f"{source}: row {bad[0] + 1}: found a {name} of "
                                  f"{column[bad[0]]:.6g}, expected one > 0{limit}")  # fmt: skip
+            if name in SETTINGS:
+                self.settings[SETTINGS[name]] = column
+                continue
             rows = np.flatnonzero(np.isfinite(column))
             if rows.size:
                 parts.append((name, rows, column[rows], _sigma(columns, name)[rows]))
@@ -286,8 +289,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     """Data of a file or of columns, by what they are."""
     if isinstance(source, Mapping):
         name = "data"
-        columns = {str(key): np.atleast_1d(np.asarray(column, dtype=float))
-                   for key, column in source.items()}  # fmt: skip
+        columns = arrays(source)
         if len({len(column) for column in columns.values()}) > 1:
             raise InputError("found columns of different lengths")
     else:

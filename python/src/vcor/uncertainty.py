@@ -18,7 +18,7 @@ from scipy.special import ndtri
 
 from . import _command, _library
 from ._library import Floats, InputError, NumericalError, UsageError
-from .case import Case, read
+from .case import Case, listed, read
 from .observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -170,6 +170,9 @@ def sensitivities(
         Elasticity [1] over `quantity` and `parameter`; nan where the quantity is 0.
     """
     case = _accurate(case)
+    parameters, quantities = listed(parameters), listed(quantities)
+    if not parameters:
+        raise UsageError("expected at least one parameter")
     values = np.array([_number(case, address) for address in parameters])
     middle = _solve(case, list(parameters), values[None], quantities)[0]
     slope = np.full((len(quantities), len(values)), np.nan)
@@ -233,7 +236,9 @@ def propagate(
     """
     from SALib.sample import sobol as sampling
 
-    quantities = list(quantities)
+    quantities = listed(quantities)
+    if samples < 1:
+        raise UsageError(f"samples: found {samples}, expected a number > 0")
     case = (case if isinstance(case, Case) else read(case)).copy()
     joint = _Joint.read(case, covariance)
     spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()]
