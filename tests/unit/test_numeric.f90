@@ -9,7 +9,8 @@ program test_numeric
    use vcor_numeric_quadrature, only : endpoint_rule, fourier_rule, gauss_nodes, &
       & legendre, radau_nodes
    use vcor_numeric_radau_algebra, only : apply, invert, ratio, times, width
-   use vcor_numeric_radau_collocation, only : collocation_t, linear, new_collocation, panel_map_t
+   use vcor_numeric_radau_collocation, only : collocation_t, linear, most_steps, &
+      new_collocation, panel_map_t
    use vcor_numeric_radau_settling, only : new_settling, settling_t
    use vcor_test, only : check, check_close, check_relative, finish, suite
    use vcor_test_cases, only : random_t, success
@@ -119,7 +120,7 @@ contains
       do n = 2, most_stages
          allocate (node(n))
          call radau_nodes(node)
-         call new_collocation(rule, n, 0, error)
+         call new_collocation(rule, n, error)
          call success(error, "a collocation rule is built")
          call check_close(rule%node(1:n), node, rounding, "collocation sits on Radau's nodes")
          do k = 0, 2*n - 2
@@ -278,14 +279,13 @@ contains
 
    !> Polynomials are interpolated, differentiated and integrated exactly, through the eigenvectors
    subroutine test_collocation()
-      integer, parameter :: steps = 12
       type(collocation_t) :: rule
       type(error_t), allocatable :: error
       real(wp) :: value(0:width), slope(0:width), theta(width)
       integer :: n, j, step
 
       do n = 2, most_stages
-         call new_collocation(rule, n, steps, error)
+         call new_collocation(rule, n, error)
          call success(error, "a collocation rule is built")
          value = rule%point**n
          call check_close(rule%interpolate(value(0:n), 0.37_wp), 0.37_wp**n, &
@@ -305,7 +305,7 @@ contains
          call check_close(rule%crossing(value, 0.0_wp, 1.0_wp, 1.0e-10_wp), 0.43_wp, &
             collocation_tolerance, "the zero of a polynomial is found")
          call check_map(rule, rule%map(linear), 1.0_wp, 0.0_wp)
-         do step = 0, steps
+         do step = 0, most_steps
             call check_map(rule, rule%map(step), 2.0_wp*real(step, wp), 1.0_wp)
          end do
       end do

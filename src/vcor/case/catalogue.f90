@@ -17,7 +17,7 @@ module vcor_case_catalogue
 
    public :: key_t, group_t, catalogue, groups, real_key, integer_key, logical_key, text_key, &
       list_key
-   public :: find_group, find_key, first_row, last_row, row_for_model
+   public :: find_group, find_key, first_row, key_row, last_row, row_for_model
    public :: kind_name, range_text, wanted, keys_of, group_names, described_keys
 
    !> Kinds of values: a real number
@@ -236,6 +236,17 @@ module vcor_case_catalogue
       key_t("output", "stem", text_key, &
       "Start of the file names; default: the name of the case file")]
 
+   !> First row of each group
+   integer, parameter :: first_row(size(groups)) = &
+      [(findloc(catalogue%group, groups(i)%name, dim=1), i=1, size(groups))]
+   !> Last row of each group
+   integer, parameter :: last_row(size(groups)) = &
+      [(findloc(catalogue%group, groups(i)%name, dim=1, back=.true.), i=1, size(groups))]
+   !> First row of the key of each row
+   integer, parameter :: key_row(size(catalogue)) = [(findloc( &
+      catalogue%group == catalogue(i)%group .and. catalogue%name == catalogue(i)%name, &
+      .true., dim=1), i=1, size(catalogue))]
+
 contains
 
    !> Index of a group in `groups`
@@ -276,30 +287,6 @@ contains
       row = 0
    end function find_key
 
-   !> First row of a group
-   pure function first_row(group) result(row)
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Row of `catalogue`
-      integer :: row
-
-      do row = 1, size(catalogue) - 1
-         if (catalogue(row)%group == groups(group)%name) return
-      end do
-   end function first_row
-
-   !> Last row of a group
-   pure function last_row(group) result(row)
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Row of `catalogue`
-      integer :: row
-
-      do row = size(catalogue), 2, -1
-         if (catalogue(row)%group == groups(group)%name) return
-      end do
-   end function last_row
-
    !> Row of a key that is for a model
    pure function row_for_model(row, model) result(found)
       !> First row of the key
@@ -309,8 +296,8 @@ contains
       !> Row, 0 when the key does not belong to the model
       integer :: found
 
-      do found = row, last_row(find_group(catalogue(row)%group))
-         if (catalogue(found)%name /= catalogue(row)%name) cycle
+      do found = row, size(catalogue)
+         if (key_row(found) /= key_row(row)) cycle
          if (catalogue(found)%models == "") return
          if (contains_word(catalogue(found)%models, model)) return
       end do

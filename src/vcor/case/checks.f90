@@ -4,8 +4,8 @@ module vcor_case_checks
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
-      last_row, row_for_model, wanted
+   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, key_row, &
+      keys_of, last_row, row_for_model, wanted
    use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : material_of_case
    use vcor_case_unread, only : why_no_shift, why_unread
@@ -230,7 +230,7 @@ contains
       end if
       do row = first_row(group), last_row(group)
          if (allocated(error)) return
-         if (find_key(groups(group)%name, catalogue(row)%name) /= row) cycle
+         if (key_row(row) /= row) cycle
          call check_entry(self, swept, address_t(group, item, row), error)
       end do
    end subroutine check_item

@@ -1,7 +1,7 @@
 !> Numbers of a case that no material and no laboratory has: most likely in another unit
 module vcor_case_plausibility
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row, &
+   use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, last_row, &
       list_key, real_key, row_for_model
    use vcor_case_grid, only : grid_t
    use vcor_kinds, only : wp
@@ -65,7 +65,7 @@ contains
       character(len=note_length), allocatable, intent(out) :: notes(:)
 
       real(wp), allocatable :: values(:)
-      character(len=:), allocatable :: place
+      character(len=:), allocatable :: model, place
       type(address_t) :: address
       type(entry_t) :: entry
       integer :: axis, group, i, item, row
@@ -74,8 +74,9 @@ contains
       do i = 1, size(limits)
          group = find_group(limits(i)%group)
          do item = 1, case%count(groups(group)%name)
+            model = case%model(group, item)
             do row = first_row(group), last_row(group)
-               if (.not. is_limited(limits(i), case%model(group, item), row)) cycle
+               if (.not. is_limited(limits(i), model, row)) cycle
                address = address_t(group, item, row)
                entry = case%entry(address)
                values = entry%list
@@ -138,9 +139,8 @@ contains
 
       own = 0
       associate (key => catalogue(row))
-         yes = (key%value_kind == real_key .or. key%value_kind == list_key) &
+         yes = key_row(row) == row .and. any(key%value_kind == [real_key, list_key]) &
             .and. (limit%key == '' .or. limit%key == key%name)
-         if (yes) yes = find_key(key%group, key%name) == row
          if (yes) own = row_for_model(row, model)
       end associate
       if (own > 0) yes = catalogue(own)%unit == limit%unit

@@ -1,7 +1,7 @@
 !> A case as namelists
 module vcor_case_printed
    use vcor_kinds, only : wp
-   use vcor_case_catalogue, only : catalogue, find_key, first_row, groups, integer_key, key_t, &
+   use vcor_case_catalogue, only : catalogue, first_row, groups, integer_key, key_row, key_t, &
       last_row, list_key, logical_key, real_key, row_for_model
    use vcor_case_case, only : address_t, case_t, entry_t
    use vcor_text, only : buffer_t, integer_text, quoted, real_text
@@ -81,7 +81,7 @@ contains
       call buffer%add("&"//trim(groups(group)%name)//newline)
       do row = first_row(group), last_row(group)
          ! The further rows of a key that has one for each model
-         if (find_key(catalogue(row)%group, catalogue(row)%name) /= row) cycle
+         if (key_row(row) /= row) cycle
          applicable = row_for_model(row, self%model(group, item))
          if (applicable == 0) cycle
          entry = self%entry(address_t(group, item, row))

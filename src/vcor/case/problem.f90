@@ -9,7 +9,7 @@
 module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : address_t, case_t, entry_t
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, keys_of, &
+   use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, keys_of, &
       last_row, list_key
    use vcor_case_printed, only : value_text
    use vcor_constants, only : pi, standard_gravity
@@ -317,7 +317,7 @@ contains
       allocate (parameters, source=[density, shift_parameters, parameters_of(body%data%model)])
       allocate (body%rows(0))
       do row = first_row(body%address%group), last_row(body%address%group)
-         if (find_key('material', catalogue(row)%name) /= row) cycle
+         if (key_row(row) /= row) cycle
          ! lists are the terms of a Prony series, and the points of a table, which are no parameters
          counts = any(catalogue(row)%name == parameters%name)
          if (catalogue(row)%value_kind == list_key) then

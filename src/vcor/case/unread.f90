@@ -8,7 +8,7 @@ module vcor_case_unread
    use vcor_text, only : integer_text
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
-   use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, last_row
+   use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, last_row
    use vcor_material_shifted, only : key_laws, shift_keys
    use vcor_words, only : contains_word, join_words
    implicit none
@@ -36,7 +36,7 @@ contains
       do group = 1, size(groups)
          do item = 1, case%count(groups(group)%name)
             do row = first_row(group), last_row(group)
-               if (find_key(groups(group)%name, catalogue(row)%name) /= row) cycle
+               if (key_row(row) /= row) cycle
                entry = case%entry(address_t(group, item, row))
                if (.not. allocated(entry%origin)) cycle
                reason = why_varied(case, address_t(group, item, row), entry%origin)

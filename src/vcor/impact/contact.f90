@@ -36,7 +36,9 @@ module vcor_impact_contact
       real(wp) :: first_factor = 1.0_wp
       !> Factor of the second modulus [-]
       real(wp) :: second_factor = 1.0_wp
-      !> Nodes on (0, 1) of the integral of a pair, shape (n)
+      !> A pair as a sum of exponentials at all times, to twelve digits; not allocated where none is
+      type(exponential_sum_t), allocatable :: terms
+      !> Nodes on (0, 1) of the integral of a pair without such a sum, shape (n)
       real(wp), allocatable :: node(:)
       !> Their weights, shape (n)
       real(wp), allocatable :: weight(:)
@@ -75,12 +77,14 @@ contains
       ! what relaxes before the first one has a millionth of it
       real(wp), parameter :: factor = 10.0_wp**0.5_wp
       integer, parameter :: parts = 12
+      ! error of a sum that holds at all times
+      real(wp), parameter :: finest = 1.0e-12_wp
       integer :: i
       real(wp), parameter :: ends(0:parts) = [(factor**(i - parts), i=0, parts)]
       type(prony_t) :: elastic
       type(signed_fit_t), allocatable :: fit
       real(wp) :: a, b
-      logical :: series
+      logical :: series, is_found
 
       call move_alloc(self%fit, fit)
       call clear(self)
@@ -119,7 +123,11 @@ contains
          self%second_factor = plate%plane_strain_factor()
          call graded_rule(ends, self%node, self%weight)
          call fourier_rule(self%sine_node, self%sine_weight, self%cosine_node, self%cosine_weight)
-         if (.not. expands(self)) then
+         if (expands(self)) then
+            allocate (self%terms)
+            call expand_pair(self, sqrt(huge(1.0_wp)), finest, self%terms, is_found)
+            if (.not. is_found) deallocate (self%terms)
+         else
             if (.not. allocated(fit)) then
                allocate (fit)
                call new_signed_fit(fit)
@@ -199,7 +207,9 @@ contains
       !> Integral [Pa s]
       real(wp) :: value
 
-      if (allocated(self%second)) then
+      if (allocated(self%terms)) then
+         value = self%terms%integral(t)
+      else if (allocated(self%second)) then
          value = t*sum(self%weight*self%relaxation(t*self%node))
       else
          value = self%first_factor*self%first%integral(t)
@@ -269,7 +279,9 @@ contains
 
       real(wp) :: rubbery_modulus, storage, loss
 
-      if (allocated(self%second)) then
+      if (allocated(self%terms)) then
+         modulus = self%terms%complex_modulus(cmplx(0.0_wp, omega, wp))
+      else if (allocated(self%second)) then
          rubbery_modulus = self%rubbery()
          storage = rubbery_modulus &
             + sum(self%sine_weight*(self%relaxation(self%sine_node/omega) - rubbery_modulus))

@@ -27,6 +27,7 @@ module vcor_material_exponential_sum
       procedure :: scale
       procedure :: variables
       procedure :: integral
+      procedure :: complex_modulus
    end type exponential_sum_t
 
 contains
@@ -68,5 +69,16 @@ contains
       value = self%viscosity + self%equilibrium*t &
          + sum(self%moduli/self%rates*(2.0_wp*half/(1.0_wp + half)))
    end function integral
+
+   !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s; pairs are left out
+   pure function complex_modulus(self, s) result(modulus)
+      class(exponential_sum_t), intent(in) :: self
+      !> Laplace variable [1/s], not at -l_k
+      complex(wp), intent(in) :: s
+      !> Complex modulus [Pa]
+      complex(wp) :: modulus
+
+      modulus = self%equilibrium + self%viscosity*s + sum(self%moduli*(s/(s + self%rates)))
+   end function complex_modulus
 
 end module vcor_material_exponential_sum

@@ -29,8 +29,9 @@ module vcor_numeric_radau_collocation
    integer, parameter :: linear = -1
    !> Index of the map of a step in the square root of the time that is left at its end
    integer, parameter :: closing = linear - 1
-   !> Most steps in x = sqrt(t), from x = 0, h, .. most_steps*h: more take memory, fewer take time
-   integer, parameter :: most_steps = 12
+   !> Most steps in x = sqrt(t), from x = 0, h, .. most_steps*h, then steps in t follow: each takes
+   !> 0.1 ms at the start of the program; of 7,000 panels of the tests nine would begin beyond 5 h
+   integer, parameter :: most_steps = 5
 
    !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
    !>
@@ -92,12 +93,10 @@ module vcor_numeric_radau_collocation
 contains
 
    !> Build a rule and the diagonalised maps
-   subroutine new_collocation(self, stages, steps, error)
+   subroutine new_collocation(self, stages, error)
       type(collocation_t), intent(out) :: self
       !> Number of stages, 2 .. width
       integer, intent(in) :: stages
-      !> Steps in x = sqrt(t) from x = 0, h, .. steps*h are prepared, 0 .. most_steps
-      integer, intent(in) :: steps
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: matrix(stages, stages)
@@ -122,7 +121,7 @@ contains
       if (allocated(error)) return
       call diagonalise(matrix, self%node(1:stages), 1.0_wp, 0.0_wp, self%map(linear), error)
       if (allocated(error)) return
-      do n = 0, steps
+      do n = 0, most_steps
          call diagonalise(matrix, self%node(1:stages), 2.0_wp*real(n, wp), 1.0_wp, self%map(n), &
             error)
          if (allocated(error)) return

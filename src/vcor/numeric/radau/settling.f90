@@ -50,16 +50,17 @@ contains
       !> Points theta = 1 - y of the polynomials, rising to 1, shape (0:n), n <= 8
       real(wp), intent(in) :: point(0:)
 
-      real(wp) :: y(highest + 1), weight(highest + 1), polynomial(0:highest)
+      real(wp) :: y(highest + 1), weight(highest + 1), polynomial(0:highest), slope
       integer :: i, j, k
 
       call gauss_nodes(y, weight)
       do j = 1, highest + 1
          polynomial = legendre(highest, 2.0_wp*y(j) - 1.0_wp)
          do i = 0, ubound(point, 1)
+            slope = slope_of_basis(1.0_wp - point, i, y(j))
             do k = 0, ubound(point, 1) - 1
                self%legendre(k, i) = self%legendre(k, i) - real(2*k + 1, wp)*weight(j) &
-                  *polynomial(k)*slope_of_basis(1.0_wp - point, i, y(j))
+                  *polynomial(k)*slope
             end do
          end do
       end do

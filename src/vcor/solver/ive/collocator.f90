@@ -4,7 +4,7 @@ module vcor_solver_ive_collocator
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
-   use vcor_numeric_radau_collocation, only : collocation_t, most_steps, new_collocation
+   use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
    use vcor_solver_tuning, only : least_tolerance, near_tolerance, newton_tolerance
    implicit none
    private
@@ -56,9 +56,9 @@ contains
       self%second_coefficient = second_coefficient
       self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
       self%near_tolerance = max(least_tolerance, near_tolerance*accuracy)
-      call new_collocation(self%rule, stages, most_steps, error)
+      call new_collocation(self%rule, stages, error)
       if (allocated(error)) return
-      call new_collocation(self%coarse, fewer_stages, most_steps, error)
+      call new_collocation(self%coarse, fewer_stages, error)
       if (allocated(error)) return
 
       do j = 0, stages
