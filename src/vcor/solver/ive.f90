@@ -14,9 +14,8 @@ module vcor_solver_ive
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_tuning, only : early_force, error_of_kernel, error_of_layer, kernel_share, &
-      layer_growth, layer_reach, layer_start, loosest_accuracy, no_sum, plate_share, second_look, &
-      window_growth, window_margin
+   use vcor_solver_tuning, only : error_of_kernel, error_of_layer, kernel_share, layer_growth, &
+      layer_reach, layer_start, loosest_accuracy, plate_share, window_growth, window_margin
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -74,7 +73,7 @@ contains
       end if
       do
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
-         if (.not. modes%contact%error < no_sum) then
+         if (.not. modes%contact%error < 1.0_wp) then
             call raise(error, error_numerical, 'no sum of exponentials stands for the kernel of ' &
                //"this contact: use method = 'direct'")
             return
@@ -86,7 +85,7 @@ contains
                modes%plate%error = modes%plate%error*impact%mass/window**2
                modes%velocity_error = error_of_layer*modes%velocity_error*impact%mass/window**2
             end if
-            if (.not. modes%plate%error < no_sum) then
+            if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
                   //"plate remembers: use another plate.waves, or method = 'direct'")
                return
@@ -110,7 +109,7 @@ contains
       end if
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel &
-            *(error_felt(impact, modes%contact, window, trajectory) + modes%plate%error)
+            *(error_felt(impact, modes%contact, trajectory) + modes%plate%error)
          trajectory%cor_error = trajectory%cor_error + error_of_sums + modes%velocity_error
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
@@ -124,34 +123,30 @@ contains
       end associate
    end subroutine solve
 
-   !> Error of the kernel as an impact feels it: where heavy losses end the loading early in the
-   !> window, that of the kernel's integral up to there, if that is more, in the share of the
-   !> momentum that the loading has taken
-   pure function error_felt(impact, contact, window, trajectory) result(error)
+   !> Error of the kernel as an impact feels it: that of the kernel's integral up to the largest
+   !> force, in the share of the momentum that the loading has taken, if that is more, as it is
+   !> where heavy losses end the loading early in the window
+   pure function error_felt(impact, contact, trajectory) result(error)
       type(impact_t), intent(in) :: impact
       !> Its kernel as a sum of exponentials
       type(exponential_sum_t), intent(in) :: contact
-      !> Time up to which the sum holds [s]
-      real(wp), intent(in) :: window
       type(trajectory_t), intent(in) :: trajectory
       !> Relative error
       real(wp) :: error
 
-      real(wp) :: part(2), t, lost
-      integer :: i, node
+      real(wp) :: lost
+      integer :: node
 
       error = contact%error
-      if (.not. (error > 0.0_wp .and. trajectory%time_of_max_force < early_force*window)) return
+      if (.not. error > 0.0_wp) return
       do node = 1, trajectory%last - 1
          if (trajectory%state(col_time, node) >= trajectory%time_of_max_force) exit
       end do
       lost = trajectory%state(col_impulse, node)/(impact%mass*impact%velocity)
-      part = [1.0_wp, second_look]
-      do i = 1, size(part)
-         t = part(i)*trajectory%time_of_max_force
+      associate (t => trajectory%time_of_max_force)
          error = max(error, lost*abs(contact%integral(t) &
             /(impact%kernel_integral(t) + impact%kernel_viscosity()) - 1.0_wp))
-      end do
+      end associate
    end function error_felt
 
 end module vcor_solver_ive

@@ -8,8 +8,7 @@
 !> - time: trades time only
 !> - guard: makes no difference to the reference impacts; it stops what leads nowhere, or serves
 !>   fluids and others that are not among them
-!> - open: it may cost accuracy, yet no test fails when it is spoilt: test_impacts, test_solver and
-!>   test_volterra with `least_order`, `near_part` and `error_of_t1`, the references on layers by
+!> - open: it may cost accuracy, yet no test fails when it is spoilt: the references on layers by
 !>   method direct with a tenth of `enough_steps`; `most_for_layers` was not tried
 module vcor_solver_tuning
    use vcor_kinds, only : wp
@@ -21,8 +20,6 @@ module vcor_solver_tuning
    !> Loosest accuracy that is worked to: less would save next to nothing, and one cannot tell
    !> panels that are crude from those that are wrong
    real(wp), parameter :: loosest_accuracy = 1.0e-6_wp ! tested
-   !> Finest accuracy, over the velocity that gravity gives, where v0 is next to nothing beside it
-   real(wp), parameter :: finest_accuracy = 1.0e-11_wp ! guard
 
    ! Sums of exponentials
 
@@ -32,8 +29,6 @@ module vcor_solver_tuning
    real(wp), parameter :: plate_share = 0.1_wp ! tested
    !> Error of the coefficients of restitution per relative error of the kernel
    real(wp), parameter :: error_of_kernel = 0.3_wp ! tested
-   !> Relative error of a sum of exponentials that makes it none
-   real(wp), parameter :: no_sum = 1.0_wp ! guard
    !> Time that a sum holds over the expected contact time, and the factor by which it grows where
    !> the contact outlasts it
    real(wp), parameter :: window_margin = 2.0_wp ! tested
@@ -43,11 +38,6 @@ module vcor_solver_tuning
    !> Time of the largest force over the window before which it is none: the sum of a layer has no
    !> rates for so short a time
    real(wp), parameter :: layer_start = 1.0e-3_wp ! guard
-   !> Time of the largest force over that of the window from which on the error of the kernel is
-   !> what it is in the whole window, and the time over that of the force at which the error, which
-   !> oscillates, is looked up a second time
-   real(wp), parameter :: early_force = 0.05_wp ! guard
-   real(wp), parameter :: second_look = 1.5_wp ! guard
    !> Accuracy of `cor` on a layer where none is asked for, or one that product integration does not
    !> reach: the velocity of its face at the end is another matter than the sphere's
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
@@ -61,8 +51,6 @@ module vcor_solver_tuning
 
    !> Maximum iterations
    integer, parameter :: most_iterations = 40 ! tested
-   !> Correction over the one before that no longer falls
-   real(wp), parameter :: no_better = 0.25_wp ! guard
    !> Error of a position that what follows mends
    real(wp), parameter :: roughly = 1.0e-3_wp ! time
    !> What it may leave of an error over the accuracy: of a panel; of one that is solved with the
@@ -79,9 +67,7 @@ module vcor_solver_tuning
    real(wp), parameter :: newton_wildest = 1.0e6_wp ! guard
    !> What rounding leaves of a correction of the condition, over the largest one
    real(wp), parameter :: rounding_of_condition = 1.0e-9_wp ! guard
-   !> Polynomials run away beyond their own panel: end of their use in a guess, and in one of the
-   !> rebound
-   real(wp), parameter :: farthest_guess = 10.0_wp ! guard
+   !> End of the use of the polynomials of a panel in a guess at t1 in the next one: they run away
    real(wp), parameter :: farthest_rebound = 1.2_wp ! tested
 
    ! First panel, in x over the square root of the expected contact time
@@ -146,8 +132,6 @@ module vcor_solver_tuning
 
    ! End of the contact
 
-   !> Fall of the indentation over itself that is no rounding
-   real(wp), parameter :: noticeable_fall = 1.0e-12_wp ! guard
    !> Correction of a time over it that may be rounding
    real(wp), parameter :: noticeable_time = 1.0e-7_wp ! guard
    !> Share of the accuracy that the time of the end may have, and the share of that of the square
@@ -230,8 +214,6 @@ module vcor_solver_tuning
    real(wp), parameter :: close_to_zero = 0.3_wp ! guard
    !> No correction of the last panel goes farther than this, over its length
    real(wp), parameter :: farthest_closing = 0.4_wp ! guard
-   !> A panel over its start that is rounding: it has been cut and cut again
-   real(wp), parameter :: shortest_panel = 1.0e-14_wp ! guard
    !> What is left of the rate of t1' where a parabola goes on
    real(wp), parameter :: bend_kept = 0.6_wp ! time
    !> Of what t1 falls, as a guess, and for how long
@@ -261,20 +243,15 @@ module vcor_solver_tuning
    integer, parameter :: enough_steps = 1000 ! open
    !> Error of the largest force over the accuracy
    real(wp), parameter :: share_of_force = 10.0_wp ! tested
-   !> Order of three runs from which on their limit is better than the last one
-   real(wp), parameter :: least_order = 1.5_wp ! open
    !> Part of the approach that the last step of a rebound may take back
    real(wp), parameter :: last_part = 0.125_wp ! guard
-   !> Rate of the indentation over the velocity of a free fall that is beyond all bounds
-   real(wp), parameter :: beyond_all_motion = 1.0e10_wp ! guard
    !> Decay rate times the step from which on trapezoids are used: Adams and Moulton's rule is
    !> stable up to 6
    real(wp), parameter :: stiff_step = 2.0_wp ! tested
-   !> Steps next to t = 0 on which the rate of the drift is no parabola, over which kernels are
-   !> integrated in parts, and over parts of which the kernel's integral is taken exactly
+   !> Steps next to t = 0 on which the rate of the drift is no parabola, and over which kernels are
+   !> integrated in parts
    integer, parameter :: near_drift = 16 ! tested
    integer, parameter :: near_kernel = 16 ! tested
-   integer, parameter :: near_part = 12 ! open
    !> What the rule over a step makes of alpha' of a frozen plate may be off by, over the rise of
    !> alpha in the step: beyond, the step does not resolve it
    real(wp), parameter :: unresolved_rise = 0.1_wp ! guard
@@ -282,9 +259,5 @@ module vcor_solver_tuning
    real(wp), parameter :: aliased = 1.0e-10_wp ! tested
    !> Distance of the exponent from an integer that is none: the force is smooth at first
    real(wp), parameter :: next_to_integer = 1.0e-3_wp ! tested
-   !> Growth of t1 over the time step that is more than rounding
-   real(wp), parameter :: noticeable_growth = 1.0e-6_wp ! guard
-   !> Error of t1 over the time step, and of its condition over its parts
-   real(wp), parameter :: error_of_t1 = 1.0e-13_wp ! open
 
 end module vcor_solver_tuning

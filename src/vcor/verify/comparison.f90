@@ -14,7 +14,7 @@ module vcor_verify_comparison
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : finest_accuracy, wp
    use vcor_solver, only : default_accuracy, method_for, new_solver, solve_impact, &
       solver_settings_t, solver_t
    use vcor_verify_judge, only : judge_ends, judge_numbers
@@ -49,7 +49,6 @@ contains
       !> success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp), parameter :: finest = 1.0e-11_wp
       type(solver_settings_t) :: settings
       type(problem_t) :: problem
       character(len=:), allocatable :: method, scheme
@@ -69,7 +68,7 @@ contains
             call try(first, settings, impact, error)
          else
             ! a hundredth is more than anybody has asked for, and may be more than ive can do
-            settings%accuracy = max(0.01_wp*settings%accuracy, finest)
+            settings%accuracy = max(0.01_wp*settings%accuracy, finest_accuracy)
             call try(comparison%attempts(attempt_refined), settings, impact, error, lenient=.true.)
          end if
          if (.not. allocated(error)) call halve(comparison%attempts, settings, impact, error)

@@ -16,7 +16,6 @@
 !> sphere. The sum over the past makes N^2/2 multiplications and additions in all, on contiguous
 !> arrays.
 module vcor_solver_direct_product
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
@@ -30,8 +29,8 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_tuning, only : beyond_all_motion, enough_steps, first_steps, last_part, &
-      layer_reach, least_order, least_part, most_for_all, most_for_layers, share_of_force
+   use vcor_solver_tuning, only : enough_steps, first_steps, last_part, &
+      layer_reach, least_part, most_for_all, most_for_layers, share_of_force
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    implicit none
    private
@@ -162,8 +161,9 @@ contains
                    .or. trajectory%cor_error <= trajectory%accuracy &
                    .and. found%error <= share_of_force*accuracy*force(3))) then
                   ! the steps were not chosen for the maxima
-                  trajectory%max_indentation = extrapolated(depth)
-                  trajectory%max_force = extrapolated(force)
+                  trajectory%max_force = found%limit
+                  found = richardson(depth)
+                  trajectory%max_indentation = found%limit
                   return
                end if
                if (2*trajectory%steps > most_steps(impact)) then
@@ -185,21 +185,6 @@ contains
 
       most_steps = merge(most_for_layers, most_for_all, impact%plate%layered())
    end function most_steps
-
-   !> Limit of three values with steps 4 dt, 2 dt and dt, the last one where they show no order that
-   !> the method has
-   pure function extrapolated(value)
-      real(wp), intent(in) :: value(3)
-      !> Their limit
-      real(wp) :: extrapolated
-
-      type(richardson_t) :: found
-
-      extrapolated = value(3)
-      found = richardson(value)
-      if (.not. ieee_is_finite(found%order)) return
-      if (found%order >= least_order) extrapolated = found%limit
-   end function extrapolated
 
    !> One run with a given step
    subroutine march(settings, impact, dt, expected, trajectory, crude, error)
@@ -261,7 +246,8 @@ contains
             call refuse_growth(impact, error)
             return
          end if
-         if (.not. abs(run%speed) < beyond_all_motion*impact%free_velocity(run%motion%t)) then
+         ! of the motion of the sphere no digit is left
+         if (.not. abs(run%speed)*epsilon(1.0_wp) < impact%free_velocity(run%motion%t)) then
             call raise(error, error_numerical, 'fixed steps do not follow this plate: its motion ' &
                //'grows beyond all bounds')
             return

@@ -8,15 +8,18 @@
 !> kernel is integrated over a part of the step. The newest indentation and velocity depend on the
 !> force, s_n = s_0 - a F and s'_n = v_0 - b F, so force and t1 are found together.
 module vcor_solver_direct_receding
+   use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
    use vcor_solver_convolution, only : lengthen
    use vcor_solver_direct_weights, only : contact_kernel_t
-   use vcor_solver_tuning, only : error_of_t1, noticeable_growth
    implicit none
    private
 
    public :: receding_t
+
+   !> Growth of t1, over the time step, that is more than rounding
+   real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
 
    !> Receding contact under way
    type :: receding_t
@@ -122,16 +125,16 @@ contains
          self%t1(3) = min(0.0_wp, known/(impact%kernel(real(n, wp)*kernel%dt)*self%ds(1)))
       else
          self%force = force
-         call find_in_step(self, impact, kernel, n, m, du, known, per_force)
+         call find_in_step(self, impact%law, kernel, n, m, du, known, per_force)
       end if
-      self%regrows = self%t1(3) > self%t1(2) + noticeable_growth
+      self%regrows = self%t1(3) > self%t1(2) + rounding
    end subroutine find_force
 
    !> Find t1 in step m by the Illinois method, and the force with it
-   subroutine find_in_step(self, impact, kernel, n, m, du, known, per_force)
+   subroutine find_in_step(self, law, kernel, n, m, du, known, per_force)
       !> The contact; on entry its force is that up to the end of the step
       class(receding_t), intent(inout) :: self
-      type(impact_t), intent(in) :: impact
+      type(contact_law_t), intent(in) :: law
       type(contact_kernel_t), intent(in) :: kernel
       !> Node
       integer, intent(in) :: n
@@ -147,7 +150,7 @@ contains
       real(wp) :: lower, upper, f_lower, f_upper, f, x, force, end_u
       integer :: iteration
 
-      end_u = impact%law%u(self%s(m))
+      end_u = law%u(self%s(m))
       lower = 0.0_wp
       upper = 1.0_wp
       call evaluate(lower, f_lower, force)
@@ -157,7 +160,7 @@ contains
          if (.not. f_lower > f_upper) exit
          x = (lower*f_upper - upper*f_lower)/(f_upper - f_lower)
          call evaluate(x, f, force)
-         if (abs(f) <= error_of_t1*abs(known) .or. .not. abs(upper - lower) > error_of_t1) exit
+         if (abs(f) <= epsilon(f)*abs(known) .or. .not. abs(upper - lower) > epsilon(x)) exit
          if ((f > 0.0_wp) .neqv. (f_upper > 0.0_wp)) then
             lower = upper
             f_lower = f_upper
@@ -184,14 +187,13 @@ contains
 
          associate (ds => self%ds(m), bend => self%ds(m) - self%ds(max(m - 1, 1)))
             s1 = self%s(m - 1) + position*(ds - 0.5_wp*bend*(1.0_wp - position))
-            part = 0.0_wp
             moment = kernel%moment(n - m)*(1.0_wp - position)
-            if (position < 1.0_wp) part = kernel%part(impact, n - m, position)/(1.0_wp - position)
+            part = kernel%late_mean(n - m, position)
             condition = known + part*(self%s(m) - s1) + moment*bend
          end associate
          before = 0.0_wp
          if (m > 1) before = du(m - 1)
-         up_to = self%force - part*(end_u - impact%law%u(s1)) - moment*(du(m) - before)
+         up_to = self%force - part*(end_u - law%u(s1)) - moment*(du(m) - before)
          condition = condition - per_force*up_to
       end subroutine evaluate
    end subroutine find_in_step

@@ -7,7 +7,7 @@ module vcor_solver_direct_weights
    use vcor_kinds, only : wp
    use vcor_numeric_quadrature, only : endpoint_rule, newton_cotes
    use vcor_solver_convolution, only : convolution_t
-   use vcor_solver_tuning, only : aliased, near => near_kernel, near_part
+   use vcor_solver_tuning, only : aliased, near => near_kernel
    implicit none
    private
 
@@ -27,7 +27,7 @@ module vcor_solver_direct_weights
       real(wp), allocatable :: moment(:)
    contains
       procedure :: prepare
-      procedure :: part
+      procedure :: late_mean
    end type contact_kernel_t
 
 contains
@@ -53,26 +53,18 @@ contains
       call self%set(weights)
    end subroutine prepare
 
-   !> Integral of the kernel over the later part of a step in t1, over dt: next to t = 0 exactly,
-   !> later by its mean and its slope
-   pure function part(self, impact, i, position) result(integral)
+   !> Mean of the kernel over the later part of a step in t1, by that over the step and its slope
+   pure function late_mean(self, i, position) result(mean)
       class(contact_kernel_t), intent(in) :: self
-      type(impact_t), intent(in) :: impact
       !> Step, counted from t = 0 of the kernel, > 0
       integer, intent(in) :: i
       !> Where the part begins, 0 .. 1
       real(wp), intent(in) :: position
-      !> Integral [N/m^1.5]
-      real(wp) :: integral
+      !> Mean [N/m^1.5]
+      real(wp) :: mean
 
-      if (i < near_part) then
-         integral = (impact%kernel_integral((real(i + 1, wp) - position)*self%dt) &
-            - impact%kernel_integral(real(i, wp)*self%dt))/self%dt
-      else
-         integral = (1.0_wp - position)*(self%mean(i) &
-            + 0.25_wp*position*(self%mean(i - 1) - self%mean(i + 1)))
-      end if
-   end function part
+      mean = self%mean(i) + 0.25_wp*position*(self%mean(i - 1) - self%mean(i + 1))
+   end function late_mean
 
    !> Weights W_i of the memory of a hereditary plate
    pure function memory_weights(plate, dt, n) result(weight)

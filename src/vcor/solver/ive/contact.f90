@@ -13,7 +13,7 @@ module vcor_solver_ive_contact
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_time, col_velocity, contact_separated, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : finest_accuracy, wp
    use vcor_numeric_radau_algebra, only : width
    use vcor_numeric_radau_collocation, only : collocation_t, most_steps
    use vcor_solver_ive_approach, only : approach_t
@@ -30,10 +30,10 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
-      first_drift, first_receding_growth, first_short, finest_accuracy, first_slow, first_three, &
+      first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, shortest_panel, &
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
       solution_share, tolerable, usual_accuracy, usually_better
    implicit none
    private
@@ -107,7 +107,7 @@ contains
       complete = .true.
       do trial = 1, most_panels
          ! a panel that has been cut to nothing: no other one does better
-         if (.not. contact%step%duration() > shortest_panel**2*time_scale) then
+         if (.not. contact%step%duration() > epsilon(1.0_wp)**2*time_scale) then
             if (trajectory%has_died_out(impact, .true.)) return
             exit
          end if

@@ -9,8 +9,8 @@ module vcor_solver_ive_landing
    use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : landing_share, most_iterations, no_better, noticeable_fall, &
-      noticeable_time, peak_guess, roughly, share_of_square
+   use vcor_solver_tuning, only : landing_share, most_iterations, noticeable_time, &
+      peak_guess, roughly, share_of_square
    implicit none
    private
 
@@ -25,8 +25,8 @@ contains
       integer :: stage
 
       do stage = 1, panel%stages
-         if (panel%force(stage) <= 0.0_wp .and. panel%indentation(stage - 1) &
-             - panel%indentation(stage) > noticeable_fall*abs(panel%indentation(stage - 1))) return
+         if (panel%force(stage) <= 0.0_wp &
+             .and. panel%indentation(stage) < panel%indentation(stage - 1)) return
       end do
       stage = 0
    end function first_without_force
@@ -171,7 +171,7 @@ contains
                tolerance, panel%indentation(n) >= shallow)) return
             ! rounding in the force of a dashpot or of stiff internal variables ends it, too
             if (iteration > 3 .and. abs(correction) <= noticeable_time*(start%time + time) &
-                .and. abs(correction) >= no_better*abs(last_correction)) return
+                .and. abs(correction) >= abs(last_correction)) return
             time = time + correction
          end do
       end associate

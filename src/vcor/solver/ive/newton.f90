@@ -7,9 +7,9 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_tuning, only : farthest_closing, farthest_guess, farthest_rebound, &
-      most_iterations, newton_close, newton_wildest, no_better, noticeable_time, &
-      shortest_panel, slowest_contraction
+   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, &
+      most_iterations, newton_close, newton_wildest, noticeable_time, &
+      slowest_contraction
    implicit none
    private
 
@@ -45,8 +45,7 @@ contains
          if (previous%stages == 0) then
             panel%indentation(1:) = problem%impact%free_path(time)
          else
-            panel%indentation(1:) = &
-               rule%extend(previous%indentation, min(previous%theta(time), farthest_guess))
+            panel%indentation(1:) = rule%extend(previous%indentation, previous%theta(time))
          end if
       end associate
    end subroutine guess
@@ -294,7 +293,7 @@ contains
       associate (rule => problem%collocator%rule)
          n = rule%stages
          do iteration = 1, most_iterations
-            if (.not. length > shortest_panel*start%time) return
+            if (.not. length > epsilon(length)*start%time) return
             call problem%set_up(rule, step_of(closing, length), start, panel, equations)
             panel%t1(n) = 0.0_wp
             call correct(newton, problem, equations, inverse, panel)
@@ -313,7 +312,7 @@ contains
                <= time_tolerance*(start%time + length) &
                ! rounding in the condition of stiff internal variables ends it, too
                .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
-               .and. abs(correction) >= no_better*abs(last_correction))
+               .and. abs(correction) >= abs(last_correction))
             if (panel%converged) exit
             length = length + correction
             ! the motion does not know how long the panel is

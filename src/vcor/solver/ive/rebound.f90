@@ -22,7 +22,7 @@ module vcor_solver_ive_rebound
       expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
       margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
       rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
-      shortest_panel, slowest_fall, smallest_share, solution_share, sure_growth, &
+      slowest_fall, smallest_share, solution_share, sure_growth, &
       tolerable, unreliable_kernel, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
@@ -72,7 +72,7 @@ contains
       call start(rebound, approach)
       do trial = 1, most_rebound_panels
          call choose_length(rebound)
-         if (.not. rebound%taken > shortest_panel*rebound%start%time) exit
+         if (.not. rebound%taken > epsilon(1.0_wp)*rebound%start%time) exit
          call solve_panel(rebound)
          if (rebound%misled) cycle
          if (.not. (rebound%panel%converged .and. rebound%coarse%converged)) then
