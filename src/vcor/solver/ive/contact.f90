@@ -54,6 +54,8 @@ module vcor_solver_ive_contact
       real(wp) :: largest_force = 0.0_wp
       !> What the panel adds to the error of the motion, and the most that one has added [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
+      !> What the panels before have added where each companion starts from the solution [-]
+      real(wp) :: handed_down = 0.0_wp
       !> What the first panel misses of the drift of a frozen plate [-]
       real(wp) :: missed_drift = 0.0_wp
       !> What a rebound feels of the difference of the two solutions inside the panel, and the most
@@ -288,8 +290,8 @@ contains
                *panel%time(n)*self%time_tolerance()
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
             ! the velocity of a layer's face rings: shorter panels do not reach its error
-            if (impact%plate%layered()) cor_error = sphere_error
-            self%excess = max(self%excess, cor_error/self%accuracy)
+            if (.not. impact%plate%layered()) self%excess = max(self%excess, &
+               cor_error/self%accuracy)
          else if (.not. maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
             allowed = force_share*allowed
          end if
@@ -455,8 +457,15 @@ contains
 
       associate (problem => self%problem)
          call problem%advance(problem%collocator%rule, self%step, self%panel, self%start)
-         call problem%advance(problem%collocator%coarse, self%step, self%coarse, &
-            self%coarse_start)
+         if (problem%impact%plate%layered()) then
+            ! from companion to companion the difference to the solution would ring on, and no
+            ! shorter panel reduces that
+            self%handed_down = self%handed_down + self%growth
+            self%coarse_start = self%start
+         else
+            call problem%advance(problem%collocator%coarse, self%step, self%coarse, &
+               self%coarse_start)
+         end if
       end associate
       if (self%ahead > 0) then
          self%ahead = self%ahead - 1
@@ -559,7 +568,8 @@ contains
       real(wp) :: error
 
       associate (n => self%panel%stages, impact => self%problem%impact)
-         error = max(part*abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)), &
+         error = max(part*(abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)) &
+            + self%handed_down*impact%mass*self%speed), &
             min(max(part*self%largest_growth, self%missed_drift), harmless*self%accuracy) &
             *impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better

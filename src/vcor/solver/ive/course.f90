@@ -81,7 +81,7 @@ contains
             + self%growth_of(panel%indentation, coarse%indentation) &
             /(self%speed*self%time_scale)
          ! what rings in a layer comes to nothing in the motion
-         if (impact%plate%drifts() .and. (self%ends .or. .not. impact%plate%layered())) &
+         if (impact%plate%drifts() .and. .not. impact%plate%layered()) &
             error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
       end associate
    end function motion_error
