@@ -42,7 +42,7 @@ module vcor_solver_tuning
    !> reach: the velocity of its face at the end is another matter than the sphere's
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
    !> Accuracy that an impact on a layer is worked to at best: what rings is not to be resolved
-   real(wp), parameter :: layer_accuracy = 3.0e-8_wp ! tested
+   real(wp), parameter :: layer_accuracy = 1.0e-7_wp ! tested
    !> What the velocity of its face at the end feels of the misfit, measured between sums of other
    !> rates: most where the force ends as s^1.5
    real(wp), parameter :: error_of_layer = 1.0e3_wp ! tested

@@ -54,7 +54,8 @@ module vcor_solver_ive_contact
       real(wp) :: largest_force = 0.0_wp
       !> What the panel adds to the error of the motion, and the most that one has added [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
-      !> What the panels before have added where each companion starts from the solution [-]
+      !> Difference of the impulse to those of the companions of the panels before, where each of
+      !> them starts from the solution [N s]
       real(wp) :: handed_down = 0.0_wp
       !> What the first panel misses of the drift of a frozen plate [-]
       real(wp) :: missed_drift = 0.0_wp
@@ -460,7 +461,10 @@ contains
          if (problem%impact%plate%layered()) then
             ! from companion to companion the difference to the solution would ring on, and no
             ! shorter panel reduces that
-            self%handed_down = self%handed_down + self%growth
+            associate (n => self%panel%stages)
+               self%handed_down = self%handed_down + self%panel%impulse(n) &
+                  - self%coarse%impulse(n - 1)
+            end associate
             self%coarse_start = self%start
          else
             call problem%advance(problem%collocator%coarse, self%step, self%coarse, &
@@ -568,9 +572,8 @@ contains
       real(wp) :: error
 
       associate (n => self%panel%stages, impact => self%problem%impact)
-         error = max(part*(abs(self%panel%impulse(n) - self%coarse%impulse(n - 1)) &
-            + self%handed_down*impact%mass*self%speed), &
-            min(max(part*self%largest_growth, self%missed_drift), harmless*self%accuracy) &
+         error = max(part*abs(self%handed_down + self%panel%impulse(n) &
+            - self%coarse%impulse(n - 1)), min(max(part*self%largest_growth, self%missed_drift), harmless*self%accuracy) &
             *impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
          if (self%branches) error = max(error, self%growth*impact%mass*self%speed)
