@@ -39,8 +39,6 @@ module vcor_impact_layer
    contains
       !> Compliance beyond Hertz' dent
       procedure :: compliance
-      !> The same for many footprints
-      procedure :: compliances
       !> Hertz' dent by a flat punch
       procedure :: dent
       !> Compliance for what happens at once
@@ -63,77 +61,66 @@ contains
       call gauss_nodes(self%node, self%weight)
    end subroutine new_layer
 
-   !> Compliance C(s) beyond Hertz' dent, to about 2e-8 of it and of the dent
-   pure function compliance(self, s, footprint) result(c)
-      !> The layer
-      class(layer_t), intent(in) :: self
-      !> Laplace variable [1/s], real part > 0
-      complex(wp), intent(in) :: s
-      !> Radius a of the disc that is loaded [m], > 0
-      real(wp), intent(in) :: footprint
-      !> Compliance [m/N]
-      complex(wp) :: c
-
-      associate (all => self%compliances(s, [footprint]))
-         c = all(1)
-      end associate
-   end function compliance
-
-   !> The same for many footprints, which costs little more than for one
-   pure function compliances(self, s, footprint) result(c)
+   !> Compliance C(s) beyond Hertz' dent for discs of many radii, which costs little more than for one
+   pure function compliance(self, s, footprint, accuracy) result(c)
       class(layer_t), intent(in) :: self
       !> Laplace variable [1/s], real part > 0
       complex(wp), intent(in) :: s
       !> Radii a of the disc that is loaded [m], > 0, shape (n)
       real(wp), intent(in) :: footprint(:)
+      !> Wanted error over C and the dent, >= 1e-9
+      real(wp), intent(in) :: accuracy
       !> Compliances [m/N], shape (n)
       complex(wp) :: c(size(footprint))
 
-      ! Panels grow geometrically from where nothing has happened yet; among the poles of the
-      ! propagating modes they follow their distance from the real axis, further out the footprint
-      real(wp), parameter :: start = 1.0e-3_wp, growth = 0.5_wp, near_poles = 1.4_wp
-      real(wp), parameter :: slow_share = 0.3_wp, beyond_rayleigh = 1.4_wp, oscillation = 5.0_wp
-      real(wp), parameter :: around_bending(2) = [0.7_wp, 1.6_wp]
-      ! The integrand is its asymptote from here on
-      real(wp), parameter :: far_footprint = 40.0_wp, far_wave = 15.0_wp, far_face = 30.0_wp
+      ! Rayleigh's waves are slower than shear waves by this factor at most, by the second part where
+      ! Poisson's ratio is -1; bending waves differ by these factors from those of a thin plate
+      real(wp), parameter :: rayleigh(2) = [1.15_wp, 0.3_wp], bending(2) = [0.7_wp, 1.6_wp]
+      ! Poisson's ratio is 1/2 where shear waves over pressure waves have this speed
+      real(wp), parameter :: fastest = 0.03_wp
+      ! The integrand is its asymptote beyond these, over radius, shear wave and thickness
+      real(wp), parameter :: far_footprint = 40.0_wp, far_wave = 0.37_wp, far_face = 30.0_wp
+      real(wp), parameter :: order = 2.0_wp*real(nodes, wp)
       complex(wp) :: modulus, shear, p, q, g(nodes)
-      real(wp) :: nu, gamma, distance, last_pole, bending, bending_distance, first, last, low, step
-      real(wp) :: k(nodes), x(nodes)
+      real(wp) :: nu, share, shear_wave, bending_wave, damping, behind, ellipse, reach, widest
+      real(wp) :: last, low, step, k(nodes), x(nodes), zeta(2)
       integer :: i
 
       nu = self%material%poisson_ratio()
-      gamma = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
+      share = (1.0_wp - 2.0_wp*nu)/(2.0_wp*(1.0_wp - nu))
       modulus = self%material%complex_modulus(s)
       shear = modulus/(2.0_wp*(1.0_wp + nu))
       q = self%material%density()*s**2/shear
-      p = gamma*q
+      p = share*q
 
-      distance = near_poles*max(sqrt(gamma), slow_share)*abs(real(sqrt(q), wp))
-      last_pole = beyond_rayleigh*sqrt(abs(q))
-      first = start*min(distance, last_pole)
-      bending = 0.0_wp
-      bending_distance = 0.0_wp
-      last = max(far_footprint/minval(footprint), far_wave*sqrt(abs(q)))
+      ! Gauss' rule with n nodes is as accurate as asked for on a panel that is `reach` times its
+      ! distance from the poles of G, which leaves out an ellipse around it: the sum of its half
+      ! axes over half the panel to the power -2 n. A sine is to have a panel of 1/k `widest`
+      ellipse = accuracy**(-1.0_wp/order)
+      reach = 4.0_wp*ellipse/(ellipse**2 - 1.0_wp)
+      widest = 2.0_wp*(gamma(order + 1.0_wp)*accuracy)**(1.0_wp/order)
+
+      shear_wave = sqrt(abs(q))
+      damping = abs(real(sqrt(q), wp))/shear_wave
+      last = max(far_footprint/minval(footprint), far_wave*accuracy**(-1.0_wp/6.0_wp)*shear_wave)
+      bending_wave = 0.0_wp
       if (self%thickness > 0.0_wp) then
          ! k^4 = -12 rho (1 - nu^2) s^2/(E H^2)
-         bending = sqrt(sqrt(6.0_wp*(1.0_wp - nu)*abs(q))/self%thickness)
-         bending_distance = 0.5_wp*near_poles*bending*abs(real(s, wp)/s)
-         first = min(first, start*bending)
+         bending_wave = sqrt(sqrt(6.0_wp*(1.0_wp - nu))*shear_wave/self%thickness)
          last = max(last, far_face/self%thickness)
       end if
+      behind = (rayleigh(1) + rayleigh(2)*max(0.0_wp, -nu))*shear_wave
 
       c = (0.0_wp, 0.0_wp)
       low = 0.0_wp
       do while (low < last)
-         step = max(growth*low, first)
-         if (low < last_pole) then
-            step = min(step, distance)
-         else if (low < around_bending(1)*bending) then
-            step = min(step, max(around_bending(1)*bending - low, bending_distance))
-         else if (low < around_bending(2)*bending) then
-            step = min(step, bending_distance)
-         end if
-         step = min(step, oscillation/maxval(footprint))
+         ! the groups of waves travel no faster than these do, nor than pressure waves; those of
+         ! bending waves twice as fast
+         step = reach*(damping*max(max(sqrt(share), fastest)*shear_wave, min(low, shear_wave)) &
+            + max(0.0_wp, low - behind))
+         if (low < bending(2)*bending_wave) step = min(step, &
+            max(bending(1)*bending_wave - low, 0.5_wp*reach*damping*low))
+         step = min(step, widest/maxval(footprint))
          k = low + step*self%node
          g = step*self%weight*(deflection(k, q, p, self%thickness) - (1.0_wp - nu))
          do i = 1, size(footprint)
@@ -143,14 +130,16 @@ contains
          low = low + step
       end do
 
-      ! k G mu = (1 - nu) (1 + zeta q/k^2 + ...) beyond, and int_K^oo sin(k a)^2/k^4 dk
-      associate (a => footprint, zeta => 0.5_wp*gamma &
-                 - (3.0_wp - 2.0_wp*gamma)/(2.0_wp*(1.0_wp - gamma)) + 0.25_wp*(3.0_wp + gamma))
-         c = c + (1.0_wp - nu)*zeta*q/a**2*(1.0_wp/(6.0_wp*low**3) &
-            + sin(2.0_wp*low*a)/(4.0_wp*a*low**4))
-      end associate
+      ! k G mu = (1 - nu) (1 + zeta_1 q/k^2 + zeta_2 (q/k^2)^2 + ...) beyond
+      zeta(1) = -(3.0_wp - 4.0_wp*share + 3.0_wp*share**2)/(4.0_wp*(1.0_wp - share))
+      zeta(2) = (11.0_wp - 22.0_wp*share + 18.0_wp*share**2 - 2.0_wp*share**3 - share**4) &
+         /(16.0_wp*(1.0_wp - share)**2)
+      do i = 1, 2
+         c = c + (1.0_wp - nu)*zeta(i)*(q/low**2)**i*(1.0_wp/(2.0_wp*low*real(2*i + 1, wp)) &
+            + sin(2.0_wp*low*footprint)/(4.0_wp*low**2*footprint))/footprint**2
+      end do
       c = c/(2.0_wp*pi*shear)
-   end function compliances
+   end function compliance
 
    !> Compliance of a flat punch on the static half space, what C(s) lacks to be passive
    pure function dent(self, s, footprint) result(c)

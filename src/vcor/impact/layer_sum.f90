@@ -134,7 +134,7 @@ contains
       radius = ladder**(real(self%band, wp) + 0.5_wp*(1.0_wp + node()))
       all = [point, echo]/window
       do i = 1, points
-         c(i, :) = radius*layer%compliances(all(i), radius) - at_once()
+         c(i, :) = radius*layer%compliance(all(i), radius, accuracy(i)) - at_once()
          passive(i) = abs(c(i, middle)) + abs(radius(middle)*layer%dent(all(i), radius(middle))) &
             *(1.0_wp + (bend/abs(point(i)))**2)
       end do
@@ -156,7 +156,8 @@ contains
             left = left + response(j, all(i)*window)*self%coefficient(j, :)
          end do
          if (i <= points) left = left - c(i, :)
-         if (i > points) left = left - radius*layer%compliances(all(i), radius) + at_once()
+         if (i > points) left = left - radius*layer%compliance(all(i), radius, accuracy(i)) &
+            + at_once()
          self%misfit_of_rate = max(self%misfit_of_rate, &
             abs(left)/(1.0_wp + size_of_force(i)**power_of_rate))
          if (i <= points) self%misfit = max(self%misfit, &
@@ -172,6 +173,14 @@ contains
 
          at_once = radius(middle)*layer%instant(radius(middle))
       end function at_once
+
+      !> Accuracy of C at a point, where the force has less and less of the frequency
+      pure function accuracy(i)
+         integer, intent(in) :: i
+         real(wp) :: accuracy
+
+         accuracy = min(3.0e-9_wp*(1.0_wp + (abs(all(i)*window)/bend)**2), 1.0e-6_wp)
+      end function accuracy
    end subroutine new_layer_sum
 
    !> Positions of the radii in their band, from -1 to 1
