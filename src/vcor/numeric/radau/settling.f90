@@ -236,16 +236,16 @@ contains
       !> exp(-a)
       complex(wp), intent(out) :: decay
 
-      ! where the fraction takes over, and as many terms of both as give 12 digits
+      ! where the fraction takes over, and as many terms of both as give 12 digits: those of the
+      ! series are a^i/i!, the fraction gains by the root of their number times a
       real(wp), parameter :: smallest = 6.0_wp
-      integer, parameter :: terms = 50
       complex(wp) :: series(2), fraction, root
       integer :: i, k
 
       decay = exp(-a)
       if (abs(a) < smallest) then
          series = 1.0_wp
-         do i = terms, 1, -1
+         do i = 10 + ceiling(3.5_wp*abs(a)), 1, -1
             series = 1.0_wp + 2.0_wp*a/real([highest + 2*i, highest + 1 + 2*i], wp)*series
          end do
          moment(highest - 1:) = decay*series/real([highest, highest + 1], wp)
@@ -255,7 +255,7 @@ contains
       else
          root = sqrt(a)
          fraction = root
-         do i = terms, 1, -1
+         do i = 2 + ceiling(min(300.0_wp/abs(a), 48.0_wp)), 1, -1
             fraction = root + 0.5_wp*real(i, wp)/fraction
          end do
          moment(0) = 0.5_wp*(sqrt(pi) - decay/fraction)/root

@@ -73,7 +73,9 @@ contains
       panel%converged = newton%converged
       if (.not. panel%converged) return
       call problem%integrate(rule, equations, panel)
-      if (equations%closes) call problem%settle(rule, equations, start, panel)
+      if (.not. equations%closes) return
+      call problem%settle(rule, equations, start, panel)
+      call problem%settle_plate(rule, equations, start, panel)
    end subroutine solve
 
    !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls as u
@@ -187,6 +189,7 @@ contains
       call problem%integrate(rule, equations, panel)
       if (equations%closes) then
          call problem%settle(rule, equations, start, panel)
+         call problem%settle_plate(rule, equations, start, panel)
       else if (.not. equations%rebounds) then
          ! what is left of the error goes to the force, so that the motion is that of the impulse
          panel%indentation(1:) = problem%impact%free_path(panel%time(1:)) &
@@ -313,7 +316,10 @@ contains
                ! rounding in the condition of stiff internal variables ends it, too
                .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
                .and. abs(correction) >= abs(last_correction))
-            if (panel%converged) exit
+            if (panel%converged) then
+               call problem%settle_plate(rule, equations, start, panel)
+               exit
+            end if
             length = length + correction
             ! the motion does not know how long the panel is
             panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time &

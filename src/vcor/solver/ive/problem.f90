@@ -66,6 +66,7 @@ module vcor_solver_ive_problem
       procedure :: integrate
       procedure, private :: follow_force
       procedure :: settle
+      procedure :: settle_plate
       procedure :: second_term
       procedure :: advance
    end type panel_problem_t
@@ -499,7 +500,7 @@ contains
 
    !> Where time stands still at the end of the panel, collocation there says nothing about internal
    !> variables that settle in it, and the end has no weight in the integrals of the panel: what
-   !> they make of the drift of a hereditary plate and of the condition is integrated
+   !> they make of the condition is integrated
    pure subroutine settle(self, rule, e, start, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
@@ -509,19 +510,14 @@ contains
 
       real(wp) :: velocity
 
-      associate (n => rule%stages, contact => self%modes%contact, plate => self%modes%plate, &
-                 impact => self%impact)
-         if (e%remembers) panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, &
-            e%scale, start%p, panel%impulse(:n))
-         if (allocated(plate%pair_rates)) panel%drift(n) = panel%drift(n) &
-            - rule%settling%total_of_pairs(plate%pair_moduli, plate%pair_rates, e%scale, &
-            start%p(size(plate%rates) + 1:), panel%impulse(:n))
+      associate (n => rule%stages, contact => self%modes%contact, impact => self%impact)
          panel%t1(n) = sum(rule%end_weight(0:n - 1)*panel%t1(0:n - 1))
          panel%condition(n) = contact%equilibrium*panel%indentation(n) &
             + rule%settling%total(contact%moduli, contact%rates, e%scale, start%lag, &
             panel%indentation(:n))
          if (e%viscosity > 0.0_wp) then
             velocity = impact%free_velocity(panel%time(n)) - panel%impulse(n)*e%inverse_mass
+            call self%settle_plate(rule, e, start, panel)
             if (impact%plate%drifts()) then
                velocity = velocity + panel%drift(n)
             else
@@ -532,6 +528,24 @@ contains
          end if
       end associate
    end subroutine settle
+
+   !> The same for the drift of a hereditary plate
+   pure subroutine settle_plate(self, rule, e, start, panel)
+      class(panel_problem_t), intent(in) :: self
+      type(collocation_t), intent(in) :: rule
+      type(equations_t), intent(in) :: e
+      type(start_t), intent(in) :: start
+      type(panel_t), intent(inout) :: panel
+
+      if (.not. e%remembers) return
+      associate (n => rule%stages, plate => self%modes%plate)
+         panel%drift(n) = -rule%settling%total(plate%moduli, plate%rates, e%scale, start%p, &
+            panel%impulse(:n))
+         if (allocated(plate%pair_rates)) panel%drift(n) = panel%drift(n) &
+            - rule%settling%total_of_pairs(plate%pair_moduli, plate%pair_rates, e%scale, &
+            start%p(size(plate%rates) + 1:), panel%impulse(:n))
+      end associate
+   end subroutine settle_plate
 
    !> Make the end of a panel the start of the next one
    subroutine advance(self, rule, step, panel, start)
