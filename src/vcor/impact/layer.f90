@@ -182,8 +182,12 @@ contains
       !> k mu G [-]
       complex(wp) :: g
 
-      complex(wp) :: al, be, s, t, s_less_t, ta, tb, tb_less_ta
+      ! where exp(-al H) and exp(-be H) are so close that their difference is taken by a series
+      real(wp), parameter :: small = 0.1_wp
+      integer, parameter :: terms = 8
+      complex(wp) :: al, be, s, t, s_less_t, da, db, d, difference
       real(wp) :: k2
+      integer :: i
 
       k2 = k*k
       al = sqrt(k2 + p)
@@ -192,28 +196,26 @@ contains
       t = 4.0_wp*k2*al*be
       s_less_t = (k2*(k2*(16.0_wp*k2*(q - p) + q*(24.0_wp*q - 16.0_wp*p)) + 8.0_wp*q**3) + q**4) &
          /(s + t)
-      if (thickness > 0.0_wp) then
-         ta = tanh_right(0.5_wp*thickness*al)
-         tb = tanh_right(0.5_wp*thickness*be)
-         tb_less_ta = tanh(0.5_wp*thickness*(q - p)/(al + be))*(1.0_wp - ta*tb)
-         g = 0.5_wp*k*al*q*(ta*tb/(s_less_t*tb + t*tb_less_ta) &
-            + 1.0_wp/(s_less_t*ta - t*tb_less_ta))
-      else
-         g = k*al*q/s_less_t
+      g = k*al*q
+      if (.not. thickness > 0.0_wp) then
+         g = g/s_less_t
+         return
       end if
+      da = exp(-thickness*al)
+      db = exp(-thickness*be)
+      d = thickness*(q - p)/(al + be)
+      difference = da - db
+      if (abs(d) < small) then
+         difference = 1.0_wp
+         do i = terms, 2, -1
+            difference = 1.0_wp - d/real(i, wp)*difference
+         end do
+         difference = da*d*difference
+      end if
+      difference = 2.0_wp*t*difference
+      g = 0.5_wp*g*((1.0_wp - da)*(1.0_wp - db) &
+         /(s_less_t*(1.0_wp - db)*(1.0_wp + da) + difference) + (1.0_wp + da)*(1.0_wp + db) &
+         /(s_less_t*(1.0_wp - da)*(1.0_wp + db) - difference))
    end function deflection
-
-   !> tanh z for a real part that is not negative, however large
-   elemental function tanh_right(z) result(value)
-      !> z
-      complex(wp), intent(in) :: z
-      !> tanh z
-      complex(wp) :: value
-
-      complex(wp) :: decay
-
-      decay = exp(-2.0_wp*z)
-      value = (1.0_wp - decay)/(1.0_wp + decay)
-   end function tanh_right
 
 end module vcor_impact_layer

@@ -19,7 +19,7 @@ module vcor_impact_layer_sum
    use vcor_impact_layer, only : layer_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
-   use vcor_numeric_lapack, only : dgeqp3, dorgqr, dtrtrs
+   use vcor_numeric_lapack, only : dgeqp3, dormqr, dtrtrs
    implicit none
    private
 
@@ -261,7 +261,7 @@ contains
       real(wp), allocatable, intent(out) :: x(:, :)
 
       real(wp), parameter :: dependent = 1.0e-12_wp
-      real(wp), allocatable :: r(:, :), y(:, :), work(:)
+      real(wp), allocatable :: y(:, :), work(:)
       real(wp) :: tau(size(matrix, 2)), length(size(matrix, 2))
       integer :: pivot(size(matrix, 2)), rows, m, n, k, j, info
 
@@ -274,21 +274,18 @@ contains
          matrix(:, j) = matrix(:, j)/length(j)
       end do
       pivot = 0
-      allocate (work(70*m))
+      allocate (work(70*m), y(rows, k))
       call dgeqp3(rows, m, matrix, rows, pivot, tau, work, size(work), info)
       if (info /= 0) return
       n = count([(abs(matrix(j, j)) > dependent*abs(matrix(1, 1)), j=1, m)])
-      r = matrix(:n, :n)
-      call dorgqr(rows, n, n, matrix, rows, tau, work, size(work), info)
-      if (info /= 0) return
-      allocate (y(n, k))
       do j = 1, k
-         y(:, j) = matmul([weight*real(right(:, j), wp), weight*aimag(right(:, j))], matrix(:, :n))
+         y(:, j) = [weight*real(right(:, j), wp), weight*aimag(right(:, j))]
       end do
-      call dtrtrs('U', 'N', 'N', n, k, r, n, y, n, info)
+      call dormqr('L', 'T', rows, k, n, matrix, rows, tau, y, rows, work, size(work), info)
+      if (info == 0) call dtrtrs('U', 'N', 'N', n, k, matrix, rows, y, rows, info)
       if (info /= 0) return
       allocate (x(m, k), source=0.0_wp)
-      x(pivot(:n), :) = y
+      x(pivot(:n), :) = y(:n, :)
       do j = 1, k
          x(:, j) = x(:, j)/length
       end do
