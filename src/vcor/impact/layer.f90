@@ -61,7 +61,7 @@ contains
       call gauss_nodes(self%node, self%weight)
    end subroutine new_layer
 
-   !> Compliance C(s) beyond Hertz' dent for discs of many radii, which costs little more than for one
+   !> Compliance C(s) beyond Hertz' dent for discs of many radii, which cost little more than one
    pure function compliance(self, s, footprint, accuracy) result(c)
       class(layer_t), intent(in) :: self
       !> Laplace variable [1/s], real part > 0
@@ -73,8 +73,8 @@ contains
       !> Compliances [m/N], shape (n)
       complex(wp) :: c(size(footprint))
 
-      ! Rayleigh's waves are slower than shear waves by this factor at most, by the second part where
-      ! Poisson's ratio is -1; bending waves differ by these factors from those of a thin plate
+      ! Rayleigh's waves are slower than shear waves by this factor at most, and by the second part
+      ! where Poisson's ratio is -1; bending waves differ so much from those of a thin plate
       real(wp), parameter :: rayleigh(2) = [1.15_wp, 0.3_wp], bending(2) = [0.7_wp, 1.6_wp]
       ! Poisson's ratio is 1/2 where shear waves over pressure waves have this speed
       real(wp), parameter :: fastest = 0.03_wp

@@ -573,8 +573,8 @@ contains
 
       associate (n => self%panel%stages, impact => self%problem%impact)
          error = max(part*abs(self%handed_down + self%panel%impulse(n) &
-            - self%coarse%impulse(n - 1)), min(max(part*self%largest_growth, self%missed_drift), harmless*self%accuracy) &
-            *impact%mass*self%speed)
+            - self%coarse%impulse(n - 1)), min(max(part*self%largest_growth, self%missed_drift), &
+            harmless*self%accuracy)*impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
          if (self%branches) error = max(error, self%growth*impact%mass*self%speed)
       end associate
