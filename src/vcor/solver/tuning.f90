@@ -117,13 +117,9 @@ module vcor_solver_tuning
    !> What rounding leaves in the force of stiff internal variables and dashpots, over the largest
    !> one: it is not to stop the march
    real(wp), parameter :: rounding_of_force = 1.0e-12_wp ! guard
-   !> Difference of the contact times over the accuracy that is let pass, its power where less than
-   !> the usual accuracy is asked for, the same with a continuous spectrum, over both where the
-   !> contact recedes, and the least one
-   real(wp), parameter :: time_share = 3.0_wp ! tested
+   !> Difference of the contact times over the accuracy that is let pass with a continuous spectrum,
+   !> and the least one
    real(wp), parameter :: time_share_continuous = 1.5_wp ! time
-   real(wp), parameter :: time_share_receding = 2.0_wp ! time
-   real(wp), parameter :: time_share_power = 0.2_wp ! tested
    real(wp), parameter :: best_time = 1.0e-9_wp ! tested
    !> What a rebound feels of the difference of the two solutions inside a panel, measured, and the
    !> share of the accuracy that it may have
@@ -138,10 +134,8 @@ module vcor_solver_tuning
    !> of the distance to the zero of a force that is linear there
    real(wp), parameter :: landing_share = 0.1_wp ! tested
    real(wp), parameter :: share_of_square = 1.0e-2_wp ! tested
-   !> Indentation at the end over the largest one below which it is no smooth end, and what the
-   !> difference of the forces counts there
+   !> Indentation at the end over the largest one below which it is no smooth end
    real(wp), parameter :: shallow_end = 0.01_wp ! tested
-   real(wp), parameter :: shallow_factor = 100.0_wp ! guard
    !> Indentation at the end of the last panel over that at its start that is next to the branch
    !> point of u: from one number of stages to the next the error falls by half only, elsewhere by
    !> `usually_better` at least
@@ -154,9 +148,10 @@ module vcor_solver_tuning
 
    ! Estimate of the error
 
-   !> Error of the solution over its difference to the companion, but with few panels
-   real(wp), parameter :: solution_share = 0.3_wp ! tested
-   integer, parameter :: few_panels = 2 ! guard
+   !> Difference of the solution to its companion over its error, and its power where less than the
+   !> usual accuracy is asked for
+   real(wp), parameter :: better = 3.0_wp ! tested
+   real(wp), parameter :: better_power = 0.2_wp ! tested
    !> What one panel adds to the difference may cancel in the next ones: it counts, but only up to
    !> this share of the accuracy, below which an estimate that is too large misleads nobody
    real(wp), parameter :: harmless = 0.1_wp ! tested
@@ -204,9 +199,7 @@ module vcor_solver_tuning
    real(wp), parameter :: cut_most = 0.2_wp ! guard
    real(wp), parameter :: aim = 0.3_wp ! guard
    real(wp), parameter :: order_at_end = 3.0_wp ! guard
-   !> Error over what it may be that can be put up with at the end if it is inherited, and how often
-   !> the end is tried before
-   real(wp), parameter :: tolerable_end = 100.0_wp ! guard
+   !> How often the end is tried before an error that is inherited is put up with
    integer, parameter :: enough_closings = 5 ! guard
    !> Error of the time of the end over the accuracy
    real(wp), parameter :: closest_end = 0.1_wp ! tested

@@ -29,12 +29,11 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
-      few_panels, first_growth_fast, first_growth_slow, first_longest, first_receding, &
+      first_growth_fast, first_growth_slow, first_longest, first_receding, &
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
-      solution_share, tolerable, usual_accuracy, usually_better
+      rounding_of_force, rounding_per_panel, shallow_end, tolerable, usual_accuracy, usually_better
    implicit none
    private
 
@@ -57,8 +56,6 @@ module vcor_solver_ive_contact
       !> Difference of the impulse to those of the companions of the panels before, where each of
       !> them starts from the solution [N s]
       real(wp) :: handed_down = 0.0_wp
-      !> What the first panel misses of the drift of a frozen plate [-]
-      real(wp) :: missed_drift = 0.0_wp
       !> What a rebound feels of the difference of the two solutions inside the panel, and the most
       !> that it has felt [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
@@ -271,30 +268,31 @@ contains
          ! alpha' of a frozen plate is infinite at first contact, or a spike that both solutions
          ! miss: the quadrature of the solution is no better than that of the companion, and its
          ! error stays for the rest of the contact
-         if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) then
-            self%missed_drift = drift_error(collocator%rule, panel)/self%speed
-            self%excess = max(self%growth, self%missed_drift)/(first_drift*self%accuracy)
-         end if
+         if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) self%excess = &
+            max(self%growth, drift_error(collocator%rule, panel)/self%speed) &
+            /(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
             self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
-         force_error = max(0.0_wp, min(self%growth_of(panel%force, coarse%force), self%doubt) &
-            - rounding_of_force*self%largest_force)
+         force_error = max(0.0_wp, self%doubt - rounding_of_force*self%largest_force)
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
-         if (self%ends) then
-            ! next to u(s) = 0 both solutions err in the same direction
-            self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
-            if (self%shallow) force_error = shallow_factor*force_error
-            self%branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
-            if (self%branches) self%excess = usually_better*self%excess
+         if (trajectory%status /= contact_separated .and. .not. self%recedes &
+             .and. 2.0_wp*panel%force(n) < panel%force(n - 1)) then
+            ! what the force is off by here moves the end of the contact
+            force_error = max(force_error, settled_error(self))
             allowed = abs(slope_at_end(collocator%rule, panel, panel%force)) &
                *panel%time(n)*self%time_tolerance()
+         else if (.not. maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
+            allowed = force_share*allowed
+         end if
+         if (self%ends) then
+            self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
+            self%branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
+            if (self%branches) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
             ! the velocity of a layer's face rings: shorter panels do not reach its error
             if (.not. impact%plate%layered()) self%excess = max(self%excess, &
                cor_error/self%accuracy)
-         else if (.not. maxval(panel%force(1:n)) > max(panel%force(0), panel%force(n))) then
-            allowed = force_share*allowed
          end if
          self%excess = max(self%excess, share(force_error, allowed))
          if (self%recedes) then
@@ -312,6 +310,27 @@ contains
          end do
       end associate
    end subroutine judge
+
+   !> Error of the force at the end of the panel that both solutions may share: a dashpot and
+   !> the modes that settle within the panel follow the rate of u. That is the derivative of a
+   !> polynomial, known to one order less than u: the error is what its last coefficient adds to it.
+   !> A polynomial of n stages resolves modes with l dt/dtheta < n (n + 1)
+   pure function settled_error(self) result(error)
+      type(contact_t), intent(in) :: self
+      !> Error [N]
+      real(wp) :: error
+
+      real(wp) :: pace, viscosity
+
+      associate (n => self%panel%stages, rule => self%problem%collocator%rule, &
+                 contact => self%problem%modes%contact, law => self%problem%impact%law)
+         pace = self%panel%pace_at_end()
+         viscosity = contact%viscosity + sum(contact%moduli/contact%rates &
+            *exp(-real(n*(n + 1), wp)/(contact%rates*pace)))
+         error = abs(viscosity*sum(rule%barycentric*law%u(self%panel%indentation)) &
+            /(rule%barycentric(n)*pace))
+      end associate
+   end function settled_error
 
    !> Error of the drift of a frozen plate over a panel: int alpha' F dt is alpha F - int alpha dF,
    !> whose integrand has no spike where alpha rises at once
@@ -491,7 +510,7 @@ contains
 
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact)
-         part = error_over_difference(self, trajectory%steps)
+         part = error_over_difference(self)
          sphere_error = self%largest_inner + self%branch + impulse_error(self, part) &
             /(impact%mass*impact%velocity)
          cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity &
@@ -520,7 +539,7 @@ contains
 
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact, rule => self%problem%collocator%rule)
-         part = error_over_difference(self, panels)
+         part = error_over_difference(self)
          impulse = impulse_error(self, part)
          fall = slope_at_end(rule, panel, panel%force)
          time = part*abs((panel%force(n) - coarse%force(n - 1))/fall)
@@ -561,8 +580,7 @@ contains
    end function plate_error
 
    !> Error of the impulse. What the panels add to the difference to the companion may cancel, which
-   !> says nothing about the solution: what one of them has added to that of the motion counts, too,
-   !> and what the first one has missed
+   !> says nothing about the solution: what one of them has added to that of the motion counts, too
    pure function impulse_error(self, part) result(error)
       !> The contact, its panel accepted
       type(contact_t), intent(in) :: self
@@ -573,28 +591,25 @@ contains
 
       associate (n => self%panel%stages, impact => self%problem%impact)
          error = max(part*abs(self%handed_down + self%panel%impulse(n) &
-            - self%coarse%impulse(n - 1)), min(max(part*self%largest_growth, self%missed_drift), &
-            harmless*self%accuracy)*impact%mass*self%speed)
+            - self%coarse%impulse(n - 1)), &
+            min(part*self%largest_growth, harmless*self%accuracy)*impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
          if (self%branches) error = max(error, self%growth*impact%mass*self%speed)
       end associate
    end function impulse_error
 
-   !> Error of the solution over its difference to the companion. The difference is the error of the
-   !> companion: that of the solution is less, where the solution is smooth by orders, where it is
-   !> not by a factor of some size. With few panels it is anybody's guess; next to the branch point
-   !> of u, where alpha' of a frozen plate is infinite at first contact, and where the velocity of a
-   !> plate that flees feels the impulse more than that of the sphere, neither is better
-   pure function error_over_difference(self, panels) result(part)
+   !> Error of the solution over its difference to the companion, which is no better next to the
+   !> branch point of u, where alpha' of a frozen plate is infinite at first contact, and where the
+   !> velocity of a plate that flees feels the impulse more than that of the sphere
+   pure function error_over_difference(self) result(part)
+      !> The contact, its panel solved
       type(contact_t), intent(in) :: self
-      !> Number of panels
-      integer, intent(in) :: panels
       real(wp) :: part
 
       associate (problem => self%problem)
-         part = merge(1.0_wp, solution_share, panels <= few_panels .or. self%branches &
-            .or. self%alpha_rate()*problem%impact%mass > 1.0_wp &
-            .or. problem%impact%plate%frozen() .and. problem%modes%contact%error > 0.0_wp)
+         part = 1.0_wp/self%improvement()
+         if (self%branches .or. self%alpha_rate()*problem%impact%mass > 1.0_wp .or. &
+             problem%impact%plate%frozen() .and. problem%modes%contact%error > 0.0_wp) part = 1.0_wp
       end associate
    end function error_over_difference
 

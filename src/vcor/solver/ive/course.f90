@@ -6,9 +6,8 @@ module vcor_solver_ive_course
    use vcor_solver_ive_panel, only : panel_t, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_tuning, only : best_time, enough_closings, longest_growth, &
-      time_share, time_share_continuous, time_share_power, time_share_receding, tolerable_end, &
-      usual_accuracy
+   use vcor_solver_tuning, only : best_time, better, better_power, enough_closings, &
+      longest_growth, time_share_continuous, usual_accuracy
    implicit none
    private
 
@@ -47,6 +46,7 @@ module vcor_solver_ive_course
       procedure :: growth_of
       procedure :: is_best_end
       procedure :: growth_of_step
+      procedure :: improvement
       procedure :: time_tolerance
    end type course_t
 
@@ -109,8 +109,7 @@ contains
       logical :: best
 
       self%closings = self%closings + 1
-      best = self%excess <= tolerable_end .and. (self%excess > 0.5_wp*self%refused_end &
-         .or. self%closings >= enough_closings)
+      best = self%excess > 0.5_wp*self%refused_end .or. self%closings >= enough_closings
       self%refused_end = self%excess
    end function is_best_end
 
@@ -123,19 +122,25 @@ contains
          **(-1.0_wp/real(2*self%panel%stages - 2, wp)))
    end function growth_of_step
 
-   !> Relative difference of the contact times of the two solutions that is let pass. With panels as
-   !> short as at the usual accuracy the one that counts is better by an order, unless modes of a
+   !> Difference of the solution to its companion over its error: with panels as short as at the
+   !> usual accuracy it is better by some factor, with longer ones by less
+   pure function improvement(self) result(factor)
+      class(course_t), intent(in) :: self
+      real(wp) :: factor
+
+      factor = better*min(1.0_wp, (usual_accuracy/self%accuracy)**better_power)
+   end function improvement
+
+   !> Relative difference of the contact times of the two solutions that is let pass. Modes of a
    !> continuous spectrum settle within the last panel, which neither of them resolves
    pure function time_tolerance(self) result(tolerance)
       class(course_t), intent(in) :: self
       !> Tolerance [-]
       real(wp) :: tolerance
 
-      tolerance = time_share_continuous*self%accuracy
-      if (.not. self%problem%modes%contact%error > 0.0_wp) tolerance = time_share*self%accuracy &
-         *min(1.0_wp, (usual_accuracy/self%accuracy)**time_share_power)
-      if (associated(self%problem%approach)) tolerance = time_share_receding*tolerance
-      tolerance = max(tolerance, best_time)
+      tolerance = self%improvement()
+      if (self%problem%modes%contact%error > 0.0_wp) tolerance = time_share_continuous
+      tolerance = max(tolerance*self%accuracy, best_time)
    end function time_tolerance
 
    !> Error over what it may be, at most `immense`: the forces of a fluid may be next to nothing

@@ -22,7 +22,7 @@ module vcor_solver_ive_rebound
       expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
       margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
       rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
-      slowest_fall, smallest_share, solution_share, sure_growth, &
+      slowest_fall, smallest_share, sure_growth, &
       tolerable, unreliable_kernel, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
@@ -227,16 +227,17 @@ contains
    subroutine judge(self)
       type(rebound_t), intent(inout) :: self
 
-      real(wp) :: alpha_rate, impulse_error, time_error
+      real(wp) :: part, alpha_rate, impulse_error, time_error
       integer :: n
 
       n = self%panel%stages
       associate (panel => self%panel, coarse => self%coarse, impact => self%problem%impact)
          alpha_rate = self%alpha_rate()
          impulse_error = abs(panel%impulse(n) - coarse%impulse(n - 1))
-         self%error = solution_share*(impulse_error/impact%mass &
+         part = 1.0_wp/self%improvement()
+         self%error = part*(impulse_error/impact%mass &
             + abs(panel%indentation(n) - coarse%indentation(n - 1))/self%start%t1)/impact%velocity
-         self%error(1) = self%error(1) + solution_share*(impulse_error*alpha_rate &
+         self%error(1) = self%error(1) + part*(impulse_error*alpha_rate &
             + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          time_error = 0.0_wp
          if (self%ends) then
