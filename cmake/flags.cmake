@@ -1,12 +1,11 @@
 # Compiler flags, per target: nothing here touches CMAKE_Fortran_FLAGS, which belongs to the user.
 #
-#   vcor_set_flags(<target> [QUICK])
+#   vcor_set_flags(<target> [<level>])
 #
-# QUICK: nothing in it takes time but to compile it, so a release has -O1 for it, which takes a third
-# of the time of -O3 to compile
+# Where nothing takes time but to compile it, a release has the level -O1, which takes a third of the
+# time of -O3 to compile, or -O0
 
 function(vcor_set_flags target)
-  cmake_parse_arguments(flags "QUICK" "" "" ${ARGN})
   # Only .F90 is preprocessed: CMake would do it to .f90 as well, and compile what comes out
   get_target_property(sources ${target} SOURCES)
   list(FILTER sources INCLUDE REGEX "\\.f90$")
@@ -19,7 +18,7 @@ function(vcor_set_flags target)
   # (the program runs elsewhere too).
   target_compile_options(${target} PRIVATE
     # -fimplicit-none holds in interface bodies too, which do not inherit the statement
-    $<$<AND:$<BOOL:${flags_QUICK}>,$<CONFIG:Release>>:-O1>
+    $<$<CONFIG:Release>:${ARGN}>
     -std=f2008 -fimplicit-none -Wall -Wextra -Wimplicit-interface
     $<$<BOOL:${VCOR_WERROR}>:-Werror>
     # Under -Og gfortran 12 takes the hidden length of every text of deferred length for

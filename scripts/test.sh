@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing and runs every test: CMake release, debug and MPI, fpm, the linter. What
-# takes long, such as damaged input at length, is in scripts/test_long.sh.
+# Installs what is missing and runs the tests: CMake release with the ranks of MPI, CMake debug, fpm,
+# the linters. What takes long, such as damaged input at length, is in scripts/test_long.sh.
 # Stops at the first step that fails. The last line is the sum of all tests: N passed, N failed
 set -euo pipefail
 
@@ -31,29 +31,20 @@ trap 'exit 130' INT TERM
 jobs=$(nproc 2>/dev/null || echo 2)
 venv=$PWD/build/venv
 
-# make_venv FOLDER PYTHON ARGUMENT ...: environment of Python with what `pip install ARGUMENT ...` installs,
-# made anew only when Python or the list of packages has changed
+# Environment of Python with tests/requirements.txt, made anew only when Python or that list has changed.
+# Nothing is compiled ahead: the tests import a third of it
 make_venv() {
-   local folder=$1 python=$2 made_of
-   shift 2
-   made_of=$("$python" --version; cat tests/requirements.txt; echo "$@")
-   if [ "$made_of" = "$(cat "$folder/made_of" 2>/dev/null)" ] && "$folder/bin/python" -c '' 2>/dev/null; then
-      echo "$folder is up to date"
+   local made_of
+   made_of=$(python3 --version; cat tests/requirements.txt)
+   if [ "$made_of" = "$(cat "$venv/made_of" 2>/dev/null)" ] && "$venv/bin/python" -c '' 2>/dev/null; then
+      echo "$venv is up to date"
       return
    fi
-   "$python" -m venv --clear "$folder"
-   "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-input "$@"
+   python3 -m venv --clear "$venv"
+   "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-input --no-compile \
+      -r tests/requirements.txt
    # Last: an installation that was interrupted is done again
-   printf '%s' "$made_of" >"$folder/made_of"
-}
-
-# The newest Python of PATH or of pyenv
-newest_python() {
-   local python
-   for python in python3 $(compgen -c python3.) "${PYENV_ROOT:-$HOME/.pyenv}"/versions/*/bin/python3; do
-      "$python" -c 'import sys; print("%d.%03d" % sys.version_info[:2], sys.executable)' \
-         2>/dev/null || true
-   done | grep '^3\.' | sort | tail -n 1 | cut -d ' ' -f 2
+   printf '%s' "$made_of" >"$venv/made_of"
 }
 
 # attribute NAME FILE: number in the first such attribute of an XML file
@@ -64,7 +55,7 @@ build() {
    local preset=$1
    shift
    begin "$preset build"
-   cmake --preset "$preset" -DVCOR_WERROR=ON -DVCOR_PYTHON="$venv/bin/python" "$@"
+   cmake --preset "$preset" -DVCOR_WERROR=ON -DVCOR_ALL_TESTS=OFF -DVCOR_PYTHON="$venv/bin/python" "$@"
    cmake --build --preset "$preset"
 }
 
@@ -95,59 +86,41 @@ find_hdf5() {
    fi
 }
 
-# What fpm has built. The same test programs have run in two builds by now: one of them is enough to see
-# that fpm's are the same
-fpm_tests() {
-   local report=build/fpm-test.txt code=0 tests bad
-   begin "fpm tests"
-   tests=1
-   "$venv/bin/fpm" test test_library --flag -O0 2>&1 | tee "$report" || code=$?
-   bad=$(grep -c 'Execution for object' "$report" || true)
-   # Without a failed program it was the build that failed: none was run
-   if [ $code -eq 0 ] || [ "$bad" -gt 0 ]; then
-      passed=$((passed + tests - bad))
-      failed=$((failed + bad))
-   fi
-   [ $code -eq 0 ] || return $code
-   begin "a project that depends on vcor, with fpm"
+# What fpm builds, without its own flags, which take a third longer: the program, and a project that
+# depends on vcor. The test programs with fpm are in scripts/test_long.sh
+fpm_builds() {
+   find_hdf5
+   "$venv/bin/fpm" build --flag -O0
    rm -rf build/consumer
    cp -r tests/consumer build/consumer
    cp examples/paper/sls.nml build/consumer
-   "$venv/bin/fpm" run from_case --directory build/consumer 2>&1 | tee "$report"
-   grep -q '^COR  *0\.40729242 ' "$report"
-   passed=$((passed + 1))
+   "$venv/bin/fpm" run from_case --flag -O0 --directory build/consumer
 }
 
 begin "set-up"
 scripts/setup.sh --tests
 
-begin "Python environments, beside the release build"
-make_venv "$venv" python3 -r tests/requirements.txt &
-environments=$!
-# The package is tested with Debian's Python, with this one, and with the newest one that is here, of
-# which one test imports a part: nothing is compiled ahead
-make_venv build/newest "$(newest_python)" --no-compile -c tests/requirements.txt \
-   numpy xarray h5py h5netcdf tqdm matplotlib scipy pytest &
-build release
-wait $environments
-wait $!
+begin "environment of Python, beside the release build"
+make_venv &
+environment=$!
+build release -DVCOR_TEST_RANKS=ON
+wait $environment
 # Once more: the tests in Python are there where CMake finds their environment
 build release
 run_tests release
 
 build debug -DVCOR_BENCHMARKS=OFF
+# fpm compiles one file after the other at times: beside the tests
+fpm_builds &>build/fpm.txt &
+fpm=$!
 run_tests debug
-# What several ranks do is compared with what one does, and takes no time
-build mpi -DVCOR_BENCHMARKS=OFF -DCMAKE_Fortran_FLAGS_RELEASE=-O1
-# Ranks wait more than they compute: beside them fpm builds, without its own flags, which take a third
-# longer; the project that depends on vcor has them
-find_hdf5
-"$venv/bin/fpm" build --flag -O0 &>build/fpm-build.txt &
-fpm_build=$!
-run_tests mpi
-begin "fpm build"
-wait $fpm_build || { cat build/fpm-build.txt; exit 1; }
-fpm_tests
+begin "fpm: the program, and a project that depends on vcor"
+code=0
+wait $fpm || code=$?
+cat build/fpm.txt
+[ $code -eq 0 ]
+grep -q '^COR  *0\.40729242 ' build/fpm.txt
+passed=$((passed + 1))
 
 begin "linters"
 "$venv/bin/fortitude" check

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # What scripts/test.sh leaves out because it takes long, to be run by hand before a release, after
-# scripts/test.sh: all tests in the debug build, the test programs with fpm, damaged input at length.
+# scripts/test.sh: the wheel with other Pythons, input for other programs run in them, standard errors of a
+# thousand fits; a build for MPI; all tests in the debug build; the test programs with fpm; damaged input
+# at length.
 #
 #   scripts/test_long.sh [COUNT]     damaged inputs and results, default: 20000; an hour or two
 #
@@ -13,10 +15,35 @@ venv=$PWD/build/venv
 [ -x "$venv/bin/python" ] || { echo "test_long: error: run scripts/test.sh first" >&2; exit 1; }
 begin() { printf '\ntest_long: %s\n' "$*"; }
 
-begin "debug build, all tests"
-cmake --preset debug -DVCOR_ALL_TESTS=ON -DVCOR_PYTHON="$venv/bin/python"
-cmake --build --preset debug
-ctest --preset debug --parallel "$(nproc 2>/dev/null || echo 2)"
+# The newest Python of PATH or of pyenv
+newest_python() {
+   local python
+   for python in python3 $(compgen -c python3.) "${PYENV_ROOT:-$HOME/.pyenv}"/versions/*/bin/python3; do
+      "$python" -c 'import sys; print("%d.%03d" % sys.version_info[:2], sys.executable)' \
+         2>/dev/null || true
+   done | grep '^3\.' | sort | tail -n 1 | cut -d ' ' -f 2
+}
+
+# all_tests PRESET [OPTION ...]: build and test
+all_tests() {
+   local preset=$1
+   shift
+   begin "$preset build, all tests"
+   cmake --preset "$preset" -DVCOR_ALL_TESTS=ON -DVCOR_PYTHON="$venv/bin/python" "$@"
+   cmake --build --preset "$preset"
+   ctest --preset "$preset" --parallel "$(nproc 2>/dev/null || echo 2)"
+}
+
+begin "programs and Pythons"
+pip=(-m pip install --quiet --disable-pip-version-check --no-input)
+"$venv/bin/python" "${pip[@]}" -r tests/requirements_long.txt
+"$(newest_python)" -m venv --clear build/newest
+build/newest/bin/python "${pip[@]}" -c tests/requirements.txt \
+   numpy xarray h5py h5netcdf tqdm matplotlib scipy pytest
+
+all_tests release
+all_tests mpi
+all_tests debug
 
 begin "the test programs with fpm"
 [ ! -d build/pkgconfig ] \

