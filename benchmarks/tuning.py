@@ -29,8 +29,11 @@ ROOT = Path(__file__).resolve().parent.parent
 TUNING = {"material": "src/vcor/material/tuning.f90", "solver": "src/vcor/solver/tuning.f90"}
 CONSTANT = re.compile(r"^   (real\(wp\)|integer), parameter :: (\w+) = ([-\d.e+]+)(_wp)?( !.*)?$",
                       re.MULTILINE)
-FIRST = "      if (data%is_shear) then\n"
-"""Where a material is made, which every impact begins with."""
+FIRST = {
+    "src/vcor/material.f90": "      if (data%is_shear) then\n",
+    "tests/unit/harness.f90": "      suite_name = name\n",
+}
+"""Where a material is made, which every impact begins with, and where a unit test begins."""
 SETS = {"practical": 1.0e-11, "random": 1.0e-12, "designed": 3.0e-12, "found": 1.0e-12}
 COLUMNS = ("cor cor_sphere contact_time max_indentation max_force residual_indentation "
            "hysteresis_energy wave_energy cor_error cor_sphere_error status").split()
@@ -95,10 +98,9 @@ def build(folder):
         (folder / name).write_text(text.replace("\nend module", READER % cases + "\nend module"))
         uses += f"   use vcor_{part}_tuning, only : read_{part} => read_tuning\n"
         calls += f"      call read_{part}()\n"
-    material = folder / "src/vcor/material.f90"
-    text = material.read_text()
-    text = text.replace("   implicit none\n", uses + "   implicit none\n", 1)
-    material.write_text(text.replace(FIRST, calls + FIRST, 1))
+    for name, first in FIRST.items():
+        text = (folder / name).read_text().replace("   implicit none\n", uses + "   implicit none\n", 1)
+        (folder / name).write_text(text.replace(first, calls + first, 1))
     subprocess.run(["cmake", "--preset", "release", f"-DVCOR_PYTHON={ROOT / 'build/venv/bin/python'}"],
                    cwd=folder, check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", "build/release"], cwd=folder, check=True, stdout=subprocess.DEVNULL)

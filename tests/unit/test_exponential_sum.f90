@@ -9,6 +9,7 @@ program test_exponential_sum
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t, material_t, new_material
    use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_in_series, only : new_in_series
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_type, only : solver_settings_t
@@ -21,6 +22,7 @@ program test_exponential_sum
    call test_windows()
    call test_accuracy()
    call test_near_one()
+   call test_series()
    call test_methods()
    call test_long_contact()
    call finish()
@@ -153,6 +155,30 @@ contains
             "the integral of a power law next to a dashpot")
       end do
    end subroutine test_near_one
+
+   !> Materials in series have the features of their spectrum where it pleases: few refinements find
+   !> them, and not with twice the terms
+   subroutine test_series()
+      character(len=*), parameter :: models(*) = [character(len=14) :: "power_law", &
+         "mittag_leffler"]
+      real(wp), parameter :: steep(*) = [0.5_wp, 0.9_wp], windows(*) = [1.0e-3_wp, 10.0_wp]
+      integer, parameter :: most_terms(*) = [80, 220]
+      real(wp), parameter :: accuracy = 1.0e-8_wp
+      class(material_t), allocatable :: one, other, series
+      type(exponential_sum_t) :: terms
+      type(error_t), allocatable :: error
+      integer :: i
+
+      do i = 1, size(windows)
+         call make(trim(models(i)), 0.05_wp, one)
+         call make(trim(models(i)), steep(i), other)
+         if (allocated(series)) deallocate (series)
+         call new_in_series(series, one, 1.0_wp, other, 1.0_wp, error)
+         call series%exponentials(windows(i), accuracy, terms)
+         call check(terms%error <= 2.0_wp*accuracy, "a series is met")
+         call check(size(terms%rates) <= most_terms(i), "by few terms")
+      end do
+   end subroutine test_series
 
    !> Impact of a steel sphere on a half space
    subroutine make_impact(material, impact)

@@ -64,6 +64,8 @@ program test_impacts
    call test_set("found.txt", 16, 1.0e-12_wp)
    call test_set("temperature.txt", 35, 1.2e-11_wp)
    call test_missed_drift()
+   call test_fleeing()
+   call test_steps()
    call finish()
 
 contains
@@ -99,6 +101,96 @@ contains
       call check_difference(abs(outcome(1)%cor_sphere - outcome(2)%cor_sphere), &
          honest_share*outcome(1)%cor_sphere_error, "what the first panel misses is stated")
    end subroutine test_missed_drift
+
+   !> Near-fluid plates that flee from the sphere: guesses at t1 in their rebounds go astray, and
+   !> cost panels if nothing keeps them on the way
+   subroutine test_fleeing()
+      integer, parameter :: count = 5
+      !> Velocity, thickness, alpha and beta
+      character(len=*), parameter :: given(4, count) = reshape([character(len=9) :: &
+         "0.4239", "0.01136", "6.675e-4", "4.212e6", "1.377", "0.0398", "9.254e-14", "2.418e4", &
+         "1.359", "0.009262", "28.23", "3.329e6", "1.596", "0.02216", "1.982e-6", "4.03e4", &
+         "0.497", "0.009819", "8.499e-14", "8.295e4"], [4, count])
+      real(wp), parameter :: cor(count) = [0.2656822817_wp, 0.4162550119_wp, 0.0714929095_wp, &
+         0.4169440764_wp, 0.4193909907_wp]
+      real(wp), parameter :: time(count) = [5.056205313e-6_wp, 4.702674355e-4_wp, &
+         0.4299985127_wp, 2.649021714e-4_wp, 1.294303448e-4_wp]
+      integer, parameter :: most_steps(count) = [45, 14, 45, 14, 22]
+      real(wp), parameter :: asked(3) = [1.0e-6_wp, 1.0e-8_wp, 1.0e-10_wp]
+      real(wp), parameter :: digits_given = 3.0e-10_wp
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+      integer :: i, j
+
+      do i = 1, count
+         call build(row, "a fleeing plate", fluid(given(:, i)))
+         do j = 1, size(asked)
+            call make_ive(asked(j), ive)
+            call ive%solve(row%impact, trajectory, error)
+            call success(error, "a plate that flees is solved")
+            outcome = evaluate(row%impact, trajectory)
+            call check_difference(abs(outcome%cor - cor(i)), asked(j) + digits_given, "its cor")
+            call check_difference(abs(outcome%contact_time/time(i) - 1.0_wp), &
+               max(asked(j), best_time) + digits_given, "its contact time")
+            call check(trajectory%steps <= most_steps(i), "in few panels")
+         end do
+      end do
+   end subroutine test_fleeing
+
+   !> A rigid sphere on a nearly fluid plate
+   function fluid(given) result(text)
+      !> Velocity, thickness, alpha and beta
+      character(len=*), intent(in) :: given(4)
+      !> The case
+      character(len=:), allocatable :: text
+
+      text = "&impact velocity = "//given(1)//" /"//new_line("a") &
+         //"&sphere radius = 0.01, material = 's' /"//new_line("a") &
+         //"&plate half_thickness = "//given(2)//", material = 'p', waves = 'relaxing' /" &
+         //new_line("a")//"&contact law = 'receding' /"//new_line("a") &
+         //"&material name = 's', model = 'rigid', density = 7800.0 /"//new_line("a") &
+         //"&material name = 'p', model = 'sls', density = 1100.0, poisson_ratio = 0.5, " &
+         //"glassy_modulus = 15e6, alpha = "//given(3)//", beta = "//given(4)//" /"//new_line("a")
+   end function fluid
+
+   !> Steps of product integration: as few as the accuracy takes where alpha' of a frozen plate is
+   !> not resolved, enough where a plate that flees ends the contact within one
+   subroutine test_steps()
+      character(len=*), parameter :: spike = &
+         "&impact velocity = 0.16 /"//new_line("a") &
+         //"&sphere shape = 'power', material = 'a', mass = 0.09544, profile_power = 2, " &
+         //"profile_coefficient = 31.27 /"//new_line("a") &
+         //"&plate material = 'b', half_thickness = 0.04375, waves = 'frozen' /"//new_line("a") &
+         //"&contact law = 'receding' /"//new_line("a") &
+         //"&material name = 'a', model = 'elastic', density = 3891.0, poisson_ratio = 0.45, " &
+         //"modulus = 5.407e9 /"//new_line("a") &
+         //"&material name = 'b', model = 'sls', density = 3300.0, poisson_ratio = 0.49, " &
+         //"glassy_modulus = 2.096e7, beta = 8.121e5, alpha = 2.774e5 /"//new_line("a")
+      real(wp), parameter :: cor = 0.3730466441_wp
+      type(row_t) :: row
+      type(product_t) :: product
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      call build(row, "a spike of alpha'", spike)
+      call make_product(0.0_wp, 1.0e-6_wp, product)
+      call product%solve(row%impact, trajectory, error)
+      call success(error, "a spike of alpha' is solved")
+      call check(trajectory%steps <= 1000, "without resolving it")
+
+      call build(row, "a fleeing plate", &
+         fluid([character(len=9) :: "0.2778", "0.003925", "4.055e-9", "4.063e4"]))
+      call make_product(0.0_wp, 1.0e-4_wp, product)
+      call product%solve(row%impact, trajectory, error)
+      call success(error, "a sudden end is solved")
+      outcome = evaluate(row%impact, trajectory)
+      call check_difference(abs(outcome%cor - cor), honest_share*outcome%cor_error, &
+         "and its error is stated")
+   end subroutine test_steps
 
    !> Every impact of a set by both methods
    subroutine test_set(filename, count, accuracy)

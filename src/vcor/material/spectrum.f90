@@ -18,7 +18,7 @@ module vcor_material_spectrum
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_tuning, only : above_peak, below_peak, farther_above, farther_below, &
-      inversion_rounding, loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
+      loosest_sum, most_runs, negligible_tail, share_of_integral, slow_run
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -169,7 +169,7 @@ contains
             sum_now%error = max(sum_now%error, share_of_integral*abs(found/expected - 1.0_wp))
          end do
          if (sum_now%error < terms%error) terms = sum_now
-         if (terms%error <= max(2.0_wp*accuracy, inversion_rounding)) exit
+         if (terms%error <= 2.0_wp*accuracy) exit
       end do
    end subroutine sum_of_resolved_spectrum
 

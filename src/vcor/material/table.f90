@@ -5,7 +5,7 @@ module vcor_material_table
    use vcor_material_exponential_fit, only : fit_exponentials
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : parameter_t, poisson_ratio
-   use vcor_material_tuning, only : fewest_samples, samples_per_decade
+   use vcor_material_tuning, only : samples_per_decade
    use vcor_material_type, only : material_t
    use vcor_numeric_quadrature, only : gauss_nodes
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
@@ -157,7 +157,7 @@ contains
          return
       end if
       associate (length => self%x(size(self%x)))
-         n = max(fewest_samples, ceiling(length/log(10.0_wp)*samples_per_decade))
+         n = ceiling(length/log(10.0_wp)*samples_per_decade)
          step = length/real(n, wp)
       end associate
       time = self%first_time*exp([(real(i, wp)*step, i=0, n)])

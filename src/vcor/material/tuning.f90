@@ -18,14 +18,12 @@ module vcor_material_tuning
    real(wp), parameter :: negligible_tail = 1.0e-3_wp ! tested
    !> Refinements of a spectrum that has its features where it pleases, and how much farther out the
    !> runs to slow and to fast rates begin with each, as ln of the rate
-   integer, parameter :: most_runs = 3 ! open
-   real(wp), parameter :: farther_below = 3.0_wp ! open
-   real(wp), parameter :: farther_above = 5.0_wp ! open
+   integer, parameter :: most_runs = 3 ! tested
+   real(wp), parameter :: farther_below = 3.0_wp ! tested
+   real(wp), parameter :: farther_above = 5.0_wp ! tested
    !> What the impact feels of the error of the integral: it is that which the fast part of a
    !> modulus acts through
    real(wp), parameter :: share_of_integral = 0.3_wp ! tested
-   !> What numerical inversion leaves
-   real(wp), parameter :: inversion_rounding = 3.0e-12_wp ! open
 
    ! Moduli of either sign
 
@@ -59,10 +57,10 @@ module vcor_material_tuning
    !> Largest rate times the first, smallest rate times the last time. Wider, and the sum runs
    !> further away from the modulus outside of the data for digits that no data have: for t^-0.5
    !> these give a misfit of 2e-5 and at t = 0 2.7 times the first modulus; 2 and 0.5 1e-3 and 2.1
-   real(wp), parameter :: fastest_of_data = 4.0_wp ! open
+   real(wp), parameter :: fastest_of_data = 4.0_wp ! tested
    real(wp), parameter :: slowest_of_data = 0.25_wp ! tested
    !> Rates per decade of the first grid: for t^-0.5 2 give a misfit of 5e-4, 3 and 4 2e-5
-   real(wp), parameter :: rates_per_decade = 3.0_wp ! open
+   real(wp), parameter :: rates_per_decade = 3.0_wp ! tested
    !> Times the grid is refined: the rates are then known to 0.3 %, and the merging of two of them
    !> costs 1e-6
    integer, parameter :: most_refinements = 8 ! tested
@@ -72,9 +70,8 @@ module vcor_material_tuning
    !> where the spectrum is continuous, twice the terms halve the residual for ever
    real(wp), parameter :: least_gain = 0.7_wp ! tested
    !> All mergers may increase the misfit by this factor
-   real(wp), parameter :: merging_loss = 1.25_wp ! open
-   !> Samples of data per decade, and fewest of them, for a sum whose terms are three to the decade
-   real(wp), parameter :: samples_per_decade = 20.0_wp ! open
-   integer, parameter :: fewest_samples = 48 ! open
+   real(wp), parameter :: merging_loss = 1.25_wp ! tested
+   !> Samples of data per decade, for a sum whose terms are three to the decade
+   real(wp), parameter :: samples_per_decade = 20.0_wp ! tested
 
 end module vcor_material_tuning

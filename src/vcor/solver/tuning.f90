@@ -37,7 +37,7 @@ module vcor_solver_tuning
    real(wp), parameter :: layer_growth = 2.0_wp ! tested
    !> Time of the largest force over the window before which it is none: the sum of a layer has no
    !> rates for so short a time
-   real(wp), parameter :: layer_start = 1.0e-3_wp ! guard
+   real(wp), parameter :: layer_start = 1.0e-3_wp ! tested
    !> Accuracy of `cor` on a layer where none is asked for, or one that product integration does not
    !> reach: the velocity of its face at the end is another matter than the sphere's
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
@@ -57,16 +57,12 @@ module vcor_solver_tuning
    !> Jacobian of another, and of the condition of a rebound
    real(wp), parameter :: newton_tolerance = 1.0e-5_wp ! tested
    real(wp), parameter :: near_tolerance = 3.0e-3_wp ! tested
-   !> The least of them: rounding
-   real(wp), parameter :: least_tolerance = 1.0e-14_wp ! guard
    !> Correction over the solution after which the Jacobian is kept: it contracts tenfold then
    real(wp), parameter :: newton_close = 0.05_wp ! tested
    !> Contraction that makes a new Jacobian
    real(wp), parameter :: slowest_contraction = 0.2_wp ! tested
-   !> Correction over the solution that leads nowhere
-   real(wp), parameter :: newton_wildest = 1.0e6_wp ! guard
    !> What rounding leaves of a correction of the condition, over the largest one
-   real(wp), parameter :: rounding_of_condition = 1.0e-9_wp ! guard
+   real(wp), parameter :: rounding_of_condition = 1.0e-9_wp ! tested
    !> End of the use of the polynomials of a panel in a guess at t1 in the next one: they run away
    real(wp), parameter :: farthest_rebound = 1.2_wp ! tested
 
@@ -102,7 +98,7 @@ module vcor_solver_tuning
 
    !> Panels, refused ones included, after which a contact is given up, and a rebound
    integer, parameter :: most_panels = 20000 ! tested
-   integer, parameter :: most_rebound_panels = 400 ! guard
+   integer, parameter :: most_rebound_panels = 400 ! tested
    !> Share of the accuracy that the error of one panel may use up
    real(wp), parameter :: panel_share = 1.2_wp ! tested
    !> The same for the first panel on a frozen plate
@@ -123,13 +119,11 @@ module vcor_solver_tuning
    real(wp), parameter :: best_time = 1.0e-9_wp ! tested
    !> What a rebound feels of the difference of the two solutions inside a panel, measured, and the
    !> share of the accuracy that it may have
-   real(wp), parameter :: inner_felt = 5.0e-3_wp ! guard
-   real(wp), parameter :: inner_allowed = 0.3_wp ! guard
+   real(wp), parameter :: inner_felt = 5.0e-3_wp ! tested
+   real(wp), parameter :: inner_allowed = 0.3_wp ! tested
 
    ! End of the contact
 
-   !> Correction of a time over it that may be rounding
-   real(wp), parameter :: noticeable_time = 1.0e-7_wp ! guard
    !> Share of the accuracy that the time of the end may have, and the share of that of the square
    !> of the distance to the zero of a force that is linear there
    real(wp), parameter :: landing_share = 0.1_wp ! tested
@@ -193,29 +187,24 @@ module vcor_solver_tuning
    real(wp), parameter :: smallest_share = 0.45_wp ! time
    real(wp), parameter :: largest_share = 0.67_wp ! time
    real(wp), parameter :: margin_of_rest = 0.95_wp ! tested
-   !> A refused panel is cut to these shares of its length at most and at least, aiming at this
-   !> error over what is allowed, which falls with this order of the last panel at least
+   !> A refused panel is cut to this share of its length at most, aiming at this error over what is
+   !> allowed, which falls with this order of the last panel at least
    real(wp), parameter :: cut_least = 0.8_wp ! time
-   real(wp), parameter :: cut_most = 0.2_wp ! guard
-   real(wp), parameter :: aim = 0.3_wp ! guard
-   real(wp), parameter :: order_at_end = 3.0_wp ! guard
+   real(wp), parameter :: aim = 0.3_wp ! tested
+   real(wp), parameter :: order_at_end = 3.0_wp ! tested
    !> How often the end is tried before an error that is inherited is put up with
-   integer, parameter :: enough_closings = 5 ! guard
+   integer, parameter :: enough_closings = 5 ! tested
    !> Error of the time of the end over the accuracy
    real(wp), parameter :: closest_end = 0.1_wp ! tested
    !> t1 at the end, extrapolated, over that at the start of the last panel, that is zero
-   real(wp), parameter :: close_to_zero = 0.3_wp ! guard
-   !> No correction of the last panel goes farther than this, over its length
-   real(wp), parameter :: farthest_closing = 0.4_wp ! guard
+   real(wp), parameter :: close_to_zero = 0.3_wp ! tested
    !> What is left of the rate of t1' where a parabola goes on
    real(wp), parameter :: bend_kept = 0.6_wp ! time
    !> Of what t1 falls, as a guess, and for how long
-   real(wp), parameter :: slowest_fall = 0.5_wp ! guard
-   real(wp), parameter :: near_vertex = 0.1_wp ! guard
-   !> Share of the way to the largest indentation that a correction of t1 goes at most, and its
-   !> longest way back
-   real(wp), parameter :: closest_to_vertex = 0.9_wp ! guard
-   real(wp), parameter :: farthest_back = 1.0e3_wp ! guard
+   real(wp), parameter :: slowest_fall = 0.5_wp ! tested
+   real(wp), parameter :: near_vertex = 0.1_wp ! tested
+   !> Share of the way to the largest indentation that a correction of t1 goes at most
+   real(wp), parameter :: closest_to_vertex = 0.9_wp ! tested
    !> exp(-this) is nothing
    real(wp), parameter :: gone = 42.0_wp ! time
    !> Part of a panel in which t1 rises, from its start, that is short enough to be sure of that
@@ -237,7 +226,7 @@ module vcor_solver_tuning
    !> Error of the largest force over the accuracy
    real(wp), parameter :: share_of_force = 10.0_wp ! tested
    !> Part of the approach that the last step of a rebound may take back
-   real(wp), parameter :: last_part = 0.125_wp ! guard
+   real(wp), parameter :: last_part = 0.125_wp ! tested
    !> Decay rate times the step from which on trapezoids are used: Adams and Moulton's rule is
    !> stable up to 6
    real(wp), parameter :: stiff_step = 2.0_wp ! tested
@@ -247,7 +236,7 @@ module vcor_solver_tuning
    integer, parameter :: near_kernel = 16 ! tested
    !> What the rule over a step makes of alpha' of a frozen plate may be off by, over the rise of
    !> alpha in the step: beyond, the step does not resolve it
-   real(wp), parameter :: unresolved_rise = 0.1_wp ! guard
+   real(wp), parameter :: unresolved_rise = 0.1_wp ! tested
    !> Share of the weights of a layer after the last one that is added to the first ones
    real(wp), parameter :: aliased = 1.0e-10_wp ! tested
    !> Distance of the exponent from an integer that is none: the force is smooth at first

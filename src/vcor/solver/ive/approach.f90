@@ -19,7 +19,7 @@ module vcor_solver_ive_approach
    use vcor_numeric_radau_collocation, only : collocation_t
    use vcor_solver_ive_panel, only : panel_t
    use vcor_solver_ive_step, only : step_t
-   use vcor_solver_tuning, only : closest_to_vertex, farthest_back, gone
+   use vcor_solver_tuning, only : closest_to_vertex, gone
    implicit none
    private
 
@@ -310,9 +310,8 @@ contains
          other = self%end - 2.0_wp*abs(way)
       else if (2.0_wp*change >= (1.0_wp - (1.0_wp - closest_to_vertex)**2)*whole) then
          other = t1 + closest_to_vertex*way
-      else if (.not. t1 > 0.0_wp .or. -change > farthest_back*whole) then
-         other = t1 - farthest_back*self%end
-         if (-change < farthest_back*self%end*rate) other = t1 + change/rate
+      else if (.not. t1 > 0.0_wp) then
+         other = t1 + change/rate
       else
          other = t1 + way*(1.0_wp - sqrt(1.0_wp - 2.0_wp*change/whole))
       end if

@@ -5,7 +5,7 @@ module vcor_solver_ive_collocator
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, width
    use vcor_numeric_radau_collocation, only : collocation_t, new_collocation
-   use vcor_solver_tuning, only : least_tolerance, near_tolerance, newton_tolerance
+   use vcor_solver_tuning, only : near_tolerance, newton_tolerance
    implicit none
    private
 
@@ -54,8 +54,9 @@ contains
       integer :: i, j
 
       self%second_coefficient = second_coefficient
-      self%tolerance = max(least_tolerance, newton_tolerance*accuracy)
-      self%near_tolerance = max(least_tolerance, near_tolerance*accuracy)
+      ! products with a matrix leave that rounding
+      self%tolerance = max(width**2*epsilon(1.0_wp), newton_tolerance*accuracy)
+      self%near_tolerance = max(width**2*epsilon(1.0_wp), near_tolerance*accuracy)
       call new_collocation(self%rule, stages, error)
       if (allocated(error)) return
       call new_collocation(self%coarse, fewer_stages, error)

@@ -9,12 +9,15 @@ module vcor_solver_ive_landing
    use vcor_solver_ive_panel, only : panel_t, relative_velocity, start_t
    use vcor_solver_ive_problem, only : panel_problem_t
    use vcor_solver_ive_step, only : step_t, step_to
-   use vcor_solver_tuning, only : landing_share, most_iterations, noticeable_time, &
-      peak_guess, roughly, share_of_square
+   use vcor_solver_tuning, only : landing_share, most_iterations, peak_guess, roughly, &
+      share_of_square
    implicit none
    private
 
    public :: first_without_force, land_on_zero, land_on_largest, end_at_zero, slope_at_end
+
+   !> Correction of a time over it that may be rounding
+   real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
 
 contains
 
@@ -153,7 +156,7 @@ contains
             if (.not. panel%converged) return
             last = panel
             memory = kappa*law%u(panel%indentation(n)) - panel%force(n)
-            if (abs(correction) > noticeable_time*time) &
+            if (abs(correction) > rounding*time) &
                memory_rate = (memory - old_memory)/correction
             old_memory = memory
             last_correction = correction
@@ -170,7 +173,7 @@ contains
             if (abs(correction) <= (start%time + time)*merge(sqrt(share_of_square*tolerance), &
                tolerance, panel%indentation(n) >= shallow)) return
             ! rounding in the force of a dashpot or of stiff internal variables ends it, too
-            if (iteration > 3 .and. abs(correction) <= noticeable_time*(start%time + time) &
+            if (iteration > 3 .and. abs(correction) <= rounding*(start%time + time) &
                 .and. abs(correction) >= abs(last_correction)) return
             time = time + correction
          end do
@@ -199,7 +202,7 @@ contains
       memory_rate = 0.0_wp
       k = first_without_force(panel)
       if (panel%force(k - 1) <= 0.0_wp) return
-      theta = rule%crossing(panel%force, rule%point(k - 1), rule%point(k), noticeable_time)
+      theta = rule%crossing(panel%force, rule%point(k - 1), rule%point(k), rounding)
       time = theta*(panel%map(1) + panel%map(2)*theta)
       memory_rate = rule%interpolate(rule%slopes(kappa*law%u(panel%indentation) - panel%force), &
          theta)/(panel%map(1) + 2.0_wp*panel%map(2)*theta)

@@ -7,8 +7,7 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, &
-      most_iterations, newton_close, newton_wildest, noticeable_time, &
+   use vcor_solver_tuning, only : farthest_rebound, most_iterations, newton_close, &
       slowest_contraction
    implicit none
    private
@@ -122,8 +121,6 @@ contains
       change = apply(inverse, change)
       unit = problem%largest_condition
       if (.not. unit > 0.0_wp) unit = largest(e%x + change)
-      self%failed = .not. largest(change) < newton_wildest*unit
-      if (self%failed) return
       call problem%move(e, change, panel)
       size = largest(change)/unit
       if (self%stale) then
@@ -307,14 +304,13 @@ contains
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
             if (.not. fall > 0.0_wp) return
             last_correction = correction
-            correction = farthest_closing*length
-            if (abs(panel%condition(n)) < farthest_closing*fall) &
-               correction = panel%condition(n)/fall*length
+            correction = length
+            if (abs(panel%condition(n)) < fall) correction = panel%condition(n)/fall*length
             correction = sign(correction, panel%condition(n))
             panel%converged = newton%converged .and. (abs(correction) &
                <= time_tolerance*(start%time + length) &
                ! rounding in the condition of stiff internal variables ends it, too
-               .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
+               .or. iteration > 3 .and. abs(correction) <= sqrt(epsilon(length))*length &
                .and. abs(correction) >= abs(last_correction))
             if (panel%converged) then
                call problem%settle_plate(rule, equations, start, panel)

@@ -17,7 +17,7 @@ module vcor_solver_ive_rebound
    use vcor_solver_ive_panel, only : plate_gains
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
-   use vcor_solver_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, cut_most, &
+   use vcor_solver_tuning, only : aim, bend_kept, close_to_zero, closest_end, cut_least, &
       end_continuous, end_fast, end_growth, end_hereditary, end_hereditary_growth, end_slow, &
       expected_rebound, farthest_rebound, fast, first_rate, largest_share, &
       margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
@@ -287,7 +287,7 @@ contains
          self%refused = self%excess
          self%refused_length = self%taken
       end if
-      cut = min(cut_least, max(cut_most, (self%excess/aim)**(-1.0_wp/order)))
+      cut = min(cut_least, (self%excess/aim)**(-1.0_wp/order))
       if (self%ends) then
          self%end_length = cut*self%taken
       else
