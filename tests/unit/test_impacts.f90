@@ -61,7 +61,7 @@ program test_impacts
    call test_set("random.txt", 70, 1.0e-12_wp)
    call test_set("designed.txt", 73, 3.0e-12_wp)
    call test_set("shapes.txt", 38, 1.0e-12_wp)
-   call test_set("found.txt", 16, 1.0e-12_wp)
+   call test_set("found.txt", 18, 1.0e-12_wp)
    call test_set("temperature.txt", 35, 1.2e-11_wp)
    call test_missed_drift()
    call test_fleeing()

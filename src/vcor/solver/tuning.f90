@@ -128,8 +128,10 @@ module vcor_solver_tuning
    !> of the distance to the zero of a force that is linear there
    real(wp), parameter :: landing_share = 0.1_wp ! tested
    real(wp), parameter :: share_of_square = 1.0e-2_wp ! tested
-   !> Indentation at the end over the largest one below which it is no smooth end
+   !> Indentation at the end over the largest one below which it is no smooth end, and what the
+   !> difference that the panel adds to the forces counts there
    real(wp), parameter :: shallow_end = 0.01_wp ! tested
+   real(wp), parameter :: shallow_factor = 100.0_wp ! tested
    !> Indentation at the end of the last panel over that at its start that is next to the branch
    !> point of u: from one number of stages to the next the error falls by half only, elsewhere by
    !> `usually_better` at least

@@ -33,7 +33,8 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, tolerable, usual_accuracy, usually_better
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
+      tolerable, usual_accuracy, usually_better
    implicit none
    private
 
@@ -265,11 +266,10 @@ contains
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
-         ! alpha' of a frozen plate is infinite at first contact, or a spike that both solutions
-         ! miss: the quadrature of the solution is no better than that of the companion, and its
-         ! error stays for the rest of the contact
+         ! alpha' of a frozen plate is infinite at first contact, or a spike: what alpha gains
+         ! before the first stage both solutions miss
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) self%excess = &
-            max(self%growth, drift_error(collocator%rule, panel)/self%speed) &
+            max(self%growth, (panel%alpha(1) - panel%alpha(0))*panel%force(1)/self%speed) &
             /(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
@@ -287,6 +287,9 @@ contains
          end if
          if (self%ends) then
             self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
+            ! next to u(s) = 0 both solutions err in the same direction
+            if (self%shallow) force_error = max(force_error, shallow_factor &
+               *min(self%growth_of(panel%force, coarse%force), self%doubt))
             self%branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
             if (self%branches) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
@@ -331,23 +334,6 @@ contains
             /(rule%barycentric(n)*pace))
       end associate
    end function settled_error
-
-   !> Error of the drift of a frozen plate over a panel: int alpha' F dt is alpha F - int alpha dF,
-   !> whose integrand has no spike where alpha rises at once
-   pure function drift_error(rule, panel) result(error)
-      type(collocation_t), intent(in) :: rule
-      type(panel_t), intent(in) :: panel
-      !> Error [m/s]
-      real(wp) :: error
-
-      real(wp) :: rise(0:width)
-
-      rise = rule%slopes(panel%force)
-      associate (n => panel%stages, alpha => panel%alpha, force => panel%force)
-         error = abs(alpha(n)*force(n) - alpha(0)*force(0) - sum(rule%weight(1:n)*alpha(1:n) &
-            *rise(1:n)) - (panel%drift(n) - panel%drift(0)))
-      end associate
-   end function drift_error
 
    !> What the panel adds to the error of the energy that the plate takes, int alpha F^2, over that
    !> of the impact: forces inside a panel are less accurate than the motion, and their square keeps
