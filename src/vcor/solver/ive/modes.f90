@@ -90,7 +90,7 @@ contains
       !> Sums, to which the pairs are added
       real(wp), intent(inout) :: r(width), c(width)
 
-      real(wp), dimension(width) :: norm, squared
+      real(wp), dimension(width) :: squared, inverse, product
       complex(wp) :: past
       integer :: k, n
 
@@ -98,14 +98,45 @@ contains
       n = size(terms%rates) + 1
       do k = 1, size(terms%pair_rates)
          associate (l => terms%pair_rates(k), w => terms%pair_moduli(k))
-            norm = constant(1.0_wp) + 2.0_wp*real(l, wp)*lambda + abs(l)**2*squared
+            call invert_pair(l, square, lambda, squared, inverse, product)
             past = w*cmplx(p(n), p(n + 1), wp)
-            r = r + ratio(square, constant(real(w, wp)) + real(w*conjg(l), wp)*lambda, norm)
-            c = c + ratio(square, constant(real(past, wp)) + real(past*conjg(l), wp)*lambda, norm)
+            r = r + real(w, wp)*inverse + real(w*conjg(l), wp)*product
+            c = c + real(past, wp)*inverse + real(past*conjg(l), wp)*product
          end associate
          n = n + 2
       end do
    end subroutine resolve_pairs
+
+   !> 1/n and H/n
+   pure subroutine invert_pair(rate, square, lambda, squared, inverse, product)
+      !> l [1/s]
+      complex(wp), intent(in) :: rate
+      !> j^2
+      real(wp), intent(in) :: square(pairs)
+      !> Eigenvalues of H [s], and their squares
+      real(wp), intent(in) :: lambda(width), squared(width)
+      !> 1/n
+      real(wp), intent(out) :: inverse(width)
+      !> H/n [s]
+      real(wp), intent(out) :: product(width)
+
+      real(wp) :: double, size, a, d, norm
+      integer :: m
+
+      double = 2.0_wp*real(rate, wp)
+      size = real(rate, wp)**2 + aimag(rate)**2
+      do m = 1, pairs
+         a = 1.0_wp + double*lambda(m) + size*squared(m)
+         d = double*lambda(pairs + m) + size*squared(pairs + m)
+         norm = 1.0_wp/(a*a - square(m)*(d*d))
+         a = a*norm
+         d = -d*norm
+         inverse(m) = a
+         inverse(pairs + m) = d
+         product(m) = lambda(m)*a + square(m)*lambda(pairs + m)*d
+         product(pairs + m) = lambda(m)*d + lambda(pairs + m)*a
+      end do
+   end subroutine invert_pair
 
    !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
    !> stage for x = 0 at the start
@@ -170,19 +201,19 @@ contains
       !> Internal variables, those of the pairs last, real and imaginary part
       real(wp), intent(inout) :: p(:)
 
-      real(wp), dimension(width) :: norm, squared, re, im
+      real(wp), dimension(width) :: squared, inverse, product
+      complex(wp) :: value
       integer :: k, n
 
       squared = times(map%square, lambda, lambda)
       n = size(terms%rates) + 1
       do k = 1, size(terms%pair_rates)
          associate (l => terms%pair_rates(k))
-            norm = constant(1.0_wp) + 2.0_wp*real(l, wp)*lambda + abs(l)**2*squared
-            re = ratio(map%square, constant(1.0_wp) + real(l, wp)*lambda, norm)
-            im = ratio(map%square, -aimag(l)*lambda, norm)
+            call invert_pair(l, map%square, lambda, squared, inverse, product)
+            value = sum(from_x*inverse) + conjg(l)*sum(from_x*product) + cmplx(p(n), p(n + 1), wp) &
+               *(sum(from_p*inverse) + conjg(l)*sum(from_p*product))
+            p(n:n + 1) = [real(value, wp), aimag(value)]
          end associate
-         p(n:n + 1) = [sum((from_x + p(n)*from_p)*re) - p(n + 1)*sum(from_p*im), &
-            sum((from_x + p(n)*from_p)*im) + p(n + 1)*sum(from_p*re)]
          n = n + 2
       end do
    end subroutine advance_pairs
