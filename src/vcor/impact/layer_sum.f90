@@ -27,8 +27,8 @@ module vcor_impact_layer_sum
 
    !> The band of footprints: from ladder**band to ladder**(band + 1) m, and radii in it at the
    !> zeros of a Chebyshev polynomial of the logarithm
-   real(wp), parameter :: ladder = 2.0_wp**0.5_wp
-   integer, parameter :: radii = 9
+   real(wp), parameter :: ladder = 2.0_wp
+   integer, parameter :: radii = 13
 
    !> Sums of a layer for the footprints of a band
    type :: layer_sum_t
