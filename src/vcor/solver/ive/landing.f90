@@ -51,10 +51,14 @@ contains
       !> Inverse of its Jacobian
       real(wp), intent(inout) :: inverse(width, width)
 
+      ! beyond its end by as much as it is long a panel says nothing
+      real(wp), parameter :: farthest = 2.0_wp
       type(panel_t) :: last
+      type(step_t) :: whole
       real(wp) :: velocity(0:width), theta, time, fall
       integer :: j, iteration
 
+      whole = step
       velocity = 0.0_wp
       velocity(0) = start_velocity
       call find_velocity()
@@ -66,6 +70,11 @@ contains
          time = theta*(panel%map(1) + panel%map(2)*theta)
          do iteration = 1, most_iterations
             last = panel
+            panel%converged = time <= farthest*whole%duration()
+            if (.not. panel%converged) then
+               step = whole
+               return
+            end if
             step = step_to(start%time, time)
             call solve_cut(problem, last, start, step, panel, inverse)
             if (.not. panel%converged) return
