@@ -2,7 +2,8 @@
 !> (Section VI of Green's paper), by collocation with the internal variables eliminated
 !>
 !> Every impact is solved twice on the same panels of time, with eight stages and with seven by a
-!> companion: what the two differ by is the error, of a panel and of the outcome. One panel is in
+!> companion: what the two differ by is the error, of a panel and of the outcome. On a layer, which
+!> rings, each panel of the companion starts from the solution. One panel is in
 !> `vcor_solver_ive_problem`, their sequence in `vcor_solver_ive_contact` and
 !> `vcor_solver_ive_rebound`.
 module vcor_solver_ive
