@@ -51,6 +51,10 @@ module vcor_solver_tuning
 
    !> Maximum iterations
    integer, parameter :: most_iterations = 40 ! tested
+   !> Correction of the end of a receding contact over the panel that may be rounding, and over the
+   !> one before that no longer falls: nearly fluid contacts find no end otherwise
+   real(wp), parameter :: noticeable_time = 1.0e-7_wp ! tested
+   real(wp), parameter :: no_better = 0.25_wp ! tested
    !> Error of a position that what follows mends
    real(wp), parameter :: roughly = 1.0e-3_wp ! time
    !> What it may leave of an error over the accuracy: of a panel; of one that is solved with the

@@ -8,7 +8,7 @@ module vcor_solver_ive_newton
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
    use vcor_solver_tuning, only : farthest_rebound, most_iterations, newton_close, &
-      slowest_contraction
+      no_better, noticeable_time, slowest_contraction
    implicit none
    private
 
@@ -310,8 +310,8 @@ contains
             panel%converged = newton%converged .and. (abs(correction) &
                <= time_tolerance*(start%time + length) &
                ! rounding in the condition of stiff internal variables ends it, too
-               .or. iteration > 3 .and. abs(correction) <= sqrt(epsilon(length))*length &
-               .and. abs(correction) >= abs(last_correction))
+               .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
+               .and. abs(correction) >= no_better*abs(last_correction))
             if (panel%converged) then
                call problem%settle_plate(rule, equations, start, panel)
                exit
