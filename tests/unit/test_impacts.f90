@@ -66,6 +66,7 @@ program test_impacts
    call test_missed_drift()
    call test_fleeing()
    call test_steps()
+   call test_forces_inside()
    call finish()
 
 contains
@@ -155,6 +156,25 @@ contains
          //"&material name = 'p', model = 'sls', density = 1100.0, poisson_ratio = 0.5, " &
          //"glassy_modulus = 15e6, alpha = "//given(3)//", beta = "//given(4)//" /"//new_line("a")
    end function fluid
+
+   !> Forces inside of the panels count where a plate flees: the energy of the waves feels them
+   subroutine test_forces_inside()
+      real(wp), parameter :: wave_energy = 0.656450792420_wp, asked = 1.0e-8_wp
+      type(row_t) :: row
+      type(ive_t) :: ive
+      type(trajectory_t) :: trajectory
+      type(outcome_t) :: outcome
+      type(error_t), allocatable :: error
+
+      call build(row, "a fleeing plate", fluid([character(len=20) :: "7.023165577829588", &
+         "0.017107128185880213", "0.2733305844872772", "2715758.37168038"]))
+      call make_ive(asked, ive)
+      call ive%solve(row%impact, trajectory, error)
+      call success(error, "a plate that flees is solved")
+      outcome = evaluate(row%impact, trajectory)
+      call check_difference(abs(outcome%wave_energy - wave_energy)/outcome%initial_energy, &
+         ive_share(8)*asked, "the energy of its waves")
+   end subroutine test_forces_inside
 
    !> Steps of product integration: as few as the accuracy takes where alpha' of a frozen plate is
    !> not resolved, enough where a plate that flees ends the contact within one

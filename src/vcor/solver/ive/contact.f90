@@ -33,7 +33,7 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
+      rounding_per_panel, shallow_end, shallow_factor, &
       tolerable, usual_accuracy, usually_better
    implicit none
    private
@@ -274,7 +274,7 @@ contains
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
             self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
-         force_error = max(0.0_wp, self%doubt - rounding_of_force*self%largest_force)
+         force_error = self%doubt
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
          if (trajectory%status /= contact_separated .and. .not. self%recedes &
              .and. 2.0_wp*panel%force(n) < panel%force(n - 1)) then

@@ -23,7 +23,7 @@ module vcor_solver_ive_rebound
       margin_of_rest, most_rebound_panels, near_vertex, order_at_end, panel_share, &
       rebound_fast, rebound_growth, rebound_hereditary, rebound_slow, roughly, rounding_per_panel, &
       slowest_fall, smallest_share, sure_growth, &
-      tolerable, unreliable_kernel, usual_accuracy
+      tolerable, usual_accuracy
    use vcor_solver_type, only : refuse_growth
    implicit none
    private
@@ -85,7 +85,7 @@ contains
          if (is_growing(rebound)) then
             if (is_crude(rebound)) cycle
             ! it may be the error of the kernel that makes it grow
-            if (rebound%problem%modes%contact%error > unreliable_kernel) exit
+            if (rebound%problem%modes%contact%error > rebound%accuracy) exit
             ! what its weight pushes back does not come off any more
             if (.not. trajectory%has_died_out(rebound%problem%impact, .true.)) &
                call refuse_growth(rebound%problem%impact, error)
