@@ -370,7 +370,7 @@ class Case:
         results = np.empty((len(table), len(names)))
         remarks = []
         length, start = 64, 0
-        with _bar(len(table), progress) as bar:
+        with progress_bar(len(table), progress) as bar:
             while start < len(table):
                 part = slice(start, start + length)
                 begin = time.perf_counter()
@@ -536,10 +536,10 @@ def _reason(remark: str) -> str:
     return remark.split(": ", 1)[1]
 
 
-class _NoBar:
+class NoBar:
     """A progress bar that nobody sees."""
 
-    def __enter__(self) -> _NoBar:
+    def __enter__(self) -> NoBar:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -549,13 +549,13 @@ class _NoBar:
         """Say nothing."""
 
 
-def _bar(total: int, progress: bool | None) -> Any:
-    """A progress bar, or none."""
+def progress_bar(total: int | None, progress: bool | None) -> Any:
+    """A progress bar, or none; a total that is not known is None."""
     shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
     if progress is None:
         progress = sys.stderr.isatty() or hasattr(shell, "kernel")
     if not progress:
-        return _NoBar()
+        return NoBar()
     with warnings.catch_warnings():
         # a notebook without ipywidgets has the bar of a terminal
         warnings.simplefilter("ignore")

@@ -22,7 +22,7 @@ from scipy.special import ndtri, stdtrit
 from . import _command, _library
 from ._command import number
 from ._library import Error, Floats, InputError, NumericalError, UsageError
-from .case import Case, read
+from .case import Case, NoBar, progress_bar, read
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
@@ -228,6 +228,7 @@ class _Problem:
         self, case: Case, free: Sequence[str], blocks: Sequence[Block], errors: Mapping[str, float]
     ) -> None:
         self.case, self.free, self.blocks = case, list(free), list(blocks)
+        self.bar: Any = NoBar()
         self.impacts = [block for block in blocks if isinstance(block, Impacts)]
         #: Velocities of the first impacts, or of the case [m/s]
         own = np.array([velocity_of(case)])
@@ -268,6 +269,7 @@ class _Problem:
     def predict(self, x: Floats) -> Floats:
         """Data for each row of x, shape (rows, data)."""
         values = np.exp(x)
+        self.bar.update(len(x) * sum(len(impacts.velocity) for impacts in self.impacts))
         return np.hstack([b.predict(self.case, self.free, values) for b in self.blocks])
 
     def residuals(self, x: Floats) -> Floats:
@@ -346,7 +348,9 @@ class _Problem:
         x = self.guess
         spread = np.random.default_rng(seed).uniform(-math.log(10), math.log(10), (STARTS, len(x)))
         starts = np.vstack([x, x + spread])
-        sums = np.sum(((self.predict(starts) - self.value) / self.sigma) ** 2, axis=1)
+        # in parts, for the bar and Ctrl-C
+        found_there = np.vstack([self.predict(part) for part in np.array_split(starts, 8)])
+        sums = np.sum(((found_there - self.value) / self.sigma) ** 2, axis=1)
         order = np.argsort(np.where(np.isnan(sums), np.inf, sums), kind="stable")[:REFINED]
         if not np.isfinite(sums[order[0]]):
             raise NumericalError(f"{self.case.name}: no start of the parameters has a result for "
@@ -443,8 +447,9 @@ def identify(
     if case["solver.method"] != "direct":
         sharpen(case, ACCURACY)
     problem = _Problem(case, free, blocks, errors or {})
-    x, chi2 = problem.best(seed)
-    return _judged(problem, x, chi2, model or "")
+    with progress_bar(None, None) as problem.bar:
+        x, chi2 = problem.best(seed)
+        return _judged(problem, x, chi2, model or "")
 
 
 def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identification:
