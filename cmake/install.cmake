@@ -5,7 +5,8 @@ include(CMakePackageConfigHelpers)
 set(vcor_cmake_folder "${CMAKE_INSTALL_LIBDIR}/cmake/vcor")
 
 # Program and library. A shared library (BUILD_SHARED_LIBS) belongs to the program; its version
-# changes with every release, since the layout of Fortran types is part of the interface
+# changes with every release, since the layout of Fortran types is part of the interface. That for C
+# stays the same until its functions change
 set(vcor_libraries_installed ${vcor_parts})
 if(TARGET vcor_c)
   list(APPEND vcor_libraries_installed vcor_c)
@@ -13,6 +14,9 @@ endif()
 set_target_properties(${vcor_libraries_installed} PROPERTIES
   VERSION "${PROJECT_VERSION}"
   SOVERSION "${PROJECT_VERSION}")
+if(TARGET vcor_c)
+  set_target_properties(vcor_c PROPERTIES SOVERSION "${PROJECT_VERSION_MAJOR}")
+endif()
 file(RELATIVE_PATH from_program "/${CMAKE_INSTALL_BINDIR}" "/${CMAKE_INSTALL_LIBDIR}")
 if(BUILD_SHARED_LIBS)
   set_target_properties(vcor_program PROPERTIES INSTALL_RPATH "$ORIGIN/${from_program}")

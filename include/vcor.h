@@ -30,7 +30,7 @@ extern "C" {
 enum {
    VCOR_OK = 0,
    VCOR_ERROR_INTERNAL = 1,  /* a fault of the library */
-   VCOR_ERROR_USAGE = 2,     /* an address or a name does not exist */
+   VCOR_ERROR_USAGE = 2,     /* an address or a name does not exist, a value cannot be read */
    VCOR_ERROR_INPUT = 3,     /* the case or a data file is wrong */
    VCOR_ERROR_FILE = 4,      /* a file cannot be read */
    VCOR_ERROR_NUMERICAL = 5  /* no result to be trusted */
@@ -75,7 +75,7 @@ const char *vcor_library_version(void);
 
 /* A case from `text`, or from the file `name` if `text` is NULL. `name` stands in messages, and data
  * files that the case names are relative to its folder. What the case says is checked when it is
- * used, so that vcor_set can complete it. */
+ * used, so that vcor_set can complete it. On failure *self is NULL, which all functions refuse. */
 int vcor_read(const char *text, const char *name, vcor_case **self, vcor_error *error);
 
 /* Release a case; NULL is allowed */
@@ -112,8 +112,9 @@ int vcor_axis(const vcor_case *self, int index, vcor_column *column, int *n, dou
  *   threads  threads to use, 0: as many as there are cores
  *
  * With m = 0 and n = 1 the case itself is solved, and an impact without a result is an error. With
- * m > 0 such a point has a status, and error->message says what the matter is while the code is
- * VCOR_OK. If the case has &sweep groups, their addresses must be among those that are given. */
+ * m > 0 such a point has a status, and error->message says what the matter is, with the number of
+ * the first such point counted from 1, while the code is VCOR_OK. One call for many points takes half
+ * as long as a call for each, and a twentieth of vcor_set before each: that checks the whole case. If the case has &sweep groups, their addresses must be among those that are given. */
 int vcor_solve(vcor_case *self, int m, const char *const *addresses, int n, const double *values,
                int k, const char *const *columns, double *results, int threads, vcor_error *error);
 

@@ -11,8 +11,8 @@ module vcor
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_law, only : contact_law_t, new_contact_law
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_frozen, &
-      waves_hereditary, waves_none, waves_relaxing
+   use vcor_impact_plate, only : new_plate, plate_t, waves_body, waves_constant, &
+      waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_impact_problem, only : impact_t, new_impact
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
       contact_sticking, trajectory_t
@@ -29,7 +29,7 @@ module vcor
    use vcor_material_prony, only : new_elastic, new_prony, new_rigid, new_sls, prony_t
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
-   use vcor_solver, only : solve_impact, solver_settings_t
+   use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_sweep_part, only : new_part
    use vcor_sweep_points, only : failures_t, solve_points
    use vcor_sweep_quantity, only : new_summary, summary_t
@@ -48,10 +48,10 @@ module vcor
    ! an impact
    public :: contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    public :: plate_t, new_plate, waves_none, waves_constant, waves_relaxing, waves_frozen
-   public :: waves_hereditary
+   public :: waves_hereditary, waves_body
    public :: impact_t, new_impact, contact_law_t, new_contact_law
    ! its solution
-   public :: solve_impact, outcome_t, solver_settings_t, trajectory_t
+   public :: solve_impact, outcome_t, solver_settings_t, trajectory_t, solver_t, new_solver
    public :: contact_separated, contact_lasting, contact_sticking, contact_resting
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data

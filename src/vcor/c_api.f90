@@ -160,6 +160,7 @@ contains
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
 
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call override(handle%case, fortran(address)//'='//fortran(value), trouble)
@@ -185,6 +186,7 @@ contains
       type(entry_t) :: entry
 
       value = c_null_ptr
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call find_place(handle%case, fortran(address), place, trouble)
@@ -211,6 +213,7 @@ contains
       type(error_t), allocatable :: trouble
       type(address_t) :: place
 
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call find_place(handle%case, fortran(address), place, trouble)
@@ -235,6 +238,7 @@ contains
       type(error_t), allocatable :: trouble
 
       text = c_null_ptr
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call validate(handle%case, trouble)
@@ -294,6 +298,7 @@ contains
 
       n = 0
       values = c_null_ptr
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call validate(handle%case, trouble)
@@ -335,6 +340,12 @@ contains
       integer :: places(k), team, i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (is_null(self, error, code)) return
+      if (min(m, n, k) < 0) then
+         call raise(trouble, error_usage, 'found a negative number of addresses, points or columns')
+         code = told(trouble, error)
+         return
+      end if
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call new_summary(summary, n, trouble)
@@ -407,6 +418,7 @@ contains
 
       rows = 0
       values = c_null_ptr
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call build(handle, none, nothing, trouble)
@@ -503,6 +515,7 @@ contains
       integer :: i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
+      if (is_null(self, error, code)) return
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       call build(handle, none, nothing, trouble)
@@ -598,7 +611,7 @@ contains
          if (column_of(handle%sweep%grid%axes(i)%address, handle%case, addresses) > 0) cycle
          call raise(error, error_input, case%location('sweep', 'parameter', i) &
             //": the case varies '"//handle%sweep%grid%axes(i)%name &
-            //"', expected values for it among those of the points")
+            //"', expected values for it among those of the points, or no &sweep group")
          return
       end do
       handle%sweep%grid%is_list = size(addresses) > 0
@@ -647,6 +660,10 @@ contains
       type(case_t) :: case
       integer :: item
 
+      if (.not. c_associated(self)) then
+         call refuse_null(error)
+         return
+      end if
       call c_f_pointer(self, handle)
 !$omp critical (vcor_c_api)
       case = handle%case
@@ -660,6 +677,31 @@ contains
       if (.not. allocated(error)) call material_of_case(case, item, material, error)
 !$omp end critical (vcor_c_api)
    end subroutine find_body
+
+   !> Whether there is no case, which is an error
+   function is_null(self, error, code)
+      type(c_ptr), intent(in) :: self
+      !> `vcor_error`, or null
+      type(c_ptr), intent(in) :: error
+      !> Code of that error
+      integer(c_int), intent(out) :: code
+      logical :: is_null
+
+      type(error_t), allocatable :: trouble
+
+      code = 0
+      is_null = .not. c_associated(self)
+      if (.not. is_null) return
+      call refuse_null(trouble)
+      code = told(trouble, error)
+   end function is_null
+
+   !> There is no case
+   subroutine refuse_null(error)
+      type(error_t), allocatable, intent(out) :: error
+
+      call raise(error, error_usage, 'the case is NULL: vcor_read has not made one')
+   end subroutine refuse_null
 
    !> Code of an error, which goes to the caller with its message
    function told(trouble, error) result(code)

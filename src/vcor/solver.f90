@@ -1,10 +1,11 @@
 !> Solvers by the name of their method
 module vcor_solver
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, trajectory_t
-   use vcor_kinds, only : wp
+   use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_solver_direct_product, only : new_product, product_t
    use vcor_solver_ive, only : ive_t, new_ive
    use vcor_solver_paper_adams_bashforth, only : adams_bashforth_t, new_adams_bashforth
@@ -55,7 +56,17 @@ contains
 
       two_terms = abs(settings%second_coefficient) > 0.0_wp
       is_product = settings%scheme == 'product'
-      if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
+      if (.not. all(ieee_is_finite([settings%time_step, settings%end_time, settings%accuracy, &
+          settings%second_coefficient]))) then
+         call refuse('the settings of a computation must be numbers', &
+            'time_step end_time accuracy volterra_coefficient')
+      else if (min(settings%time_step, settings%end_time, settings%accuracy) < 0.0_wp) then
+         call refuse('time_step, end_time and accuracy must not be negative', &
+            'time_step end_time accuracy')
+      else if (settings%accuracy > 0.0_wp .and. (settings%accuracy < finest_accuracy &
+               .or. settings%accuracy > coarsest_accuracy)) then
+         call refuse('expected an accuracy in [1e-11, 0.1]', 'accuracy')
+      else if (settings%time_step > 0.0_wp .and. settings%end_time > 0.0_wp &
          .and. .not. settings%time_step < settings%end_time) then
          call refuse('a computation needs time_step < end_time', 'time_step end_time')
       else if (settings%method == 'ive' .and. .not. is_product) then
@@ -117,6 +128,10 @@ contains
       type(solver_settings_t) :: wanted
       type(trajectory_t) :: course
 
+      if (.not. impact%modulus%is_built()) then
+         call raise(error, error_input, 'the impact is empty: new_impact has not built it')
+         return
+      end if
       if (present(settings)) wanted = settings
       call new_solver(solver, wanted, impact, error)
       if (.not. allocated(error)) call solve_by(solver, impact, course, outcome, error)

@@ -2,6 +2,7 @@
 !> of the library. What the procedures compute is tested where they are; here it is that they fit
 !> together
 program test_library
+   use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_quiet_nan, ieee_value
    use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, &
       contact_modulus_t, contact_resting, contact_separated, contact_sticking, error_file, &
       error_input, error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, &
@@ -9,11 +10,11 @@ program test_library
       history_table, impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
       new_part, new_plate, new_power_law, new_prony, new_rigid, new_sls, &
-      new_summary, new_sweep, new_tabulated, outcome_t, override, pair_eq1, pair_series, &
-      plate_t, power_law_t, problem_of_case, problem_t, prony_t, read_case, &
+      new_solver, new_summary, new_sweep, new_tabulated, outcome_t, override, pair_eq1, &
+      pair_series, plate_t, power_law_t, problem_of_case, problem_t, prony_t, read_case, &
       read_case_text, read_data, samples_t, solve_impact, solve_points, solver_settings_t, &
-      summary_t, summary_table, sweep_t, table_t, tabulated_t, trajectory_t, &
-      validate, version, waves_constant, waves_frozen, waves_hereditary, waves_none, &
+      solver_t, summary_t, summary_table, sweep_t, table_t, tabulated_t, trajectory_t, &
+      validate, version, waves_body, waves_constant, waves_frozen, waves_hereditary, waves_none, &
       waves_relaxing, wp, write_csv, write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
@@ -27,6 +28,7 @@ program test_library
    call check(index(version, '.') > 0, "the version has a dot")
    call test_materials()
    call test_impacts()
+   call test_refusals()
    call test_case()
    call test_errors()
    call test_sweep()
@@ -145,6 +147,73 @@ contains
          call check(trajectory%status == other%status, "the course is that of the outcome")
       end do
    end subroutine test_impacts
+
+   !> What an impact cannot be made of
+   subroutine test_refusals()
+      real(wp), parameter :: modulus_of = 1.0e7_wp, mass = 0.03_wp, radius = 0.01_wp
+      type(prony_t) :: steel, rubber, other
+      type(contact_modulus_t) :: modulus, empty
+      type(plate_t) :: plate
+      type(impact_t) :: impact, nothing
+      type(outcome_t) :: outcome
+      type(trajectory_t) :: trajectory
+      type(problem_t) :: problem
+      type(case_t) :: case
+      class(solver_t), allocatable :: solver
+      type(error_t), allocatable :: error
+      real(wp) :: nan, infinite
+
+      nan = ieee_value(nan, ieee_quiet_nan)
+      infinite = ieee_value(infinite, ieee_positive_inf)
+      call new_rigid(steel)
+      call new_elastic(rubber, modulus_of, error)
+      call success(error, "rubber is built")
+      call new_prony(other, infinite, [modulus_of], [1.0_wp], 0.0_wp, error)
+      call refused(error, error_input, "an infinite modulus")
+      call new_prony(other, 0.0_wp, [modulus_of], [infinite], 0.0_wp, error)
+      call refused(error, error_input, "an infinite rate")
+      call new_contact_modulus(modulus, steel, rubber, .false., error, pair=55)
+      call refused(error, error_input, "an unknown pair")
+      call new_plate(plate, rubber, 0.02_wp, 77, error)
+      call refused(error, error_input, "unknown waves")
+      call new_contact_modulus(modulus, steel, rubber, .false., error)
+      call success(error, "the contact modulus is built")
+      call new_plate(plate, rubber, 0.0_wp, waves_none, error)
+      call success(error, "the plate is built")
+      call new_impact(impact, 1.0_wp, mass, radius, nan, modulus, plate, error)
+      call refused(error, error_input, "a surface of no radius")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error, gravity=-9.8_wp)
+      call refused(error, error_input, "negative gravity")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error, gravity=nan)
+      call refused(error, error_input, "gravity that is no number")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, empty, plate, error)
+      call refused(error, error_input, "an empty contact modulus")
+      call solve_impact(nothing, outcome, error)
+      call refused(error, error_input, "an empty impact")
+      call check(outcome%status /= contact_separated, "what failed is no separation")
+      call problem%solve(trajectory, outcome, error)
+      call refused(error, error_input, "an empty problem")
+      call problem_of_case(problem, case, error)
+      call refused(error, error_input, "an empty case")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error)
+      call success(error, "the impact is built")
+      call new_solver(solver, solver_settings_t(accuracy=1.0e-20_wp), impact, error)
+      call refused(error, error_input, "an accuracy that nothing reaches")
+      call new_solver(solver, solver_settings_t(time_step=-1.0_wp), impact, error)
+      call refused(error, error_input, "a negative step")
+      call new_solver(solver, solver_settings_t(), impact, error)
+      call success(error, "a solver is built")
+      call solve_impact(solver, impact, trajectory, outcome, error)
+      call success(error, "an impact is solved by it")
+      call check_close(outcome%resilience, outcome%cor_sphere**2, 0.0_wp, "its resilience")
+      call rubber%set_constants(error, density=1100.0_wp, poisson_ratio=0.45_wp)
+      call success(error, "the density is set")
+      call new_plate(plate, rubber, 0.05_wp, waves_body, error)
+      call success(error, "a layer is built")
+      call new_impact(impact, 1.0_wp, mass, radius, 0.0_wp, modulus, plate, error)
+      call solve_impact(solver, impact, trajectory, outcome, error)
+      call success(error, "an impact on a layer is solved")
+   end subroutine test_refusals
 
    !> A case file, and the tables of its results
    subroutine test_case()

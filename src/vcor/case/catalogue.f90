@@ -6,7 +6,7 @@
 !> rows of one key share their kind and their default. Texts have a fixed length, as arrays of
 !> constants must: a unit test says when one is full.
 module vcor_case_catalogue
-   use vcor_kinds, only : finest_accuracy, wp
+   use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
    use vcor_material_parameter, only : density, interval_t, interval_text, positive
    use vcor_material_shifted, only : shift_laws, shift_parameters
@@ -74,7 +74,8 @@ module vcor_case_catalogue
       character(len=32) :: selector = ""
    end type group_t
 
-   type(interval_t), parameter :: accuracy_range = interval_t(lower=finest_accuracy, upper=0.1_wp)
+   type(interval_t), parameter :: accuracy_range = interval_t(lower=finest_accuracy, &
+      upper=coarsest_accuracy)
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)

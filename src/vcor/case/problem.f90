@@ -116,6 +116,11 @@ contains
       character(len=:), allocatable :: text
       integer :: order
 
+      if (min(case%material_of('sphere'), case%material_of('plate')) < 1) then
+         call raise(error, error_input, 'the case is empty or not checked: expected read_case, ' &
+            //'then validate, without an error')
+         return
+      end if
       self%at%velocity = case%address('impact', 'velocity')
       self%at%drop_height = case%address('impact', 'drop_height')
       self%at%gravity = case%address('impact', 'gravity')
@@ -372,6 +377,10 @@ contains
       !> Error of code `error_numerical` as that of `solve_impact`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      if (.not. allocated(self%solver)) then
+         call raise(error, error_input, 'the problem is empty: problem_of_case has not built it')
+         return
+      end if
       call prepare(self)
       call solve_impact(self%solver, self%impact, trajectory, outcome, error)
       if (allocated(error) .or. outcome%status /= contact_separated) return

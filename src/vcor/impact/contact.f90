@@ -47,6 +47,7 @@ module vcor_impact_contact
       !> What fits sums of exponentials to a pair; not allocated where they need not be fitted
       type(signed_fit_t), allocatable :: fit
    contains
+      procedure :: is_built
       procedure :: relaxation
       procedure :: rate
       procedure :: integral
@@ -89,7 +90,12 @@ contains
       call move_alloc(self%fit, fit)
       call clear(self)
       series = .false.
-      if (present(pair)) series = pair == pair_series
+      if (present(pair)) then
+         series = pair == pair_series
+         if (.not. (series .or. pair == pair_eq1)) call raise(error, error_input, &
+            'unknown kind of pair, expected pair_eq1 or pair_series', about='pair')
+         if (allocated(error)) return
+      end if
       if (sphere%rigid .and. plate%rigid) then
          call raise(error, error_input, &
             'sphere and plate are both rigid, expected one that deforms', about='material')
@@ -141,6 +147,14 @@ contains
    pure subroutine clear(self)
       type(contact_modulus_t), intent(out) :: self
    end subroutine clear
+
+   !> Whether there is a modulus
+   elemental function is_built(self)
+      class(contact_modulus_t), intent(in) :: self
+      logical :: is_built
+
+      is_built = allocated(self%first)
+   end function is_built
 
    !> Whether one body of a pair is elastic and the other one a sum of exponentials
    pure function expands(self) result(yes)

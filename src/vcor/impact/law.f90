@@ -94,6 +94,9 @@ contains
       if (.not. radius > 0.0_wp) then
          call raise(error, error_input, 'the radius of the sphere must be positive', &
             about='radius')
+      else if (.not. ieee_is_finite(surface_radius)) then
+         call raise(error, error_input, 'the radius of the surface must be a number, 0 where it ' &
+            //'is flat', about='surface_radius')
       else if (surface_radius < 0.0_wp .and. abs(surface_radius) <= radius) then
          call raise(error, error_input, &
             'a concave surface must have a larger radius than the sphere, or Hertz does not ' &

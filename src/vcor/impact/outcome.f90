@@ -6,7 +6,7 @@ module vcor_impact_outcome
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, &
       col_plate_velocity, col_sphere, col_time, col_velocity, contact_resting, contact_separated, &
-      trajectory_t
+      contact_unknown, trajectory_t
    use vcor_kinds, only : wp
    implicit none
    private
@@ -18,11 +18,11 @@ module vcor_impact_outcome
 
    !> Outcome; of an impact that did not end in separation only `status`, `steps` and
    !> `initial_energy` are numbers, and of one that rests the maxima and the indentation that is
-   !> left; all else is NaN. The measures of validity from `resilience` on
+   !> left; all else is NaN. The measures from `rebound_height` on, which take more than the impact,
    !> are set by `assess` of `vcor_impact_validity`; NaN where there is no such thing
    type :: outcome_t
       !> One of the `contact_*` constants of the trajectory
-      integer :: status = contact_separated
+      integer :: status = contact_unknown
       !> Number of time steps
       integer :: steps = 0
       !> Coefficient of restitution by the relative velocity, -s'(t0)/v0 [-]
@@ -140,11 +140,12 @@ contains
          - impact%mass*impact%gravity*outcome%contact_time
       outcome%cor = -trajectory%state(col_velocity, n)/impact%velocity
       outcome%cor_sphere = impulse/(impact%mass*impact%velocity) - 1.0_wp
+      outcome%resilience = outcome%cor_sphere**2
       outcome%hysteresis_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
          *trajectory%state(col_velocity, 0:n))
       outcome%wave_energy = sum(trajectory%weight(0:n)*trajectory%state(col_force, 0:n) &
          *trajectory%state(col_plate_velocity, 0:n))
-      outcome%final_energy = outcome%initial_energy*outcome%cor_sphere**2
+      outcome%final_energy = outcome%initial_energy*outcome%resilience
       outcome%weight_work = impact%mass*impact%gravity*trajectory%state(col_sphere, n)
       ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse, and that of
       ! its weight

@@ -94,7 +94,10 @@ contains
       ! alpha, its products with the mass and their squares stay far inside the range of the numbers
       real(wp), parameter :: largest = 1.0e60_wp
 
-      if (waves == waves_none .or. material%rigid) return
+      if (all(waves /= [waves_none, waves_constant, waves_relaxing, waves_frozen, &
+          waves_hereditary, waves_body])) call raise(error, error_input, 'unknown kind of waves, ' &
+         //'expected one of the constants waves_*', about='waves')
+      if (allocated(error) .or. waves == waves_none .or. material%rigid) return
       if (.not. half_thickness > 0.0_wp .and. waves /= waves_body) then
          call raise(error, error_input, 'a plate with waves needs half_thickness > 0 [m]; use ' &
             //"waves = 'none' for a half space", about='half_thickness')

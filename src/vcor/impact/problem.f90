@@ -11,6 +11,7 @@
 !>
 !>     F(t) = int_0^t1 k(t - x) u'(x) dx,   int_t1^t k(t - x) s'(x) dx = 0
 module vcor_impact_problem
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_contact, only : contact_modulus_t
    use vcor_impact_law, only : contact_law_t, sphere_factor
@@ -87,6 +88,11 @@ contains
 
       real(wp) :: factor
 
+      if (.not. modulus%is_built()) then
+         call raise(error, error_input, 'the contact modulus is empty: new_contact_modulus has ' &
+            //'not built it')
+         return
+      end if
       self%modulus = modulus
       self%plate = plate
       if (present(law)) self%law = law
@@ -125,11 +131,14 @@ contains
             'velocity, mass or radius of the sphere are beyond all that can be computed', &
             about='velocity mass radius')
       end if
+      self%gravity = 0.0_wp
+      if (present(gravity)) self%gravity = gravity
+      if (.not. ieee_is_finite(self%gravity)) self%gravity = -1.0_wp
+      if (self%gravity < 0.0_wp .or. self%gravity > largest) call raise(error, error_input, &
+         'gravity must not be negative, nor beyond all that can be computed', about='gravity')
       if (allocated(error)) return
       self%velocity = velocity
       self%mass = mass
-      self%gravity = 0.0_wp
-      if (present(gravity)) self%gravity = gravity
       self%factor = factor
       if (.not. self%plate%layered()) return
       self%plate%footprint = 0.0_wp

@@ -9,7 +9,8 @@ module vcor_impact_trajectory
    public :: trajectory_t
    public :: columns, col_time, col_indentation, col_velocity, col_force, col_impulse
    public :: col_sphere, col_sphere_velocity, col_plate, col_plate_velocity
-   public :: contact_separated, contact_lasting, contact_sticking, contact_resting, history_steps
+   public :: contact_unknown, contact_separated, contact_lasting, contact_sticking, &
+      contact_resting, history_steps
 
    !> Rows of `state`: time [s]
    integer, parameter :: col_time = 1
@@ -32,6 +33,8 @@ module vcor_impact_trajectory
    !> Number of rows of `state`
    integer, parameter :: columns = 9
 
+   !> Nothing is solved yet
+   integer, parameter :: contact_unknown = -1
    !> The force returned to zero: the bodies separated
    integer, parameter :: contact_separated = 0
    !> The time ran out in contact

@@ -137,7 +137,6 @@ contains
       real(wp) :: hertz_radius, frequency, share
 
       frequency = pi/outcome%contact_time
-      outcome%resilience = outcome%cor_sphere**2
       if (around%drops .and. outcome%cor_sphere >= 0.0_wp) outcome%rebound_height = &
          outcome%resilience*(impact%velocity*(impact%velocity/(2.0_wp*around%gravity)))
       outcome%contact_radius = impact%contact_radius(outcome%max_indentation)

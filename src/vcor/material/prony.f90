@@ -79,6 +79,8 @@ contains
             //'many times', about='rates times moduli')
       else if (.not. (all(moduli > 0.0_wp) .and. all(rates > 0.0_wp))) then
          call raise(error, error_input, 'the moduli and rates of a Prony series must be positive')
+      else if (.not. all([moduli, rates, equilibrium, viscosity] <= huge(1.0_wp))) then
+         call raise(error, error_input, 'the numbers of a Prony series must be finite')
       else if (.not. (equilibrium >= 0.0_wp .and. viscosity >= 0.0_wp)) then
          call raise(error, error_input, &
             'equilibrium modulus and viscosity of a Prony series must not be negative')

@@ -5,7 +5,7 @@ module vcor_sweep_quantity
    use vcor_error, only : error_file, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : columns, contact_lasting, contact_resting, &
-      contact_separated, contact_sticking
+      contact_separated, contact_sticking, contact_unknown
    use vcor_impact_validity, only : level_none, levels, thresholds
    use vcor_kinds, only : wp
    use vcor_sweep_part, only : part_t
@@ -19,7 +19,7 @@ module vcor_sweep_quantity
    public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
 
    !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
-   integer, parameter :: point_pending = -1
+   integer, parameter :: point_pending = contact_unknown
    !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
    !> The numerical solution failed

@@ -1,7 +1,7 @@
 !> The impact of a case file, with another velocity
 program from_case
    use vcor, only : case_t, error_t, outcome_t, override, problem_of_case, problem_t, read_case, &
-      solve_impact, trajectory_t, validate
+      trajectory_t, validate
    implicit none
    type(case_t) :: case
    type(problem_t) :: problem
@@ -13,8 +13,7 @@ program from_case
    if (.not. allocated(error)) call override(case, 'impact.velocity=2.5', error)
    if (.not. allocated(error)) call validate(case, error)
    if (.not. allocated(error)) call problem_of_case(problem, case, error)
-   if (.not. allocated(error)) &
-      call solve_impact(problem%solver, problem%impact, trajectory, outcome, error)
+   if (.not. allocated(error)) call problem%solve(trajectory, outcome, error)
    if (allocated(error)) then
       print '(a)', error%message
       stop 1
