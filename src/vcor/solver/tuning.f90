@@ -114,6 +114,9 @@ module vcor_solver_tuning
    !> Error of the largest force over the accuracy, and of the force elsewhere over that
    real(wp), parameter :: peak_share = 10.0_wp ! tested
    real(wp), parameter :: force_share = 1.0e3_wp ! tested
+   !> What rounding leaves in the force of stiff internal variables and dashpots, over the largest
+   !> one: it is not to stop the march of nearly fluid contacts (tests/cli/test_results.py)
+   real(wp), parameter :: rounding_of_force = 1.0e-12_wp ! tested
    !> Difference of the contact times over the accuracy that is let pass with a continuous spectrum,
    !> and the least one
    real(wp), parameter :: time_share_continuous = 1.5_wp ! time

@@ -33,7 +33,7 @@ module vcor_solver_ive_contact
       first_drift, first_receding_growth, first_short, first_slow, first_three, &
       force_share, harmless, inner_allowed, inner_felt, layer_accuracy, levels_base, &
       levels_error, most_ahead, most_panels, next_to_branch, panel_share, peak_share, &
-      rounding_per_panel, shallow_end, shallow_factor, &
+      rounding_of_force, rounding_per_panel, shallow_end, shallow_factor, &
       tolerable, usual_accuracy, usually_better
    implicit none
    private
@@ -297,6 +297,9 @@ contains
             if (.not. impact%plate%layered()) self%excess = max(self%excess, &
                cor_error/self%accuracy)
          end if
+         ! of a force that is no more than rounding there is nothing to be off by
+         force_error = max(0.0_wp, min(force_error, maxval(panel%force(0:n))) &
+            - rounding_of_force*self%largest_force)
          self%excess = max(self%excess, share(force_error, allowed))
          if (self%recedes) then
             ! the rebound feels the solution between the ends of the panels, too
