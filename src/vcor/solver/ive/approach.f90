@@ -302,6 +302,8 @@ contains
       !> Other t1 [s], less than the end
       real(wp) :: other
 
+      ! way back beyond which no digit of the approach is left
+      real(wp), parameter :: farthest = 1.0_wp/epsilon(1.0_wp)
       real(wp) :: way, whole
 
       way = self%end - t1
@@ -310,8 +312,9 @@ contains
          other = self%end - 2.0_wp*abs(way)
       else if (2.0_wp*change >= (1.0_wp - (1.0_wp - closest_to_vertex)**2)*whole) then
          other = t1 + closest_to_vertex*way
-      else if (.not. t1 > 0.0_wp) then
-         other = t1 + change/rate
+      else if (.not. t1 > 0.0_wp .or. -change > farthest*whole) then
+         other = t1 - farthest*self%end
+         if (-change < farthest*self%end*rate) other = t1 + change/rate
       else
          other = t1 + way*(1.0_wp - sqrt(1.0_wp - 2.0_wp*change/whole))
       end if
