@@ -7,8 +7,8 @@ module vcor_solver_ive_newton
    use vcor_solver_ive_problem, only : equations_t, form_matrix, lost_indentation, &
       panel_problem_t, product_with_m
    use vcor_solver_ive_step, only : step_of, step_t
-   use vcor_solver_tuning, only : farthest_rebound, most_iterations, newton_close, &
-      no_better, noticeable_time, slowest_contraction
+   use vcor_solver_tuning, only : farthest_closing, farthest_rebound, most_iterations, &
+      newton_close, no_better, noticeable_time, slowest_contraction
    implicit none
    private
 
@@ -304,8 +304,9 @@ contains
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
             if (.not. fall > 0.0_wp) return
             last_correction = correction
-            correction = length
-            if (abs(panel%condition(n)) < fall) correction = panel%condition(n)/fall*length
+            correction = farthest_closing*length
+            if (abs(panel%condition(n)) < farthest_closing*fall) &
+               correction = panel%condition(n)/fall*length
             correction = sign(correction, panel%condition(n))
             panel%converged = newton%converged .and. (abs(correction) &
                <= time_tolerance*(start%time + length) &
