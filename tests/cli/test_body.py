@@ -104,6 +104,11 @@ def test_refused(vcor, setting, reason):
     vcor.refuses("run", "case.nml", "--set", setting, code=3, says=reason)
 
 
+def test_waves_that_stay_in_the_footprint_are_refused(vcor):
+    vcor.write(text("half space").replace("density = 2500", "density = 2.5e13"))
+    vcor.refuses("run", "case.nml", code=3, says="faster than the waves of the plate")
+
+
 def test_an_end_before_the_sum_holds_is_refused(vcor):
     """A thin soft layer flees a heavy bead within a ten-thousandth of the window of its sum."""
     vcor.write(

@@ -43,6 +43,8 @@ module vcor_impact_layer
       procedure :: dent
       !> Compliance for what happens at once
       procedure :: instant
+      !> Way of a shear wave
+      procedure :: way
    end type layer_t
 
 contains
@@ -170,6 +172,21 @@ contains
       if (ieee_is_finite(self%material%glassy()) .and. .not. self%material%viscosity > 0.0_wp) &
          c = -(1.0_wp - nu**2)/(2.0_wp*self%material%glassy()*footprint)
    end function instant
+
+   !> Way of a shear wave in a time
+   pure function way(self, time)
+      class(layer_t), intent(in) :: self
+      !> Time [s], > 0
+      real(wp), intent(in) :: time
+      !> Way [m]
+      real(wp) :: way
+
+      real(wp) :: shear
+
+      shear = abs(self%material%complex_modulus(cmplx(1.0_wp/time, 0.0_wp, wp))) &
+         /(2.0_wp*(1.0_wp + self%material%poisson_ratio()))
+      way = time*sqrt(shear/self%material%density())
+   end function way
 
    !> k mu G: deflection of the face by a load that varies as J_0(k r)
    elemental function deflection(k, q, p, thickness) result(g)

@@ -60,6 +60,7 @@ module vcor_impact_plate
       procedure :: frozen
       procedure :: layered
       procedure :: is_sheet
+      procedure :: is_outpaced
       procedure :: hereditary
       procedure :: drifts
       procedure, nopass :: window
@@ -226,6 +227,20 @@ contains
       if (is_sheet) is_sheet = self%layer%thickness > 0.0_wp &
          .and. self%layer%thickness < thinnest*self%footprint
    end function is_sheet
+
+   !> Whether the waves of a layer stay within the disc that loads it for so short a contact that
+   !> its compliance takes too long to integrate
+   elemental function is_outpaced(self, contact_time)
+      class(plate_t), intent(in) :: self
+      !> Expected contact time [s], > 0
+      real(wp), intent(in) :: contact_time
+      logical :: is_outpaced
+
+      real(wp), parameter :: shortest = 0.1_wp
+
+      is_outpaced = self%layered()
+      if (is_outpaced) is_outpaced = self%layer%way(contact_time) < shortest*self%footprint
+   end function is_outpaced
 
    !> Whether the velocity U' - alpha F is a quantity of its own, not alpha' I
    elemental function drifts(self)

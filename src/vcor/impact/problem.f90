@@ -144,14 +144,17 @@ contains
       self%plate%footprint = 0.0_wp
       if (present(footprint)) self%plate%footprint = footprint
       ! a number that jumped with the rounding of T would make the results jump
-      if (.not. self%plate%footprint > 0.0_wp) then
-         time_scale = self%time_scale(1.0e-14_wp)
-         self%plate%footprint = 1.6_wp &
-            *self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
+      time_scale = self%time_scale(1.0e-14_wp)
+      if (.not. self%plate%footprint > 0.0_wp) self%plate%footprint = 1.6_wp &
+         *self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
+      if (self%plate%is_sheet()) then
+         call raise(error, error_input, 'the plate is less than a hundredth of the disc that ' &
+            //"loads it: use waves = 'hereditary'", about='half_thickness footprint')
+      else if (self%plate%is_outpaced(self%law%contact_time*time_scale)) then
+         call raise(error, error_input, 'the impact is faster than the waves of the plate, which ' &
+            //'go no farther in the contact than a tenth of the disc that loads it: no plate ' &
+            //"model holds; waves = 'none' leaves them out", about='velocity footprint')
       end if
-      if (self%plate%is_sheet()) call raise(error, error_input, 'the plate is less than a ' &
-         //"hundredth of the disc that loads it: use waves = 'hereditary'", &
-         about='half_thickness footprint')
    end subroutine launch
 
    !> Way of the sphere without a contact force, v0 t + g t^2/2
