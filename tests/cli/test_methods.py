@@ -344,3 +344,25 @@ def test_twins_of_two_names(vcor, law, model):
     vcor.write(case.replace("material = 'plate'", "material = 'ball'"), "one.nml")
     law = ("--set", f"contact.law={law}")
     assert vcor.numbers("case.nml", *law) == vcor.numbers("one.nml", *law)
+
+# A plate that relaxes between the first stages of the first panel, by a random draw
+FROZEN = """\
+&impact velocity = 0.0714 /
+&sphere radius = 2.165e-4, material = 'ball' /
+&plate half_thickness = 3.332e-4, material = 'plate', waves = 'frozen' /
+&material
+   name = 'plate', model = 'prony', density = 1468.9, poisson_ratio = 0.5, equilibrium_modulus = 8.509e6
+   moduli = 2.333e7, 1.244e7, 2.841e7, 5.161e6, 2.243e7
+   times = 1.282e-9, 3.575e-9, 6.243e-9, 8.886e-9, 2.112e-8
+/
+&material name = 'ball', model = 'elastic', density = 7800.0, modulus = 2.1e11, poisson_ratio = 0.3 /
+&contact pair = 'series' /
+"""
+
+
+def test_a_frozen_plate_that_relaxes_between_stages(vcor):
+    vcor.write(FROZEN)
+    rough, fine = (
+        vcor.numbers("case.nml", "--set", f"solver.accuracy={accuracy}") for accuracy in ("1e-6", "1e-10")
+    )
+    assert abs(cor(rough) - cor(fine)) <= min(1e-6, 3 * error(rough))

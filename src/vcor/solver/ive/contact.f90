@@ -266,10 +266,10 @@ contains
          self%largest_force = max(self%largest_force, maxval(panel%force(1:n)))
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
-         ! alpha' of a frozen plate is infinite at first contact, or a spike: what alpha gains
-         ! before the first stage both solutions miss
+         ! alpha' of a frozen plate is infinite at first contact, or a spike that both solutions
+         ! miss, and its error stays for the rest of the contact
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) self%excess = &
-            max(self%growth, (panel%alpha(1) - panel%alpha(0))*panel%force(1)/self%speed) &
+            max(self%growth, missed_drift(collocator%rule, panel)/self%speed) &
             /(first_drift*self%accuracy)
          self%doubt = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
@@ -337,6 +337,24 @@ contains
             /(rule%barycentric(n)*pace))
       end associate
    end function settled_error
+
+   !> Drift of a frozen plate, int alpha' F dt, that the first panel may miss: what alpha F - int
+   !> alpha dF, whose integrand has no spike where alpha rises at once, has besides, and what alpha
+   !> gains before the first stage
+   pure function missed_drift(rule, panel) result(missed)
+      type(collocation_t), intent(in) :: rule
+      type(panel_t), intent(in) :: panel
+      !> Drift [m/s]
+      real(wp) :: missed
+
+      real(wp) :: rise(0:width)
+
+      rise = rule%slopes(panel%force)
+      associate (n => panel%stages, alpha => panel%alpha, force => panel%force)
+         missed = max((alpha(1) - alpha(0))*force(1), abs(alpha(n)*force(n) - alpha(0)*force(0) &
+            - sum(rule%weight(1:n)*alpha(1:n)*rise(1:n)) - (panel%drift(n) - panel%drift(0))))
+      end associate
+   end function missed_drift
 
    !> What the panel adds to the error of the energy that the plate takes, int alpha F^2, over that
    !> of the impact: forces inside a panel are less accurate than the motion, and their square keeps
