@@ -230,6 +230,8 @@ module vcor_solver_tuning
    integer, parameter :: most_for_layers = 8000 ! open
    !> Steps beyond which the face of a layer is not followed for the sake of `cor` alone
    integer, parameter :: enough_steps = 1000 ! open
+   !> Least error of `cor` over that of `cor_sphere`
+   real(wp), parameter :: cancelled = 0.1_wp ! tested
    !> Error of the largest force over the accuracy
    real(wp), parameter :: share_of_force = 10.0_wp ! tested
    !> Part of the approach that the last step of a rebound may take back

@@ -29,8 +29,8 @@ module vcor_solver_direct_product
    use vcor_solver_direct_receding, only : receding_t
    use vcor_solver_direct_weights, only : contact_kernel_t, square_weights
    use vcor_solver_equal_steps, only : find_peaks
-   use vcor_solver_tuning, only : enough_steps, first_steps, last_part, &
-      layer_reach, least_part, most_for_all, most_for_layers, share_of_force
+   use vcor_solver_tuning, only : cancelled, enough_steps, first_steps, &
+      last_part, layer_reach, least_part, most_for_all, most_for_layers, share_of_force
    use vcor_solver_type, only : default_accuracy, refuse_growth, solver_settings_t, solver_t
    implicit none
    private
@@ -147,6 +147,9 @@ contains
                trajectory%cor_error = found%error
                found = richardson(cor_sphere)
                trajectory%cor_sphere_error = found%error
+               ! cor has the error of cor_sphere and that of the plate: they cancel by chance only
+               trajectory%cor_error = max(trajectory%cor_error, &
+                  cancelled*trajectory%cor_sphere_error)
                ! the face of a layer rings: what the order of three runs says is chance
                if (impact%plate%layered()) then
                   trajectory%cor_error = max(trajectory%cor_error, abs(cor(3) - cor(2)), &
