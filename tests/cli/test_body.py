@@ -3,7 +3,7 @@
 import re
 
 import pytest
-from program import NUMERICAL
+from program import NUMERICAL, ROOT
 
 CASE = """
 &impact velocity = {velocity} /
@@ -102,6 +102,18 @@ def test_footprint_effect(vcor):
 def test_refused(vcor, setting, reason):
     vcor.write(text("layer of glass"))
     vcor.refuses("run", "case.nml", "--set", setting, code=3, says=reason)
+
+
+@pytest.mark.parametrize("accuracy", ["1e-4", "1e-6"])
+def test_steps_of_product_integration(vcor, accuracy):
+    """The sphere to the accuracy asked for, and the face of the layer as far as a thousand steps
+    bring it."""
+    vcor.write((ROOT / "examples" / "steel_on_glass.nml").read_text("utf-8"))
+    words = ["--set", "plate.waves=body", "--set", "solver.method=direct", "--set", f"solver.accuracy={accuracy}"]
+    found = vcor("run", "case.nml", *words, "--print", "cor_sphere_error,cor_error")
+    sphere, relative = map(float, found.out.split())
+    assert sphere <= float(accuracy)
+    assert relative <= 6e-4
 
 
 def test_waves_that_stay_in_the_footprint_are_refused(vcor):

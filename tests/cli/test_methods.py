@@ -386,3 +386,21 @@ def test_errors_that_cancel_by_chance_are_stated(vcor):
     exact = cor(vcor.numbers("case.nml", "--set", "solver.accuracy=1e-10"))
     found = vcor.numbers("case.nml", "--set", "solver.method=direct")
     assert abs(cor(found) - exact) <= 2 * error(found)
+
+
+# Elastic, on a half space: cor = 1
+ELASTIC = """\
+&impact velocity = 1.0 /
+&sphere radius = 0.01, material = 'ball' /
+&plate material = 'block', waves = 'none' /
+&material name = 'ball', model = 'rigid', density = 7800.0 /
+&material name = 'block', model = 'elastic', modulus = 7e10, poisson_ratio = 0.25 /
+"""
+
+
+@pytest.mark.parametrize("accuracy", ["1e-6", "1e-7", "1e-8"])
+def test_the_error_at_the_end_of_an_elastic_impact_is_stated(vcor, accuracy):
+    """Next to s = 0 the two solutions of method ive differ by little more than their error."""
+    vcor.write(ELASTIC)
+    found = vcor.numbers("case.nml", "--set", f"solver.accuracy={accuracy}")
+    assert abs(cor(found) - 1.0) <= error(found) <= float(accuracy)

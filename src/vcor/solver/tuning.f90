@@ -6,10 +6,6 @@
 !>
 !> - tested: trades time against accuracy; spoilt, it makes a test fail, mostly `test_impacts`
 !> - time: trades time only
-!> - guard: makes no difference to the reference impacts, but serves others
-!> - open: it trades time against accuracy, and what it costs is stated, yet no test fails when it
-!>   is spoilt: with a tenth of `most_for_layers` three references on layers by method direct have
-!>   5e-6 for 1e-6, with one of `enough_steps` one has cor to 4.6e-3 instead of 3.7e-3
 module vcor_solver_tuning
    use vcor_kinds, only : wp
    implicit none
@@ -143,7 +139,7 @@ module vcor_solver_tuning
    !> point of u: from one number of stages to the next the error falls by half only, elsewhere by
    !> `usually_better` at least
    real(wp), parameter :: next_to_branch = 0.05_wp ! tested
-   real(wp), parameter :: usually_better = 10.0_wp ! guard
+   real(wp), parameter :: usually_better = 10.0_wp ! tested
    !> The panel before an end that was refused comes this close to it
    real(wp), parameter :: cut_at_end = 0.65_wp ! tested
    !> The most panels that lead to an end next to a branch point before it is tried again
@@ -227,9 +223,9 @@ module vcor_solver_tuning
    real(wp), parameter :: least_part = 32.0_wp ! tested
    !> A run of more steps is given up: its sums take seconds, or the compliance of a layer does
    integer, parameter :: most_for_all = 60000 ! tested
-   integer, parameter :: most_for_layers = 8000 ! open
+   integer, parameter :: most_for_layers = 8000 ! tested
    !> Steps beyond which the face of a layer is not followed for the sake of `cor` alone
-   integer, parameter :: enough_steps = 1000 ! open
+   integer, parameter :: enough_steps = 1000 ! tested
    !> Least error of `cor` over that of `cor_sphere`
    real(wp), parameter :: cancelled = 0.1_wp ! tested
    !> Error of the largest force over the accuracy
