@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import functools
 import os
-from collections.abc import Sequence
 from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -59,18 +58,6 @@ class _ErrorStruct(Structure):
     _fields_ = [("code", c_int), ("message", c_char * 2048)]
 
 
-class _ColumnStruct(Structure):
-    _fields_ = [
-        ("name", c_char * 256),
-        ("symbol", c_char * 16),
-        ("unit", c_char * 32),
-        ("meaning", c_char * 128),
-        ("labels", c_char * 512),
-        ("first", c_int),
-        ("is_whole", c_int),
-    ]
-
-
 class Column(NamedTuple):
     """A column of a table, or what an address is."""
 
@@ -105,6 +92,29 @@ class Column(NamedTuple):
         return numbers.astype(np.int64) if self.is_whole else numbers
 
 
+class ColumnStruct(Structure):
+    """A column as the library has it."""
+
+    _fields_ = [
+        ("name", c_char * 256),
+        ("symbol", c_char * 16),
+        ("unit", c_char * 32),
+        ("meaning", c_char * 128),
+        ("labels", c_char * 512),
+        ("first", c_int),
+        ("is_whole", c_int),
+    ]
+
+    @property
+    def column(self) -> Column:
+        """The same in words of Python."""
+        name, symbol, unit, meaning, labels = (
+            getattr(self, key).decode() for key in ("name", "symbol", "unit", "meaning", "labels")
+        )
+        whole = bool(self.is_whole)
+        return Column(name, symbol, unit, meaning, tuple(labels.split()), self.first, whole)
+
+
 def _find_library() -> Path:
     """The library beside this file, or where the variable VCOR_LIBRARY says."""
     if "VCOR_LIBRARY" in os.environ:
@@ -124,9 +134,9 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "vcor_read": [c_char_p, c_char_p, POINTER(c_void_p)],
     "vcor_set": [c_void_p, c_char_p, c_char_p],
     "vcor_get": [c_void_p, c_char_p, POINTER(c_void_p)],
-    "vcor_describe": [c_void_p, c_char_p, POINTER(_ColumnStruct)],
+    "vcor_describe": [c_void_p, c_char_p, POINTER(ColumnStruct)],
     "vcor_case_text": [c_void_p, c_int, POINTER(c_void_p)],
-    "vcor_axis": [c_void_p, c_int, POINTER(_ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
+    "vcor_axis": [c_void_p, c_int, POINTER(ColumnStruct), POINTER(c_int), POINTER(c_void_p)],
     "vcor_solve": [
         c_void_p, c_int, _texts, c_int, _doubles, c_int, _texts, _doubles, c_int,
     ],
@@ -143,35 +153,31 @@ _ARGUMENTS: dict[str, list[Any]] = {
 for _name, _types in _ARGUMENTS.items():
     getattr(_library, _name).argtypes = [*_types, POINTER(_ErrorStruct)]
 _library.vcor_free.argtypes = [c_void_p]
-_library.vcor_column_of.argtypes = [c_int, c_int, POINTER(_ColumnStruct)]
+_library.vcor_column_of.argtypes = [c_int, c_int, POINTER(ColumnStruct)]
 _library.vcor_library_version.restype = c_char_p
 
 __version__: str = _library.vcor_library_version().decode()
 
 
-def _call(name: str, *arguments: Any) -> str:
+def call(name: str, *arguments: Any) -> str:
     """Call a function of the library; its remark, if it has one."""
     error = _ErrorStruct()
-    code = getattr(_library, name)(*arguments, byref(error))
+    given = (one.encode() if isinstance(one, str) else one for one in arguments)
+    code = getattr(_library, name)(*given, byref(error))
     message: str = error.message.decode(errors="replace")
     if code:
         raise _KINDS.get(code, Error)(message)
     return message
 
 
-def _column(struct: _ColumnStruct) -> Column:
-    return Column(
-        struct.name.decode(),
-        struct.symbol.decode(),
-        struct.unit.decode(),
-        struct.meaning.decode(),
-        tuple(struct.labels.decode().split()),
-        struct.first,
-        bool(struct.is_whole),
-    )
+def text_of(name: str, *arguments: Any) -> str | None:
+    """Text that a function of the library gives last."""
+    pointer = c_void_p()
+    call(name, *arguments, byref(pointer))
+    return take_text(pointer)
 
 
-def _take_text(pointer: c_void_p) -> str | None:
+def take_text(pointer: c_void_p) -> str | None:
     """A text of the library, which is released."""
     if not pointer:
         return None
@@ -181,7 +187,7 @@ def _take_text(pointer: c_void_p) -> str | None:
         _free(pointer)
 
 
-def _take_numbers(pointer: c_void_p, n: int) -> Floats:
+def take_numbers(pointer: c_void_p, n: int) -> Floats:
     """Numbers of the library, which are released."""
     try:
         return np.array(ctypes.cast(pointer, POINTER(c_double))[:n])
@@ -190,7 +196,7 @@ def _take_numbers(pointer: c_void_p, n: int) -> Floats:
 
 
 @functools.lru_cache(maxsize=64)
-def _c_texts(texts: tuple[str, ...]) -> Any:
+def texts(texts: tuple[str, ...]) -> Any:
     return (c_char_p * len(texts))(*[text.encode() for text in texts])
 
 
@@ -198,98 +204,12 @@ def _c_texts(texts: tuple[str, ...]) -> Any:
 def columns(table: int) -> dict[str, Column]:
     """Columns of a table by name: 0 the summary, 1 a history, 2 what is compared by verify."""
     found: dict[str, Column] = {}
-    struct = _ColumnStruct()
+    struct = ColumnStruct()
     while _library.vcor_column_of(table, len(found), byref(struct)):
-        column = _column(struct)
-        found[column.name] = column
+        found[struct.column.name] = struct.column
     return found
 
 
-class Handle:
-    """A case of the library."""
-
-    def __init__(self, text: str | None, name: str) -> None:
-        self._case = c_void_p()
-        data = None if text is None else text.encode()
-        _call("vcor_read", data, os.fsencode(name), byref(self._case))
-
-    def __del__(self) -> None:
-        if getattr(self, "_case", None):
-            _library.vcor_free(self._case)
-            self._case = c_void_p()
-
-    def set(self, address: str, value: str) -> None:
-        """Set a value, written as in a namelist."""
-        _call("vcor_set", self._case, address.encode(), value.encode())
-
-    def get(self, address: str) -> str | None:
-        """Value as a namelist has it, None if there is none."""
-        text = c_void_p()
-        _call("vcor_get", self._case, address.encode(), byref(text))
-        return _take_text(text)
-
-    def describe(self, address: str) -> Column:
-        """Path, unit and meaning of an address."""
-        struct = _ColumnStruct()
-        _call("vcor_describe", self._case, address.encode(), byref(struct))
-        return _column(struct)
-
-    def text(self, complete: bool) -> str:
-        """The case as namelists."""
-        text = c_void_p()
-        _call("vcor_case_text", self._case, int(complete), byref(text))
-        return _take_text(text) or ""
-
-    def axes(self) -> dict[str, Floats]:
-        """Addresses that the case varies, with their values."""
-        axes: dict[str, Floats] = {}
-        struct, n, values = _ColumnStruct(), c_int(), c_void_p()
-        while True:
-            _call("vcor_axis", self._case, len(axes), byref(struct), byref(n), byref(values))
-            if not values:
-                return axes
-            axes[_column(struct).name] = _take_numbers(values, n.value)
-
-    def solve(
-        self, addresses: Sequence[str], values: Floats, names: Sequence[str], threads: int
-    ) -> tuple[Floats, str]:
-        """Columns of points, shape (points, names), and a remark on points without a result."""
-        results = np.empty((len(values), len(names)))
-        m, k = len(addresses), len(names)
-        remark = _call(
-            "vcor_solve", self._case, m, _c_texts(tuple(addresses)), len(values),
-            np.ascontiguousarray(values), k, _c_texts(tuple(names)), results, threads,
-        )  # fmt: skip
-        return results, remark
-
-    def history(self) -> Floats:
-        """Columns of the history, shape (columns, times)."""
-        rows, values = c_int(), c_void_p()
-        _call("vcor_history", self._case, byref(rows), byref(values))
-        k = len(columns(1))
-        return _take_numbers(values, rows.value * k).reshape(rows.value, k).T
-
-    def relaxation(self, material: str, times: Floats) -> Floats:
-        """Relaxation modulus [Pa]."""
-        moduli = np.empty_like(times)
-        _call("vcor_relaxation", self._case, material.encode(), times.size, times, moduli)
-        return moduli
-
-    def complex_modulus(self, material: str, frequencies: Floats) -> NDArray[np.complex128]:
-        """Complex modulus [Pa]."""
-        storage, loss = np.empty_like(frequencies), np.empty_like(frequencies)
-        n = frequencies.size
-        _call("vcor_complex_modulus", self._case, material.encode(), n, frequencies, storage, loss)
-        return storage + 1j * loss
-
-    def time_factor(self, material: str) -> float:
-        """Shift factor of a material at the temperature of the impact."""
-        factor = c_double()
-        _call("vcor_time_factor", self._case, material.encode(), byref(factor))
-        return factor.value
-
-    def verify(self) -> Floats:
-        """Best value, internal variables, product integration, digits; shape (quantities, 4)."""
-        results = np.empty((len(columns(2)), 4))
-        _call("vcor_verify", self._case, results)
-        return results
+def free_case(case: c_void_p) -> None:
+    """Release a case of the library."""
+    _library.vcor_free(case)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import sys
 import time
+import types
 import warnings
 from collections.abc import Mapping, Sequence
+from ctypes import byref, c_double, c_int, c_void_p
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +19,7 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
-from ._library import Error, FileError, Floats, Handle, InputError, NoResultWarning, NumericalError
+from ._library import Error, FileError, Floats, InputError, NoResultWarning, NumericalError, call
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -99,17 +102,22 @@ class Case:
                              "reads a file")  # fmt: skip
         text = source if source is None or isinstance(source, str) else _namelists(source)
         self.name = name
-        self._handle = Handle(text, name)
+        self._case = c_void_p()
+        call("vcor_read", text, os.fsencode(name), byref(self._case))
         if text is None:
             text = Path(name).read_text(encoding="utf-8", errors="surrogateescape")
         self._text = text
         self._settings: dict[str, str] = {}
         self._numbers: dict[str, float] = {}
 
+    def __del__(self) -> None:
+        if getattr(self, "_case", None):
+            _library.free_case(self._case)
+
     def __setitem__(self, address: str, value: Value) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         written = _written(value) if not isinstance(value, str) else value
-        self._handle.set(address, written)
+        call("vcor_set", self._case, address, written)
         self._settings[address] = written
         self._numbers.pop(address, None)
         if isinstance(value, float):
@@ -117,7 +125,7 @@ class Case:
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""
-        text = self._handle.get(address)
+        text = _library.text_of("vcor_get", self._case, address)
         return None if text is None else _value(text)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -137,7 +145,7 @@ class Case:
 
     def text(self, *, complete: bool = False) -> str:
         """The case as namelists, with `complete` also every default; the case is checked."""
-        return self._handle.text(complete)
+        return _library.text_of("vcor_case_text", self._case, int(complete)) or ""
 
     def save(self, path: str | os.PathLike[str], *, complete: bool = False) -> None:
         """Write the case to a file that the program reads."""
@@ -170,12 +178,12 @@ class Case:
             A single impact has no result. If it sticks, or does not separate within end_time, the
             summary is in the attribute `result`.
         """
-        axes = self._handle.axes()
+        axes = self._axes()
         if axes:
             return self.sweep(axes, threads=threads, progress=progress)
         names = list(_library.columns(0))
         try:
-            values, _ = self._handle.solve([], np.empty((1, 0)), names, 1)
+            values, _ = self._solve([], np.empty((1, 0)), names, 1)
         except Error as error:
             if isinstance(error, NumericalError):
                 error.result = self._without_result(names)
@@ -216,7 +224,7 @@ class Case:
         if point:
             row = np.array([[float(value) for value in point.values()]])
             try:
-                found, remark = self._handle.solve(list(point), row, [*names, "status"], 1)
+                found, remark = self._solve(list(point), row, [*names, "status"], 1)
             except Error:
                 if values is not None:
                     raise
@@ -225,7 +233,7 @@ class Case:
                 kind = InputError if found[0, -1] == _INVALID else NumericalError
                 raise kind(f"{self.name}: {_reason(remark)}")
         if not point or remark:
-            found, _ = self._handle.solve([], np.empty((1, 0)), names, 1)
+            found, _ = self._solve([], np.empty((1, 0)), names, 1)
         row = found[0].tolist()
         return {name: columns[name].value(row[i]) for i, name in enumerate(names)}
 
@@ -318,7 +326,9 @@ class Case:
             The case is wrong, or a sweep.
         """
         columns = list(_library.columns(1).values())
-        values = self._handle.history()
+        rows, pointer = c_int(), c_void_p()
+        call("vcor_history", self._case, byref(rows), byref(pointer))
+        values = _library.take_numbers(pointer, rows.value * len(columns)).reshape(rows.value, -1).T
         variables = {
             column.name: ("time", row, column.attrs)
             for column, row in zip(columns, values, strict=True)
@@ -341,9 +351,10 @@ class Case:
         NumericalError
             The methods contradict each other, or none has a result.
         """
-        values = self._handle.verify()
         columns = _library.columns(2)
         names = ("best", "ive", "direct", "digits")
+        values = np.empty((len(columns), len(names)))
+        call("vcor_verify", self._case, values)
         return xr.Dataset(
             {name: ("quantity", values[:, i]) for i, name in enumerate(names)},
             coords={
@@ -352,6 +363,32 @@ class Case:
             },
             attrs=self._attrs(),
         )
+
+    def _describe(self, address: str) -> _library.Column:
+        """Path, unit and meaning of an address."""
+        struct = _library.ColumnStruct()
+        call("vcor_describe", self._case, address, byref(struct))
+        return struct.column
+
+    def _axes(self) -> dict[str, Floats]:
+        """Addresses that the case varies, with their values."""
+        axes: dict[str, Floats] = {}
+        struct, n, values = _library.ColumnStruct(), c_int(), c_void_p()
+        while True:
+            call("vcor_axis", self._case, len(axes), byref(struct), byref(n), byref(values))
+            if not values:
+                return axes
+            axes[struct.column.name] = _library.take_numbers(values, n.value)
+
+    def _solve(
+        self, addresses: Sequence[str], values: Floats, names: Sequence[str], threads: int
+    ) -> tuple[Floats, str]:
+        """Columns of points, shape (points, names), and a remark on points without a result."""
+        results, values = np.empty((len(values), len(names))), np.ascontiguousarray(values)
+        given, wanted = (_library.texts(tuple(words)) for words in (addresses, names))
+        remark = call("vcor_solve", self._case, len(addresses), given, len(values), values,
+                      len(names), wanted, results, threads)  # fmt: skip
+        return results, remark
 
     def _solve_all(
         self,
@@ -374,7 +411,7 @@ class Case:
             while start < len(table):
                 part = slice(start, start + length)
                 begin = time.perf_counter()
-                results[part], remark = self._handle.solve(addresses, table[part], names, threads)
+                results[part], remark = self._solve(addresses, table[part], names, threads)
                 elapsed = time.perf_counter() - begin
                 if remark:
                     remarks.append(remark)
@@ -410,7 +447,7 @@ class Case:
             for i, name in enumerate(names)
         }
         described = {
-            address: (dim, axis, self._handle.describe(address).attrs)
+            address: (dim, axis, self._describe(address).attrs)
             for address, (dim, axis) in coords.items()
         }
         return xr.Dataset(variables, coords=described, attrs=self._attrs())
@@ -428,7 +465,7 @@ class Case:
         """Summary of an impact without a result: nan, and the status."""
         address = "impact.velocity"
         point = np.array([[self[address]]], dtype=float)
-        values, _ = self._handle.solve([address], point, names, 1)
+        values, _ = self._solve([address], point, names, 1)
         return self._dataset(names, values, (), {}, ())
 
 
@@ -451,16 +488,22 @@ class Material:
     def relaxation(self, times: ArrayLike) -> NDArray[np.float64]:
         """Relaxation modulus E(t) [Pa] at times >= 0 [s], in their shape."""
         t = np.asarray(times, dtype=float)
-        return self._case._handle.relaxation(self.name, t.ravel()).reshape(t.shape)
+        moduli = np.empty(t.size)
+        call("vcor_relaxation", self._case._case, self.name, t.size, t.ravel(), moduli)
+        return moduli.reshape(t.shape)
 
     def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
         """Complex modulus E' + i E'' [Pa] at angular frequencies >= 0 [rad/s], in their shape."""
         w = np.asarray(frequencies, dtype=float)
-        return self._case._handle.complex_modulus(self.name, w.ravel()).reshape(w.shape)
+        storage, loss = np.empty(w.size), np.empty(w.size)
+        call("vcor_complex_modulus", self._case._case, self.name, w.size, w.ravel(), storage, loss)
+        return (storage + 1j * loss).reshape(w.shape)
 
     def time_factor(self) -> float:
         """Shift factor a_T at `impact.temperature` [1]; 1 for a material without a shift."""
-        return self._case._handle.time_factor(self.name)
+        factor = c_double()
+        call("vcor_time_factor", self._case._case, self.name, byref(factor))
+        return factor.value
 
 
 def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> Case:
@@ -536,26 +579,13 @@ def _reason(remark: str) -> str:
     return remark.split(": ", 1)[1]
 
 
-class NoBar:
-    """A progress bar that nobody sees."""
-
-    def __enter__(self) -> NoBar:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        pass
-
-    def update(self, _: int) -> None:
-        """Say nothing."""
-
-
 def progress_bar(total: int | None, progress: bool | None) -> Any:
     """A progress bar, or none; a total that is not known is None."""
     shell = getattr(sys.modules.get("IPython"), "get_ipython", lambda: None)()
     if progress is None:
         progress = sys.stderr.isatty() or hasattr(shell, "kernel")
     if not progress:
-        return NoBar()
+        return contextlib.nullcontext(types.SimpleNamespace(update=lambda _: None))
     with warnings.catch_warnings():
         # a notebook without ipywidgets has the bar of a terminal
         warnings.simplefilter("ignore")

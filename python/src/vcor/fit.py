@@ -150,8 +150,8 @@ def fit(
         wish.n, wish.dynamic = arrays.shape[1], len(arrays) == 3
         wish.at, wish.modulus, wish.loss = (row.ctypes.data for row in (*arrays, arrays[-1])[:3])
     wish.name = (name or "material").encode()
-    _library._call("vcor_fit_data", ctypes.addressof(wish))
-    found = json.loads(_library._take_text(c_void_p(wish.json)) or "")
+    _library.call("vcor_fit_data", ctypes.addressof(wish))
+    found = json.loads(_library.take_text(c_void_p(wish.json)) or "")
     parameters = tuple(
         Parameter(one["name"].partition("(")[0], *list(one.values())[1:])
         for one in found["parameters"]
@@ -181,8 +181,8 @@ def read_moduli(
     n, dynamic, values = c_int(), c_int(), c_void_p()
     ratio = _NOT_GIVEN if poisson_ratio is None else poisson_ratio
     results = map(ctypes.byref, (n, dynamic, values))
-    _library._call("vcor_read_moduli", os.fsencode(path), ratio, *results)
+    _library.call("vcor_read_moduli", os.fsencode(path), ratio, *results)
     names = ["frequency", "storage_modulus", "loss_modulus"]
     names = names if dynamic else ["time", "relaxation_modulus"]
-    table = _library._take_numbers(values, len(names) * n.value).reshape(len(names), -1)
+    table = _library.take_numbers(values, len(names) * n.value).reshape(len(names), -1)
     return dict(zip(names, table, strict=True))

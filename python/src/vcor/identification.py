@@ -22,7 +22,7 @@ from scipy.special import ndtri, stdtrit
 from . import _command, _library
 from ._command import number
 from ._library import Error, Floats, InputError, NumericalError, UsageError
-from .case import Case, NoBar, progress_bar, read
+from .case import Case, progress_bar, read
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
@@ -225,10 +225,10 @@ class _Problem:
     """Residuals of all data over the logarithms x of the parameters."""
 
     def __init__(
-        self, case: Case, free: Sequence[str], blocks: Sequence[Block], errors: Mapping[str, float]
-    ) -> None:
-        self.case, self.free, self.blocks = case, list(free), list(blocks)
-        self.bar: Any = NoBar()
+        self, case: Case, free: Sequence[str], blocks: Sequence[Block],
+        errors: Mapping[str, float], bar: Any,
+    ) -> None:  # fmt: skip
+        self.case, self.free, self.blocks, self.bar = case, list(free), list(blocks), bar
         self.impacts = [block for block in blocks if isinstance(block, Impacts)]
         #: Velocities of the first impacts, or of the case [m/s]
         own = np.array([velocity_of(case)])
@@ -446,8 +446,8 @@ def identify(
     blocks = [observations(case, source, free) for source in sources]
     if case["solver.method"] != "direct":
         sharpen(case, ACCURACY)
-    problem = _Problem(case, free, blocks, errors or {})
-    with progress_bar(None, None) as problem.bar:
+    with progress_bar(None, None) as bar:
+        problem = _Problem(case, free, blocks, errors or {}, bar)
         x, chi2 = problem.best(seed)
         return _judged(problem, x, chi2, model or "")
 
@@ -476,7 +476,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     estimates = tuple(
         Estimate(
             address,
-            case._handle.describe(address).unit,
+            case._describe(address).unit,
             float(np.exp(x[i])),
             float(np.exp(x[i]) * deviations[i]),
             *limits[i],

@@ -100,7 +100,7 @@ class Impacts:
         table = np.hstack([np.tile(settings, (m, 1)), np.repeat(values, n, axis=0)])
         # an impact on a layer takes a thousand times as long as on a thin plate
         threads = 0 if len(table) >= 2000 or case["plate.waves"] == "body" else 1
-        results, _ = case._handle.solve([*self.settings, *addresses], table, names, threads)
+        results, _ = case._solve([*self.settings, *addresses], table, names, threads)
         return results.reshape(m, n, len(names))
 
     def validity(self, case: Case) -> list[tuple[str, str]]:
@@ -202,8 +202,9 @@ class Moduli:
         for temperature, where in self.groups.items():
             if math.isfinite(temperature):
                 case["impact.temperature"] = temperature
-            read = case._handle.complex_modulus if self.dynamic else case._handle.relaxation
-            found[where] = read(self.material, self.points[where])
+            material = case.material(self.material)
+            read = material.complex_modulus if self.dynamic else material.relaxation
+            found[where] = read(self.points[where])
         return np.concatenate([found.real, found.imag]) if self.dynamic else found.real
 
     def predict(self, case: Case, addresses: list[str], values: Floats) -> Floats:

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from ._command import near, number, printable, read_text
-from ._library import Error, Handle, InputError, UsageError
+from ._library import Error, InputError, UsageError
 from .case import Case
 from .data import ZERO_C, is_temperature
 from .results import open as open_results
@@ -151,7 +151,7 @@ def legends_of(results: list[Result]) -> list[str]:
         units = {}
         for key in keys:
             with contextlib.suppress(Error):
-                unit = Handle(results[0].case, results[0].path).describe(key).unit
+                unit = Case(results[0].case, name=results[0].path)._describe(key).unit
                 units[key] = unit if unit != "1" else ""
         names = {key: key.rpartition(".")[2].replace("_", " ") for key in keys}
         words = [", ".join(f"{name} = {one[key].removesuffix('.0')} {units.get(key, '')}".strip()

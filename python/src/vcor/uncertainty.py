@@ -427,7 +427,7 @@ def _accurate(case: Case | str | os.PathLike[str]) -> Case:
 
 
 def _solve(case: Case, addresses: list[str], table: Floats, quantities: Sequence[str]) -> Floats:
-    return case._handle.solve(addresses, table, list(quantities), 1)[0]
+    return case._solve(addresses, table, list(quantities), 1)[0]
 
 
 def _number(case: Case, address: str, *, zero: bool = False) -> float:
