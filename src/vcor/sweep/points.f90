@@ -121,6 +121,7 @@ contains
       !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
       integer, intent(out), optional :: stopped
 
+      !> What the threads of this rank work with, one for each; kept from round to round
       type(worker_t), allocatable :: workers(:)
       integer, allocatable :: pending(:)
       real(wp), allocatable :: numbers(:)
@@ -147,8 +148,7 @@ contains
          if (done == size(pending) .or. any(agreed(2:) /= 0)) exit
          start = clock()
          length = min(agreed(1), size(pending) - done)
-         call solve_round(sweep, part, pending(done + 1:done + length), workers, summary, &
-            failures, error, monitor)
+         call solve_round(pending(done + 1:done + length))
          done = done + length
          length = max(fewest*threads*rank_count(), min(growth*length, &
             int(real(length, wp)*round_time/max(clock() - start, epsilon(start)))))
@@ -168,6 +168,71 @@ contains
       if (this_rank() == 0) then
          if (.not. any(summary%status == point_pending)) stopped = 0
       end if
+
+   contains
+
+      !> Solve the points of a round: this rank its part of them
+      subroutine solve_round(places)
+         !> Places of the points of the round
+         integer, intent(in) :: places(:)
+
+         type(part_t) :: own
+         !> Outcomes as numbers, a column for each point of `own`
+         real(wp), allocatable :: rows(:, :)
+         real(wp), allocatable :: numbers(:)
+         integer :: columns, team, chunk, count, i, j, k
+
+         own = new_part(size(places), this_rank() + 1, rank_count())
+         columns = size(values_of(outcome_t()))
+         allocate (rows(columns, own%count()))
+         team = max(1, min(threads, own%count()))
+         ! short enough that all threads end at about the same time
+         chunk = max(1, min(longest_chunk, own%count()/(8*team)))
+!$omp parallel default(none) num_threads(team) &
+!$omp shared(sweep, part, own, places, chunk, workers, rows, failures, monitor)
+         block
+            type(outcome_t) :: outcome
+            type(error_t), allocatable :: trouble
+            integer :: point, thread
+
+            thread = 1
+!$          thread = omp_get_thread_num() + 1
+!$omp do schedule(dynamic, chunk)
+            do j = 1, size(rows, 2)
+               if (stop_code(monitor) /= 0) then
+                  rows(:, j) = values_of(outcome_t(status=point_pending))
+                  cycle
+               end if
+               point = part%point(places(own%point(j)))
+               call solve_point(sweep, point, workers(thread), outcome, trouble)
+               rows(:, j) = values_of(outcome)
+               if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
+!$omp critical (vcor_failures)
+               if (allocated(trouble)) then
+                  call failures%note(point, trouble%message)
+               else
+                  call failures%note(point, lacking(outcome%status))
+               end if
+!$omp end critical (vcor_failures)
+            end do
+!$omp end do
+         end block
+!$omp end parallel
+         numbers = gathered(reshape(rows, [size(rows)]))
+         if (this_rank() > 0) return
+         count = 0
+         k = 0
+         do i = 1, rank_count()
+            own = new_part(size(places), i, rank_count())
+            do j = 1, own%count()
+               call summary%put(places(own%point(j)), numbers(k + 1:k + columns))
+               if (nint(numbers(k + columns)) /= point_pending) count = count + 1
+               k = k + columns
+            end do
+         end do
+         if (present(monitor)) call monitor%finished(places(1), places(size(places)), count, &
+            summary, error)
+      end subroutine solve_round
    end subroutine solve_points
 
    !> Whether to stop
@@ -180,101 +245,6 @@ contains
       code = 0
       if (present(monitor)) code = monitor%stop_code()
    end function stop_code
-
-   !> Solve the points of a round: this rank its part of them
-   subroutine solve_round(sweep, part, places, workers, summary, failures, error, monitor)
-      type(sweep_t), intent(in) :: sweep
-      !> Part of its points
-      type(part_t), intent(in) :: part
-      !> Places of the points of the round
-      integer, intent(in) :: places(:)
-      !> What the threads of this rank work with, one for each; kept from round to round
-      type(worker_t), intent(inout) :: workers(:)
-      !> Outcomes of all places; on the first rank
-      type(summary_t), intent(inout) :: summary
-      !> What points have no result and why
-      type(failures_t), intent(inout) :: failures
-      !> What ends the sweep; unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-      !> Who watches, if anyone
-      class(monitor_t), intent(inout), optional :: monitor
-
-      type(part_t) :: own
-      real(wp), allocatable :: rows(:, :), numbers(:)
-      integer :: columns, team, chunk, count, i, j, k
-
-      own = new_part(size(places), this_rank() + 1, rank_count())
-      columns = size(values_of(outcome_t()))
-      allocate (rows(columns, own%count()))
-      team = max(1, min(size(workers), own%count()))
-      ! short enough that all threads end at about the same time
-      chunk = max(1, min(longest_chunk, own%count()/(8*team)))
-!$omp parallel default(none) num_threads(team) &
-!$omp shared(sweep, part, own, places, chunk, workers, rows, failures, monitor) private(k)
-      k = 1
-!$    k = omp_get_thread_num() + 1
-      call work_off(sweep, part, own, places, chunk, workers(k), rows, failures, monitor)
-!$omp end parallel
-      numbers = gathered(reshape(rows, [size(rows)]))
-      if (this_rank() > 0) return
-      count = 0
-      k = 0
-      do i = 1, rank_count()
-         own = new_part(size(places), i, rank_count())
-         do j = 1, own%count()
-            call summary%put(places(own%point(j)), numbers(k + 1:k + columns))
-            if (nint(numbers(k + columns)) /= point_pending) count = count + 1
-            k = k + columns
-         end do
-      end do
-      if (present(monitor)) call monitor%finished(places(1), places(size(places)), count, &
-         summary, error)
-   end subroutine solve_round
-
-   !> What one thread of a team does
-   subroutine work_off(sweep, part, own, places, chunk, worker, rows, failures, monitor)
-      type(sweep_t), intent(in) :: sweep
-      !> Part of its points
-      type(part_t), intent(in) :: part
-      !> Part of the round that this rank solves
-      type(part_t), intent(in) :: own
-      !> Places of the points of the round
-      integer, intent(in) :: places(:)
-      !> Points that a thread takes at a time
-      integer, intent(in) :: chunk
-      !> What the thread works with
-      type(worker_t), intent(inout) :: worker
-      !> Outcomes as numbers, a column for each point of `own`
-      real(wp), intent(inout) :: rows(:, :)
-      !> What points have no result and why
-      type(failures_t), intent(inout) :: failures
-      !> Who watches, if anyone
-      class(monitor_t), intent(in), optional :: monitor
-
-      type(outcome_t) :: outcome
-      type(error_t), allocatable :: error
-      integer :: i, point
-
-!$omp do schedule(dynamic, chunk)
-      do i = 1, size(rows, 2)
-         if (stop_code(monitor) /= 0) then
-            rows(:, i) = values_of(outcome_t(status=point_pending))
-            cycle
-         end if
-         point = part%point(places(own%point(i)))
-         call solve_point(sweep, point, worker, outcome, error)
-         rows(:, i) = values_of(outcome)
-         if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
-!$omp critical (vcor_failures)
-         if (allocated(error)) then
-            call failures%note(point, error%message)
-         else
-            call failures%note(point, lacking(outcome%status))
-         end if
-!$omp end critical (vcor_failures)
-      end do
-!$omp end do
-   end subroutine work_off
 
    !> Time by the clock on the wall
    function clock() result(time)
