@@ -6,9 +6,9 @@ module vcor_app_files
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_csv, only : write_csv, write_rows
    use vcor_io_file, only : write_stdout
-   use vcor_io_hdf5, only : remark_t, write_hdf5
+   use vcor_io_hdf5, only : write_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, count_rows, open_hdf5, reader_t
-   use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity, remarks_of
+   use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
    use vcor_io_path, only : make_directory, plain_file_exists, quoted_path
    use vcor_io_table, only : place_in_table, table_t
    use vcor_sweep_quantity, only : quantities
@@ -34,20 +34,19 @@ contains
 
    !> Write the files of a case: a text for each table, and all of them as HDF5. That comes last:
    !> where it is there, all is there
-   subroutine write_files(job, tables, files, error, identity, threads)
+   subroutine write_files(job, tables, files, error, data, threads)
       type(job_t), intent(in) :: job
       !> Tables in the order of the files, shape (n)
       type(table_t), intent(in) :: tables(:)
       !> What was written, one to a line of the screen
       character(len=:), allocatable, intent(out) :: files
       type(error_t), allocatable, intent(out) :: error
-      !> What they are about, where that is more than the case
-      type(identity_t), intent(in), optional :: identity
+      !> Sum over the data files of the case, for `--resume`
+      character(len=*), intent(in), optional :: data
       !> Threads that turn numbers into text, absent: 1
       integer, intent(in), optional :: threads
 
-      type(remark_t) :: remarks(4)
-      integer :: i, n
+      integer :: i
 
       files = ''
       if (.not. any(job%writes)) return
@@ -56,15 +55,9 @@ contains
          if (job%writes(i) .and. .not. allocated(error)) &
             call write_csv(job%file(i), tables(i), error, threads)
       end do
-      ! the sum over the data, where there are any
-      n = 0
-      if (present(identity)) then
-         remarks = remarks_of(identity)
-         n = merge(1, 0, identity%data /= '')
-      end if
       i = size(job%writes)
       if (job%writes(i) .and. .not. allocated(error)) &
-         call write_hdf5(job%file(i), tables, error, remarks(:n))
+         call write_hdf5(job%file(i), tables, error, data)
       if (.not. allocated(error)) files = job%written()
    end subroutine write_files
 

@@ -219,7 +219,7 @@ contains
       validity = points_report(job%sweep%grid, summary)
       if (len(validity) > 0) validity = validity//new_line('a')
       call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
-      call write_files(job, tables, files, error, identity)
+      call write_files(job, tables, files, error, identity%data)
       if (allocated(error)) return
       call remark(replaced(previous))
       if (.not. request%quiet) call write_stdout(integer_text(size(request%files))//' shards, ' &

@@ -68,7 +68,7 @@ contains
       call end_of(job, outcome, worker%trajectory, error)
       if (job%history) call history_table(tables(2), identity%title, identity%case_text, &
          worker%trajectory)
-      call write_files(job, tables, files, trouble, identity)
+      call write_files(job, tables, files, trouble, identity%data)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then

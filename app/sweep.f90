@@ -269,7 +269,7 @@ contains
       end if
       associate (identity => watch%identity)
          call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(job, tables, files, error, identity, threads_of(request))
+         call write_files(job, tables, files, error, identity%data, threads_of(request))
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()

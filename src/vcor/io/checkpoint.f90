@@ -25,7 +25,7 @@ module vcor_io_checkpoint
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, &
       reader_t
-   use vcor_io_identity, only : check_same, identity_t, read_identity, remarks_of
+   use vcor_io_identity, only : check_same, identity_t, read_identity
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
       c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
@@ -86,8 +86,7 @@ contains
       call remember(temporary)
       call summary%blank_pending()
       call lay_out(tables(1), identity, grid, summary%quantities)
-      call write_hdf5(temporary, tables, error, remarks_of(identity), &
-         changing=size(summary%quantities) + 1)
+      call write_hdf5(temporary, tables, error, identity%data, identity%part)
       if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
       if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
       if (.not. allocated(error)) call name_file(self, path, error)

@@ -189,7 +189,7 @@ contains
       call add_comments(head, 'title: '//table%title)
       do i = 1, size(table%facts)
          associate (fact => table%facts(i))
-            call add_comments(head, fact%name//' = '//decimal_text(fact%value)//' '//fact%unit &
+            call add_comments(head, fact%name//' = '//decimal_text(fact%reals(1))//' '//fact%unit &
                //', '//fact%long_name)
          end associate
       end do

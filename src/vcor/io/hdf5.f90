@@ -38,19 +38,15 @@ module vcor_io_hdf5
    use vcor_io_table, only : column_t, integer_column, real_column, table_t, &
       text_column, text_value
    use vcor_kinds, only : wp
+   use vcor_sweep_part, only : part_t
+   use vcor_text, only : integer_text
    implicit none
    private
 
-   public :: write_hdf5, remark_t, begin_hdf5, end_hdf5, c_get_offset
+   public :: write_hdf5, begin_hdf5, end_hdf5, c_get_offset
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
-
-   !> Text that describes a file
-   type :: remark_t
-      character(len=:), allocatable :: name
-      character(len=:), allocatable :: text
-   end type remark_t
 
    !> A file that is being built. The first failure is kept; what comes after it does
    !> nothing
@@ -101,18 +97,19 @@ contains
    end subroutine end_hdf5
 
    !> Write tables to a file. It is there as a whole or, if that fails, as it was before
-   subroutine write_hdf5(filename, tables, error, remarks, changing)
+   subroutine write_hdf5(filename, tables, error, data, part)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
-      !> Tables, shape (n), n > 0; version, title and case of the first one describe the file
+      !> Tables, shape (n), n > 0; version, title and case of the first one describe the file.
+      !> Columns without values get their room in the file, where the caller puts them: they are no
+      !> part of the seal
       type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> More that describes the file, shape (n)
-      type(remark_t), intent(in), optional :: remarks(:)
-      !> Number of columns of the tables, the last ones, that get their room in the file but no
-      !> numbers, which the caller puts there: they are no part of the seal
-      integer, intent(in), optional :: changing
+      !> Sum over the data that the case is made from; of a whole sweep only if there are any
+      character(len=*), intent(in), optional :: data
+      !> Part of a sweep that the rows are; absent: all of it
+      type(part_t), intent(in), optional :: part
 
       type(output_file_t) :: file
       type(writer_t) :: writer
@@ -129,13 +126,17 @@ contains
             call put_text(writer, writer%file, 'version', tables(1)%version)
             call put_text(writer, writer%file, 'title', tables(1)%title)
             call put_text(writer, writer%file, 'case', tables(1)%case_text)
-            if (present(remarks)) then
-               do i = 1, size(remarks)
-                  call put_text(writer, writer%file, remarks(i)%name, remarks(i)%text)
-               end do
+            if (present(data)) then
+               if (data /= '' .or. present(part)) &
+                  call put_text(writer, writer%file, 'data', data)
+            end if
+            if (present(part)) then
+               call put_text(writer, writer%file, 'points', integer_text(part%points))
+               call put_text(writer, writer%file, 'shard', integer_text(part%number))
+               call put_text(writer, writer%file, 'shards', integer_text(part%parts))
             end if
             do i = 1, size(tables)
-               call put_table(writer, tables(i), changing)
+               call put_table(writer, tables(i))
             end do
             ! what is still open in it after a failure goes with the file
             call h5fclose_f(writer%file, i)
@@ -238,44 +239,38 @@ contains
    end function bytes_of
 
    !> Write a table as a group
-   subroutine put_table(writer, table, changing)
+   subroutine put_table(writer, table)
       type(writer_t), intent(inout) :: writer
       type(table_t), intent(in) :: table
-      !> Number of columns that get their room only, the last ones
-      integer, intent(in), optional :: changing
 
       integer(hid_t) :: dataset, group, scales(size(table%dimensions))
       integer :: i, j, status
-      logical :: is_room
 
       if (allocated(writer%fault)) return
       call h5gcreate_f(writer%file, table%name, group, status, gcpl_id=writer%group_creation)
       call note(writer, status, "create the group '"//table%name//"'")
       do i = 1, size(table%facts)
          associate (fact => table%facts(i))
-            call put_number(writer, group, fact%name, fact%value)
+            call put_number(writer, group, fact%name, fact%reals(1))
             call put_text(writer, group, fact%name//'_units', fact%unit)
          end associate
       end do
       do i = 1, size(scales)
          associate (coordinates => table%dimensions(i))
-            call put_column(writer, group, coordinates, [coordinates%length], scales(i), .false.)
+            call put_column(writer, group, coordinates, [coordinates%length], scales(i))
             if (allocated(writer%fault)) return
             call h5dsset_scale_f(scales(i), status, link_name(coordinates%name))
             call note(writer, status, "make '"//coordinates%name//"' a dimension scale")
          end associate
       end do
       do j = 1, size(table%columns)
-         is_room = .false.
-         if (present(changing)) is_room = j > size(table%columns) - changing
-         call put_column(writer, group, table%columns(j), table%dimensions%length, dataset, is_room)
+         call put_column(writer, group, table%columns(j), table%dimensions%length, dataset)
          if (allocated(writer%fault)) return
          do i = 1, size(scales)
             ! Numbers here count as in C but from 1: the slowest dimension first
             call h5dsattach_scale_f(dataset, scales(i), i, status)
             call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
          end do
-         if (is_room) call leave_out(writer, table%columns(j), dataset)
          call h5dclose_f(dataset, status)
       end do
       do i = 1, size(scales)
@@ -285,7 +280,7 @@ contains
    end subroutine put_table
 
    !> Write a column as a dataset and leave it open
-   subroutine put_column(writer, group, column, lengths, dataset, is_room)
+   subroutine put_column(writer, group, column, lengths, dataset)
       type(writer_t), intent(inout) :: writer
       integer(hid_t), intent(in) :: group
       type(column_t), intent(in), target :: column
@@ -293,15 +288,16 @@ contains
       integer, intent(in) :: lengths(:)
       !> The dataset, open
       integer(hid_t), intent(out) :: dataset
-      !> Whether it gets its room in the file in one piece, but no numbers
-      logical, intent(in) :: is_room
 
       integer(hid_t) :: creation, space, type_id
       integer :: status
-      logical :: is_filled
+      logical :: is_filled, is_room
 
       dataset = nothing
       if (allocated(writer%fault)) return
+      ! values that come later have their room in the file in one piece
+      is_room = .not. allocated(column%reals)
+      if (column%kind /= real_column) is_room = size(column%integers) < column%length
       select case (column%kind)
       case (real_column)
          type_id = h5t_ieee_f64le
@@ -337,6 +333,7 @@ contains
          end select
          call note(writer, status, "write '"//column%name//"'")
       end if
+      if (is_room) call leave_out(writer, column, dataset)
       if (column%unit /= '') call put_text(writer, dataset, 'units', column%unit)
       call put_text(writer, dataset, 'long_name', column%long_name)
    end subroutine put_column

@@ -4,7 +4,6 @@ module vcor_io_identity
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_data_file, only : data_file
-   use vcor_io_hdf5, only : remark_t
    use vcor_io_hdf5_reader, only : close_hdf5, open_hdf5, reader_t, text_attribute
    use vcor_text, only : integer_text, shortened
    use vcor_io_path, only : quoted_path
@@ -17,7 +16,7 @@ module vcor_io_identity
    implicit none
    private
 
-   public :: identity_t, identity_of, read_identity, read_csv, remarks_of, check_same, number_of
+   public :: identity_t, identity_of, read_identity, read_csv, check_same, number_of
 
    !> What a file is about
    type :: identity_t
@@ -84,22 +83,6 @@ contains
       number = crc32(transfer(identity%version//identity%case_text//identity%data, [0_int8]), &
          int(identity%part%number, int32))
    end function number_of
-
-   !> What a file says about itself beside version, title and case
-   function remarks_of(identity) result(remarks)
-      type(identity_t), intent(in) :: identity
-      !> Attributes
-      type(remark_t) :: remarks(4)
-
-      remarks(1)%name = 'data'
-      remarks(1)%text = identity%data
-      remarks(2)%name = 'points'
-      remarks(2)%text = integer_text(identity%part%points)
-      remarks(3)%name = 'shard'
-      remarks(3)%text = integer_text(identity%part%number)
-      remarks(4)%name = 'shards'
-      remarks(4)%text = integer_text(identity%part%parts)
-   end function remarks_of
 
    !> What an HDF5 file is about
    subroutine read_identity(path, identity, is_ours, error)

@@ -12,13 +12,13 @@
 !> which are missing where the impact has no result, and by the column in_window.
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
-   use vcor_io_table, only : add_column, add_dimension, add_fact, column_of, column_t, &
-      integer_column, move_column, new_table, real_column, table_t, text_column
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
+      new_table, real_column, table_t, text_column
    use vcor_kinds, only : wp
    use vcor_material_moduli, only : curves_t, loss_tangent, moduli_t
    use vcor_case_grid, only : axis_t, grid_t
    use vcor_sweep_quantity, only : history_quantities, label_length, labels_of, quantity_t, &
-      summary_t, values_t
+      summary_t
    use vcor_text, only : integer_text
    implicit none
    private
@@ -43,7 +43,6 @@ contains
       !> Their outcomes; they move to the table, so that there are not two of a million
       type(summary_t), intent(inout) :: summary
 
-      type(values_t) :: status
       integer :: i
 
       call new_table(table, 'summary', title, case_text)
@@ -51,27 +50,20 @@ contains
          call add_dimension(table, axis_column(grid%axes(i), grid%axes(i)%values))
       end do
       if (size(grid%axes) == 0) call add_dimension(table, 'impact', 1)
-      do i = 1, size(summary%values)
-         call move_in(summary%quantities(i), summary%values(i))
+      do i = 1, size(summary%quantities)
+         call add_column(table, quantity_column(summary%quantities(i), size(summary%status)))
       end do
-      status%integers = summary%status
-      call move_in(summary%quantities(i), status)
-
-   contains
-
-      !> Move the values of a quantity to a column
-      subroutine move_in(quantity, values)
-         type(quantity_t), intent(in) :: quantity
-         type(values_t), intent(inout) :: values
-
-         type(column_t) :: column
-
-         column = quantity_column(quantity, size(summary%status))
-         call move_alloc(values%reals, column%reals)
-         call move_alloc(values%integers, column%integers)
-         if (column%kind == text_column) column%integers = column%integers - quantity%first + 1
-         call move_column(table, column)
-      end subroutine move_in
+      do i = 1, size(summary%values)
+         call move_alloc(summary%values(i)%reals, table%columns(i)%reals)
+         call move_alloc(summary%values(i)%integers, table%columns(i)%integers)
+      end do
+      table%columns(i)%integers = summary%status
+      do i = 1, size(table%columns)
+         associate (column => table%columns(i))
+            if (column%kind == text_column) &
+               column%integers = column%integers - summary%quantities(i)%first + 1
+         end associate
+      end do
    end subroutine summary_table
 
    !> A column of what is swept
@@ -103,6 +95,7 @@ contains
       else
          allocate (labels, source=labels_of(quantity))
          column = column_of(quantity%name, labels, '', quantity%meaning)
+         column%integers = [integer ::]
          if (present(as_numbers)) then
             column%kind = integer_column
             column%unit = '1'
@@ -195,10 +188,10 @@ contains
 
          call new_table(table, name, title, case_text)
          if (moduli%contact_time > 0.0_wp) then
-            call add_fact(table, 'contact_time', moduli%contact_time, 's', &
-               'contact time t0 of the impact: it depends on t <= t0')
-            call add_fact(table, 'min_frequency', moduli%min_frequency, 'rad/s', &
-               'lowest frequency of interest, 2 pi/t0')
+            table%facts = [column_of('contact_time', [moduli%contact_time], 's', &
+               'contact time t0 of the impact: it depends on t <= t0'), &
+               column_of('min_frequency', [moduli%min_frequency], 'rad/s', &
+               'lowest frequency of interest, 2 pi/t0')]
          end if
          do k = 1, size(items)
             names(k) = moduli%materials(items(k))%name

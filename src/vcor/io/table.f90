@@ -17,14 +17,15 @@ module vcor_io_table
    implicit none
    private
 
-   public :: table_t, column_t, fact_t, real_column, integer_column, text_column
-   public :: new_table, add_fact, add_dimension, add_column, move_column, column_of
+   public :: table_t, column_t, real_column, integer_column, text_column
+   public :: new_table, add_dimension, add_column, column_of
    public :: row_count, coordinate_row, place_in_table, text_value
 
    !> What the values of a column are
    integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
 
-   !> Named values of one kind: a column, or the coordinates of a dimension
+   !> Named values of one kind: a column, the coordinates of a dimension, or one number that holds
+   !> for a table as a whole. A column whose length is told gets its values later
    type :: column_t
       !> One line
       character(len=:), allocatable :: name
@@ -49,16 +50,6 @@ module vcor_io_table
       logical :: is_index = .false.
    end type column_t
 
-   !> A number that holds for a table as a whole
-   type :: fact_t
-      !> One word
-      character(len=:), allocatable :: name
-      real(wp) :: value = 0.0_wp
-      character(len=:), allocatable :: unit
-      !> What it is, one line
-      character(len=:), allocatable :: long_name
-   end type fact_t
-
    !> A table
    type :: table_t
       !> What its group in an HDF5 file is called
@@ -73,7 +64,7 @@ module vcor_io_table
       !> Columns
       type(column_t), allocatable :: columns(:)
       !> Numbers that hold for all of it
-      type(fact_t), allocatable :: facts(:)
+      type(column_t), allocatable :: facts(:)
    end type table_t
 
    !> A column: its name, values, unit and meaning
@@ -158,19 +149,6 @@ contains
       end associate
    end function text_value
 
-   !> Add a number that holds for a table as a whole
-   pure subroutine add_fact(table, name, value, unit, long_name)
-      type(table_t), intent(inout) :: table
-      !> One word
-      character(len=*), intent(in) :: name
-      real(wp), intent(in) :: value
-      character(len=*), intent(in) :: unit
-      !> What it is, one line
-      character(len=*), intent(in) :: long_name
-
-      table%facts = [table%facts, fact_t(name, value, unit, long_name)]
-   end subroutine add_fact
-
    !> A column of real numbers
    pure function column_of_reals(name, values, unit, long_name) result(column)
       !> Name, unit and meaning
@@ -254,51 +232,12 @@ contains
       table%dimensions = [table%dimensions, coordinates]
    end subroutine add_coordinates
 
-   !> Add a column
+   !> Add a column. Columns are copied: values of a million rows move to theirs when all are there
    pure subroutine add_column(table, column)
       type(table_t), intent(inout) :: table
       type(column_t), intent(in) :: column
 
-      type(column_t) :: copy
-
-      copy = column
-      call move_column(table, copy)
+      table%columns = [table%columns, column]
    end subroutine add_column
-
-   !> Move a column to a table: there are not two of a million values then
-   pure subroutine move_column(table, column)
-      type(table_t), intent(inout) :: table
-      !> The column; without values afterwards
-      type(column_t), intent(inout) :: column
-
-      type(column_t), allocatable :: columns(:)
-      integer :: i
-
-      allocate (columns(size(table%columns) + 1))
-      do i = 1, size(table%columns)
-         call move_values(table%columns(i), columns(i))
-      end do
-      call move_values(column, columns(i))
-      call move_alloc(columns, table%columns)
-   end subroutine move_column
-
-   !> Move what a column holds
-   pure subroutine move_values(from, to)
-      !> Column without values afterwards
-      type(column_t), intent(inout) :: from
-      !> Where they go
-      type(column_t), intent(out) :: to
-
-      call move_alloc(from%name, to%name)
-      call move_alloc(from%unit, to%unit)
-      call move_alloc(from%long_name, to%long_name)
-      call move_alloc(from%reals, to%reals)
-      call move_alloc(from%integers, to%integers)
-      call move_alloc(from%texts, to%texts)
-      to%kind = from%kind
-      to%width = from%width
-      to%length = from%length
-      to%is_index = from%is_index
-   end subroutine move_values
 
 end module vcor_io_table
