@@ -116,8 +116,8 @@ module vcor_solver_tuning
    !> What rounding leaves in the force of stiff internal variables and dashpots, over the largest
    !> one: it is not to stop the march of nearly fluid contacts (tests/cli/test_results.py)
    real(wp), parameter :: rounding_of_force = 1.0e-12_wp ! tested
-   !> Difference of the contact times over the accuracy that is let pass with a continuous spectrum,
-   !> and the least one
+   !> Difference of the contact times over the accuracy that is let pass with a continuous spectrum
+   !> in one panel up to the end, and the least one
    real(wp), parameter :: time_share_continuous = 1.5_wp ! time
    real(wp), parameter :: best_time = 1.0e-9_wp ! tested
    !> What a rebound feels of the difference of the two solutions inside a panel, measured, and the

@@ -132,14 +132,16 @@ contains
    end function improvement
 
    !> Relative difference of the contact times of the two solutions that is let pass. Modes of a
-   !> continuous spectrum settle within the last panel, which neither of them resolves
+   !> continuous spectrum settle within the last panel, which neither of them resolves; that of a
+   !> rebound is chosen short enough
    pure function time_tolerance(self) result(tolerance)
       class(course_t), intent(in) :: self
       !> Tolerance [-]
       real(wp) :: tolerance
 
       tolerance = self%improvement()
-      if (self%problem%modes%contact%error > 0.0_wp) tolerance = time_share_continuous
+      if (self%problem%modes%contact%error > 0.0_wp .and. &
+          .not. associated(self%problem%approach)) tolerance = time_share_continuous
       tolerance = max(tolerance*self%accuracy, best_time)
    end function time_tolerance
 
