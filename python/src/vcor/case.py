@@ -188,7 +188,7 @@ class Case:
             if isinstance(error, NumericalError):
                 error.result = self._without_result(names)
             raise
-        return self._dataset(names, values, (), {}, ())
+        return self._dataset(names, values, {})
 
     def solve(
         self,
@@ -275,7 +275,7 @@ class Case:
         coords = {
             address: ("point", column) for address, column in zip(values, columns, strict=True)
         }
-        return self._dataset(names, results, ("point",), coords, (len(table),))
+        return self._dataset(names, results, coords)
 
     def sweep(
         self,
@@ -307,7 +307,7 @@ class Case:
         names = _names(quantities)
         results = self._solve_all(list(axes), table, names, threads, progress)
         coords = {address: (address, axis) for address, axis in axes.items()}
-        return self._dataset(names, results, tuple(axes), coords, grid[0].shape)
+        return self._dataset(names, results, coords)
 
     def history(self) -> xr.Dataset:
         """History of a single impact.
@@ -429,22 +429,17 @@ class Case:
         return results
 
     def _dataset(
-        self,
-        names: list[str],
-        values: Floats,
-        dims: tuple[str, ...],
-        coords: Mapping[str, tuple[str, Floats]],
-        shape: tuple[int, ...],
+        self, names: list[str], values: Floats, coords: Mapping[str, tuple[str, Floats]]
     ) -> xr.Dataset:
-        """Columns as a Dataset."""
-        columns = _library.columns(0)
+        """Columns as a Dataset over the dimensions of the coordinates."""
+        columns, shape = _library.columns(0), {dim: len(axis) for dim, axis in coords.values()}
         variables = {
             name: (
-                dims,
-                columns[name].values(values[:, i]).reshape(shape),
+                tuple(shape),
+                columns[name].values(column).reshape(tuple(shape.values())),
                 columns[name].attrs,
             )
-            for i, name in enumerate(names)
+            for name, column in zip(names, values.T, strict=True)
         }
         described = {
             address: (dim, axis, self._describe(address).attrs)
@@ -466,7 +461,7 @@ class Case:
         address = "impact.velocity"
         point = np.array([[self[address]]], dtype=float)
         values, _ = self._solve([address], point, names, 1)
-        return self._dataset(names, values, (), {}, ())
+        return self._dataset(names, values, {})
 
 
 class Material:
