@@ -46,9 +46,24 @@ class Law:
             return "never pulls, ends with the force"
         return "may pull, ends with the overlap"
 
+    @functools.cache  # noqa: B019  (a law is one of few, and inputs of a case solve the same)
     def bounce(self, damping: float) -> tuple[float, float]:
         """Restitution and contact time of s'' = -s^n - damping s^p s', s(0) = 0, s'(0) = 1."""
-        return _bounce(self, damping)
+
+        def rate(_: float, y: Floats) -> tuple[float, float]:
+            s = max(y[0], 0.0)
+            return y[1], -(s**self.n) - damping * s**self.p * y[1]
+
+        def end(_: float, y: Floats) -> float:
+            force: float = max(y[0], 0.0) ** (self.n - self.p) + damping * y[1]
+            return force if self.clipped else y[0]
+
+        end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
+        done = solve_ivp(rate, (0, LONGEST), (0.0, 1.0), "DOP853", events=end,
+                         rtol=ACCURACY, atol=1e-3 * ACCURACY)  # fmt: skip
+        if not len(done.t_events[0]):
+            return 0.0, LONGEST
+        return -float(done.y_events[0][0][1]), float(done.t_events[0][0])
 
     def fit(self, velocity: Floats, cor: Floats, time: Floats, mass: float) -> Twin:
         """Parameters with the smallest largest misfit: C by e(v), then K by the contact times.
@@ -99,26 +114,6 @@ class Law:
             misfit=float(np.abs(restitution(best) - cor).max()),
             time_misfit=float(np.abs(unit / scale - 1).max()),
         )
-
-
-@functools.cache
-def _bounce(law: Law, damping: float) -> tuple[float, float]:
-    """What a law does; remembered, since inputs of several laws of a case solve the same."""
-
-    def rate(_: float, y: Floats) -> tuple[float, float]:
-        s = max(y[0], 0.0)
-        return y[1], -(s**law.n) - damping * s**law.p * y[1]
-
-    def end(_: float, y: Floats) -> float:
-        force: float = max(y[0], 0.0) ** (law.n - law.p) + damping * y[1]
-        return force if law.clipped else y[0]
-
-    end.terminal, end.direction = True, -1  # type: ignore[attr-defined]
-    done = solve_ivp(rate, (0, LONGEST), (0.0, 1.0), "DOP853", events=end,
-                     rtol=ACCURACY, atol=1e-3 * ACCURACY)  # fmt: skip
-    if not len(done.t_events[0]):
-        return 0.0, LONGEST
-    return -float(done.y_events[0][0][1]), float(done.t_events[0][0])
 
 
 @dataclass(frozen=True)
