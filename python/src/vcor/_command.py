@@ -127,6 +127,20 @@ def number(case: Case, address: str, missing: float = math.nan) -> float:
     return float(value) if isinstance(value, (int, float)) else missing
 
 
+def document(**entries: Any) -> dict[str, Any]:
+    """Results as they are written to JSON, which has no infinity: None in its place."""
+
+    def plain(value: Any) -> Any:
+        value = value.tolist() if hasattr(value, "tolist") else value
+        if isinstance(value, Mapping):
+            return {key: plain(one) for key, one in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [plain(one) for one in value]
+        return None if isinstance(value, float) and not math.isfinite(value) else value
+
+    return {"program": "vcor", "version": __version__, **plain(entries)}
+
+
 def name_flaw(name: str) -> str:
     """What is wrong with the name of a file to be written, empty if nothing is."""
     for part in name.split("/"):

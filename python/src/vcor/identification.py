@@ -7,6 +7,7 @@ determine is found from the singular values of the derivatives, and said instead
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import math
 import os
 import re
@@ -19,7 +20,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import ndtri, stdtrit
 
-from . import _command, _library
+from . import _command
 from ._command import number
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, progress_bar, read
@@ -132,41 +133,28 @@ class Identification:
         """All results as they are written to JSON."""
         values = np.array([one.value for one in self.estimates])
         deviations = np.sqrt(np.diag(self.covariance))
-        return {
-            "program": "vcor",
-            "version": _library.__version__,
-            "model": self.model,
-            "parameters": [
-                {
-                    "name": one.address,
-                    "unit": one.unit,
-                    "value": one.value,
-                    "standard_error": one.standard_error,
-                    "interval_68": _finite(one.interval_68),
-                    "interval_95": _finite(one.interval_95),
-                }
-                for one in self.estimates
-            ],
-            "covariance": (self.covariance * np.outer(values, values)).tolist(),
-            "correlation": (self.covariance / np.outer(deviations, deviations)).tolist(),
-            "fisher": {
-                "eigenvalues": self.eigenvalues.tolist(),
-                "combinations": [
-                    {"combination": text, "relative_error": error}
-                    for text, error in self.combinations
-                ],
+        rows = [dataclasses.asdict(one) for one in self.estimates]
+        keys = ("combination", "relative_error")
+        return _command.document(
+            model=self.model,
+            parameters=[{"name": row.pop("address"), **row} for row in rows],
+            covariance=self.covariance * np.outer(values, values),
+            correlation=self.covariance / np.outer(deviations, deviations),
+            fisher={
+                "eigenvalues": self.eigenvalues,
+                "combinations": [dict(zip(keys, one, strict=True)) for one in self.combinations],
             },
-            "chi2": self.chi2,
-            "degrees_of_freedom": self.dof,
-            "relative_error": self.relative_error,
-            "aic": self.aic,
-            "bic": self.bic,
-            "window": list(self.window),
-            "validity": self.validity,
-            "next": self.advice,
-            "data": list(self.data),
-            "band": self.band,
-        }
+            chi2=self.chi2,
+            degrees_of_freedom=self.dof,
+            relative_error=self.relative_error,
+            aic=self.aic,
+            bic=self.bic,
+            window=self.window,
+            validity=self.validity,
+            next=self.advice,
+            data=self.data,
+            band=self.band,
+        )
 
     def __str__(self) -> str:
         return _report(self)
@@ -734,11 +722,6 @@ def _product(names: Sequence[str], direction: Floats) -> str:
             text = f"{power:.2f}".rstrip("0").rstrip(".")
             factors.append(name if text == "1" else f"{name}^{text}")
     return "*".join(factors)
-
-
-def _finite(interval: tuple[float, float]) -> list[float | None]:
-    """An interval for JSON, which has no infinity."""
-    return [value if math.isfinite(value) else None for value in interval]
 
 
 def _percent(error: float) -> str:

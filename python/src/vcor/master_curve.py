@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
-from . import _command, _library
+from . import _command
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .card_formats import GAS
 from .data import ZERO_C
@@ -124,18 +124,14 @@ class Master:
 
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
-        return {
-            "program": "vcor",
-            "version": _library.__version__,
-            "reference_temperature": self.reference_temperature,
-            "temperature": self.temperatures.tolist(),
-            "log10_shift": self.log_shift.tolist(),
-            "log10_shift_error": self.log_error.tolist(),
-            "laws": [
-                {"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms}
-                for one in self.laws
-            ],
-        }
+        return _command.document(
+            reference_temperature=self.reference_temperature,
+            temperature=self.temperatures,
+            log10_shift=self.log_shift,
+            log10_shift_error=self.log_error,
+            laws=[{"law": one.name, "values": one.values, "errors": one.errors, "rms": one.rms}
+                  for one in self.laws],
+        )  # fmt: skip
 
     def __str__(self) -> str:
         kelvin = self.reference_temperature

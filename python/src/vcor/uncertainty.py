@@ -40,21 +40,23 @@ EXACT = {"contact.law": "receding", "contact.pair": "series", "plate.waves": "bo
 
 @dataclass(frozen=True)
 class Spread:
-    """How a parameter is distributed, as `--vary ADDRESS=TEXT` has it.
+    """How a parameter is distributed, or several that depend on each other."""
 
-    `5%` is the standard deviation of its logarithm (log-normal), `0.1` one in its own unit
-    (normal), `A:B` a uniform distribution from A to B.
-    """
-
-    address: str
-    #: Standard deviation, in the unit of the parameter
-    deviation: float
-    #: Values at shares 0 < u < 1 of the distribution
+    name: str
+    addresses: list[str]
+    #: Values at shares 0 < u < 1 of independent distributions, shape (samples, addresses)
     sample: Callable[[Floats], Floats]
+    #: Values at one deviation to each side, shape (quantities, 2, addresses), by how
+    #: quantities follow the parameters, shape (quantities, addresses)
+    ends: Callable[[Floats], Floats]
 
     @classmethod
     def read(cls, case: Case, address: str, text: str | float) -> Spread:
-        """Distribution from its text; a number is a relative standard deviation."""
+        """Distribution of a parameter as `--vary ADDRESS=TEXT` has it.
+
+        `5%` is the standard deviation of its logarithm (log-normal), `0.1` one in its own unit
+        (normal), `A:B` a uniform distribution from A to B; a number is as with `%`.
+        """
         given = case[address]
         if given is None:
             raise UsageError(f"{address}: the case does not give it, expected a number that it "
@@ -64,21 +66,66 @@ class Spread:
             raise UsageError(f"{address}: found {given}, expected {one}")
         value = float(given)
         text = text if isinstance(text, str) else f"{100 * text!r}%"
+
+        def spread(deviation: float, sample: Callable[[Floats], Floats]) -> Spread:
+            ends = value + deviation * np.array([[-1.0], [1.0]])
+            return cls(address, [address], sample, lambda _: ends)
+
         with contextlib.suppress(ValueError):
             if ":" in text:
                 low, high = (float(end) for end in text.split(":"))
                 if low < high:
                     deviation = (high - low) / math.sqrt(12)
-                    return cls(address, deviation, lambda share: low + (high - low) * share)
+                    return spread(deviation, lambda share: low + (high - low) * share)
             elif text.endswith("%"):
                 relative = float(text[:-1]) / 100
                 if relative > 0 and value > 0:
-                    return cls(address, relative * value,
-                               lambda share: value * np.exp(relative * ndtri(share)))  # fmt: skip
+                    by = relative * value
+                    return spread(by, lambda share: value * np.exp(relative * ndtri(share)))
             elif (deviation := float(text)) > 0:
-                return cls(address, deviation, lambda share: value + deviation * ndtri(share))
+                return spread(deviation, lambda share: value + deviation * ndtri(share))
         raise UsageError(f"{address}={text}: expected such as 5%, 0.1 (in its unit) or 1:2, "
                          "larger than 0")  # fmt: skip
+
+    @classmethod
+    def joint(cls, case: Case, source: Any) -> Spread:
+        """Parameters with a covariance, by the JSON of a fit; the case takes their values."""
+        if not isinstance(source, Mapping):
+            try:
+                source = json.loads(_command.read_text(source, "strict"))
+            except ValueError as error:
+                raise InputError(f"{source}: {error}") from None
+        try:
+            prefix = f"{source['name']}." if "name" in source else ""
+            rows = source["parameters"]
+            addresses = [
+                row["name"] if "." in row["name"] else prefix + row["name"] for row in rows
+            ]
+            values = np.array([float(row["value"]) for row in rows])
+            covariance = np.array(source["covariance"], dtype=float)
+        except (KeyError, TypeError, ValueError):
+            raise InputError("--covariance: found no JSON of vcor fit or identify") from None
+        # what a fit has brought to 0 stays there: it has no logarithm
+        kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
+        if not kept.size:
+            raise InputError("--covariance: found no parameter > 0 with a standard error")
+        scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
+        weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
+        if weights.min() < -1e-8 * weights.max():
+            raise InputError("--covariance: the matrix is not positive")
+        for i in kept:
+            case[addresses[i]] = float(values[i])
+        values, root = values[kept], vectors * np.sqrt(weights.clip(0))
+
+        def ends(elastic: Floats) -> Floats:
+            # they move together, as they do where the quantity is off by one deviation
+            pull = elastic @ root
+            pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
+            moved: Floats = values * np.exp((pull @ root.T)[:, None] * np.array([[-1], [1]]))
+            return moved
+
+        return cls("covariance", [addresses[i] for i in kept],
+                   lambda share: values * np.exp(ndtri(share) @ root.T), ends)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -103,21 +150,19 @@ class Uncertainty:
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
         table = self.table
-        return {
-            "program": "vcor",
-            "version": _library.__version__,
-            "samples": self.samples,
-            "without_result": self.lost,
-            "validity": self.validity,
-            "validity_cause": self.validity_cause,
-            "quantities": {
+        return _command.document(
+            samples=self.samples,
+            without_result=self.lost,
+            validity=self.validity,
+            validity_cause=self.validity_cause,
+            quantities={
                 str(name): {
-                    "unit": str(table.units.sel(quantity=name).item()),
-                    **{key: _plain(table[key].sel(quantity=name)) for key in table.data_vars},
+                    "unit": row.units.item(),
+                    **{key: _by_name(row[key]) for key in table.data_vars},
                 }
-                for name in table.quantity.values
+                for name, row in ((one, table.sel(quantity=one)) for one in table.quantity.values)
             },
-        }
+        )
 
     def figure(self, quantity: str = "cor") -> Any:
         """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
@@ -240,25 +285,24 @@ def propagate(
     if samples < 1:
         raise UsageError(f"samples: found {samples}, expected a number > 0")
     case = (case if isinstance(case, Case) else read(case)).copy()
-    joint = _Joint.read(case, covariance)
-    spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()]
-    addresses = [spread.address for spread in spreads] + joint.addresses
+    joint = [] if covariance is None else [Spread.joint(case, covariance)]
+    spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()] + joint
+    addresses = [address for spread in spreads for address in spread.addresses]
     if not addresses:
         raise UsageError("expected at least one parameter that varies")
     if len(set(addresses)) < len(addresses):
         raise UsageError("a parameter varies twice")
-    groups = [spread.address for spread in spreads] + ["covariance"] * len(joint.addresses)
-    names = list(dict.fromkeys(groups))
+    groups = [spread.name for spread in spreads for _ in spread.addresses]
+    names = [spread.name for spread in spreads]
     # SALib counts groups; without joint parameters every parameter is its own
     problem = {"num_vars": len(addresses), "names": addresses,
                "bounds": [[0.0, 1.0]] * len(addresses), "groups": groups}  # fmt: skip
     blocks = 2 ** max(3, round(math.log2(max(8, samples / (len(names) + 2)))))
     share = sampling.sample(problem, blocks, calc_second_order=False, seed=seed)
     share = np.clip(share, 1e-12, 1 - 1e-12)
-    points = np.hstack([
-        *[spread.sample(share[:, [i]]) for i, spread in enumerate(spreads)],
-        joint.sample(share[:, len(spreads) :]),
-    ])  # fmt: skip
+    starts = np.cumsum([len(spread.addresses) for spread in spreads])[:-1]
+    shares = np.split(share, starts, axis=1)
+    points = np.hstack([one.sample(u) for one, u in zip(spreads, shares, strict=True)])
     found = case._solve_all(addresses, points, quantities, threads, None)
     good = np.isfinite(found).all(axis=1).reshape(blocks, -1)
     kept = good.all(axis=1)
@@ -275,7 +319,8 @@ def propagate(
     apart = [i for i, address in enumerate(addresses) if case[address] != 0]
     if apart:
         elastic[:, apart] = sensitivities(case, [addresses[i] for i in apart], quantities)
-    swing = _swing(case, spreads, joint, elastic, value, quantities)
+    pull = np.nan_to_num(elastic) * np.sign(value)[:, None]
+    swing = _swing(case, spreads, addresses, pull, quantities)
     columns = _library.columns(0)
     over, both = ("quantity",), ("quantity", "parameter")
     table = xr.Dataset(
@@ -308,24 +353,18 @@ def propagate(
 
 
 def _swing(
-    case: Case, spreads: list[Spread], joint: _Joint, elastic: Floats, value: Floats,
-    quantities: list[str],
-) -> Floats:  # fmt: skip
+    case: Case, spreads: list[Spread], addresses: list[str], pull: Floats, quantities: list[str]
+) -> Floats:
     """Quantities at one deviation to each side of each source, shape (quantities, sources, 2)."""
-    n, addresses = len(spreads), [spread.address for spread in spreads] + joint.addresses
     middle = [_number(case, address, zero=True) for address in addresses]
-    ends = np.tile(middle, (len(quantities), n + bool(joint.addresses), 2, 1))
+    ends = np.tile(middle, (len(quantities), len(spreads), 2, 1))
+    first = 0
     for i, spread in enumerate(spreads):
-        ends[:, i, :, i] += spread.deviation * np.array([-1, 1])
-    if joint.addresses:
-        # correlated parameters move together, as they do where the quantity is off by one deviation
-        pull = np.nan_to_num(elastic[:, n:]) * np.sign(value)[:, None] @ joint.root
-        pull /= np.fmax(np.linalg.norm(pull, axis=1, keepdims=True), 1e-300)
-        steps = (pull @ joint.root.T)[:, None] * np.array([[-1], [1]])
-        ends[:, n, :, n:] *= np.exp(steps)
+        own = slice(first, first := first + len(spread.addresses))
+        ends[:, i, :, own] = spread.ends(pull[:, own])
     found = _solve(case, addresses, ends.reshape(-1, len(addresses)), quantities)
-    own: Floats = np.einsum("kijk->kij", found.reshape(*ends.shape[:3], len(quantities)))
-    return own
+    swing: Floats = np.einsum("kijk->kij", found.reshape(*ends.shape[:3], len(quantities)))
+    return swing
 
 
 def _sobol(
@@ -348,52 +387,6 @@ def _sobol(
         for key, name in INDICES.items():
             found[key][k] = indices[name]
     return found
-
-
-@dataclass(frozen=True)
-class _Joint:
-    """Parameters with a covariance."""
-
-    addresses: list[str]
-    values: Floats
-    #: Root of the covariance of their logarithms
-    root: Floats
-
-    @classmethod
-    def read(cls, case: Case, source: Any) -> _Joint:
-        if source is None:
-            return cls([], np.empty(0), np.empty((0, 0)))
-        if not isinstance(source, Mapping):
-            try:
-                source = json.loads(_command.read_text(source, "strict"))
-            except ValueError as error:
-                raise InputError(f"{source}: {error}") from None
-        try:
-            prefix = f"{source['name']}." if "name" in source else ""
-            rows = source["parameters"]
-            addresses = [
-                row["name"] if "." in row["name"] else prefix + row["name"] for row in rows
-            ]
-            values = np.array([float(row["value"]) for row in rows])
-            covariance = np.array(source["covariance"], dtype=float)
-        except (KeyError, TypeError, ValueError):
-            raise InputError("--covariance: found no JSON of vcor fit or identify") from None
-        # what a fit has brought to 0 stays there: it has no logarithm
-        kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
-        if not kept.size:
-            raise InputError("--covariance: found no parameter > 0 with a standard error")
-        scaled = covariance[np.ix_(kept, kept)] / np.outer(values[kept], values[kept])
-        weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
-        if weights.min() < -1e-8 * weights.max():
-            raise InputError("--covariance: the matrix is not positive")
-        for i in kept:
-            case[addresses[i]] = float(values[i])
-        return cls([addresses[i] for i in kept], values[kept], vectors * np.sqrt(weights.clip(0)))
-
-    def sample(self, share: Floats) -> Floats:
-        """Values at shares of independent normal numbers."""
-        found: Floats = self.values * np.exp(ndtri(share) @ self.root.T)
-        return found
 
 
 def _exact(case: Case, quantities: list[str]) -> Floats:
@@ -437,13 +430,12 @@ def _number(case: Case, address: str, *, zero: bool = False) -> float:
     return float(value)
 
 
-def _plain(values: xr.DataArray) -> Any:
-    """Numbers for JSON, by the names of the last coordinate."""
+def _by_name(values: xr.DataArray) -> Any:
+    """Numbers by the names of their coordinates."""
     if values.ndim == 0:
-        number = float(values)
-        return number if math.isfinite(number) else None
+        return values.item()
     names = values[values.dims[0]].values
-    return {str(name): _plain(values[i]) for i, name in enumerate(names)}
+    return {str(name): _by_name(one) for name, one in zip(names, values, strict=True)}
 
 
 def _report(found: Uncertainty) -> str:
