@@ -504,21 +504,12 @@ contains
       character(len=:), allocatable :: text
 
       real(wp), parameter :: longest = 1.0e9_wp
+      character(len=16) :: buffer
       integer :: left
 
       left = ceiling(min(time, longest))
-      text = integer_text(left/3600)//':'//two(mod(left, 3600)/60)//':'//two(mod(left, 60))
-
-   contains
-
-      !> Two digits
-      function two(number)
-         !> Number, from 0 to 59
-         integer, intent(in) :: number
-         character(len=2) :: two
-
-         write (two, '(i2.2)') number
-      end function two
+      write (buffer, '(i0, 2(":", i2.2))') left/3600, mod(left, 3600)/60, mod(left, 60)
+      text = trim(buffer)
    end function time_text
 
    !> Take the line off the terminal

@@ -84,7 +84,6 @@ contains
       if (allocated(error)) return
       temporary = join_path(folder, 'part.h5')
       call remember(temporary)
-      call summary%blank_pending()
       call lay_out(tables(1), identity, grid, summary%quantities)
       call write_hdf5(temporary, tables, error, identity%data, identity%part)
       if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
@@ -191,7 +190,6 @@ contains
       end if
       if (.not. allocated(error)) call attach(self, path, summary%quantities, error)
       if (allocated(error) .or. .not. anew) return
-      call summary%blank_pending()
       call self%put(1, size(summary%status), summary, error)
    end subroutine open_checkpoint
 

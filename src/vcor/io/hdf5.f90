@@ -241,7 +241,7 @@ contains
    !> Write a table as a group
    subroutine put_table(writer, table)
       type(writer_t), intent(inout) :: writer
-      type(table_t), intent(in) :: table
+      type(table_t), intent(in), target :: table
 
       integer(hid_t) :: dataset, group, scales(size(table%dimensions))
       integer :: i, j, status
@@ -251,7 +251,8 @@ contains
       call note(writer, status, "create the group '"//table%name//"'")
       do i = 1, size(table%facts)
          associate (fact => table%facts(i))
-            call put_number(writer, group, fact%name, fact%reals(1))
+            call put_attribute(writer, group, fact%name, h5t_ieee_f64le, h5t_native_double, &
+               c_loc(fact%reals))
             call put_text(writer, group, fact%name//'_units', fact%unit)
          end associate
       end do
@@ -426,17 +427,6 @@ contains
       place = c_loc(value)
       call put_attribute(writer, object, name, writer%text_type, writer%text_type, c_loc(place))
    end subroutine put_text
-
-   !> Write a number as an attribute
-   subroutine put_number(writer, object, name, number)
-      type(writer_t), intent(inout) :: writer
-      !> What the attribute belongs to
-      integer(hid_t), intent(in) :: object
-      character(len=*), intent(in) :: name
-      real(wp), intent(in), target :: number
-
-      call put_attribute(writer, object, name, h5t_ieee_f64le, h5t_native_double, c_loc(number))
-   end subroutine put_number
 
    !> Write an attribute
    subroutine put_attribute(writer, object, name, file_type, memory_type, value)

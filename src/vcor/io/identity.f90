@@ -103,25 +103,16 @@ contains
          error%code = error_file
          return
       end if
-      is_ours = attribute('program') == 'vcor'
-      identity%version = attribute('version')
-      identity%title = attribute('title')
-      identity%case_text = attribute('case')
-      identity%data = attribute('data')
+      is_ours = text_attribute(reader, 'program') == 'vcor'
+      identity%version = text_attribute(reader, 'version')
+      identity%title = text_attribute(reader, 'title')
+      identity%case_text = text_attribute(reader, 'case')
+      identity%data = text_attribute(reader, 'data')
       identity%part = new_part(max(0, number('points')), max(1, number('shard')), &
          max(1, number('shards')))
       call close_hdf5(reader)
 
    contains
-
-      !> An attribute of the file
-      function attribute(name) result(text)
-         character(len=*), intent(in) :: name
-         !> Its text; empty where there is none
-         character(len=:), allocatable :: text
-
-         text = text_attribute(reader, name)
-      end function attribute
 
       !> A number in an attribute
       function number(name)
@@ -133,7 +124,7 @@ contains
          integer :: status
 
          number = 0
-         digits = attribute(name)
+         digits = text_attribute(reader, name)
          if (len(digits) == 0) return
          read (digits, *, iostat=status) number
          if (status /= 0) number = 0

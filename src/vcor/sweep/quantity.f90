@@ -93,8 +93,7 @@ module vcor_sweep_quantity
       procedure, private :: add_real, add_whole, add_label
    end type list_t
 
-   !> Values of one column, shape (points); NaN or 0 where a point has none, anything where it is
-   !> pending
+   !> Values of one column, shape (points); NaN or 0 where a point has none, or is new
    type :: values_t
       !> Of numbers, in their unit
       real(wp), allocatable :: reals(:)
@@ -111,7 +110,7 @@ module vcor_sweep_quantity
       !> Status, one of the `contact_*` and `point_*` constants, shape (points)
       integer, allocatable :: status(:)
    contains
-      procedure :: put, put_part, blank_pending
+      procedure :: put, put_part
    end type summary_t
 
    !> Columns of a history, in the order of the rows of a trajectory's state
@@ -349,7 +348,7 @@ contains
       end do
    end function status_name
 
-   !> Make room; all points are pending, and have no values yet
+   !> Make room; all points are pending, and have no values yet: NaN or 0
    subroutine new_summary(self, points, error)
       type(summary_t), intent(out) :: self
       integer, intent(in) :: points
@@ -364,9 +363,10 @@ contains
       do i = 1, size(self%values)
          if (status /= 0) exit
          if (self%quantities(i)%is_whole) then
-            allocate (self%values(i)%integers(points), stat=status)
+            allocate (self%values(i)%integers(points), source=0, stat=status)
          else
-            allocate (self%values(i)%reals(points), stat=status)
+            allocate (self%values(i)%reals(points), source=ieee_value(1.0_wp, ieee_quiet_nan), &
+               stat=status)
          end if
       end do
       if (status == 0) then
@@ -376,24 +376,6 @@ contains
             //integer_text(points)//' impacts')
       end if
    end subroutine new_summary
-
-   !> NaN or 0 for the values of pending points, before they are written
-   pure subroutine blank_pending(self)
-      class(summary_t), intent(inout) :: self
-
-      integer :: i
-
-      do i = 1, size(self%values)
-         associate (values => self%values(i))
-            if (allocated(values%integers)) then
-               where (self%status == point_pending) values%integers = 0
-            else
-               where (self%status == point_pending) &
-                  values%reals = ieee_value(1.0_wp, ieee_quiet_nan)
-            end if
-         end associate
-      end do
-   end subroutine blank_pending
 
    !> Keep the outcome of a point
    pure subroutine put(self, place, values)
