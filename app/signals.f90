@@ -2,7 +2,7 @@
 !> says that a file has become too large, SIGXFSZ
 module vcor_app_signals
    use, intrinsic :: iso_c_binding, only : c_funloc, c_funptr, c_int, c_intptr_t, c_null_funptr
-   use vcor_io_file, only : remove_all_scratch
+   use vcor_io_file, only : remove_scratch
    implicit none
    private
 
@@ -110,7 +110,7 @@ contains
       type(c_funptr) :: ignored
       integer(c_int) :: status
 
-      call remove_all_scratch()
+      call remove_scratch()
       ignored = c_signal(number, c_null_funptr)
       ! it is held back until this handler returns
       status = c_raise(number)

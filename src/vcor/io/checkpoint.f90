@@ -21,8 +21,8 @@ module vcor_io_checkpoint
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : make_scratch, move_file, remember, remove_file, remove_scratch
-   use vcor_io_hdf5, only : write_hdf5
+   use vcor_io_file, only : complete, create_file, discard, move_file, output_file_t, remove_file
+   use vcor_io_hdf5, only : fill_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, &
       reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
@@ -76,28 +76,20 @@ contains
       !> Set if the file cannot be written, or another process has begun it
       type(error_t), allocatable, intent(out) :: error
 
+      type(output_file_t) :: file
       type(table_t) :: tables(1)
-      character(len=:), allocatable :: folder, temporary
-      integer :: i
 
-      call make_scratch(folder, path, error)
+      self%path = path
+      call create_file(file, path, error)
       if (allocated(error)) return
-      temporary = join_path(folder, 'part.h5')
-      call remember(temporary)
       call lay_out(tables(1), identity, grid, summary%quantities)
-      call write_hdf5(temporary, tables, error, identity%data, identity%part)
-      if (.not. allocated(error)) call attach(self, temporary, summary%quantities, error)
+      call fill_hdf5(file, tables, error, identity%data, identity%part)
+      if (.not. allocated(error)) call complete(file, error)
+      if (.not. allocated(error)) call attach(self, file%temporary, summary%quantities, error)
       if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
-      if (.not. allocated(error)) call name_file(self, path, error)
-      if (allocated(error)) then
-         call self%remove()
-         ! nobody knows the other name
-         i = index(error%message, temporary)
-         if (i > 0) error%message = error%message(:i - 1)//path &
-            //error%message(i + len(temporary):)
-      end if
-      call remove_scratch(temporary)
-      call remove_scratch(folder)
+      if (.not. allocated(error)) call name_file(file%temporary, path, error)
+      if (allocated(error)) call self%close()
+      call discard(file)
    end subroutine create_checkpoint
 
    !> Points of a part as a table, with columns that have no values yet
@@ -134,8 +126,8 @@ contains
    end subroutine lay_out
 
    !> Give a file its name
-   subroutine name_file(self, path, error)
-      type(checkpoint_t), intent(inout) :: self
+   subroutine name_file(temporary, path, error)
+      character(len=*), intent(in) :: temporary
       !> Its name; nothing may have it
       character(len=*), intent(in) :: path
       !> Set if it cannot have the name
@@ -143,17 +135,15 @@ contains
 
       logical :: is_taken
 
-      if (c_link(c_text(self%path), c_text(path)) /= 0) then
-         is_taken = last_errno() == errno_exists
-         if (.not. is_taken) is_taken = anything_at(path)
-         if (is_taken) then
-            call raise_in_use(path, error)
-         else
-            ! there are file systems without links
-            call move_file(self%path, path, error)
-         end if
+      if (c_link(c_text(temporary), c_text(path)) == 0) return
+      is_taken = last_errno() == errno_exists
+      if (.not. is_taken) is_taken = anything_at(path)
+      if (is_taken) then
+         call raise_in_use(path, error)
+      else
+         ! there are file systems without links
+         call move_file(temporary, path, error)
       end if
-      if (.not. allocated(error)) self%path = path
    end subroutine name_file
 
    !> Another process is at work
@@ -179,6 +169,7 @@ contains
       !> Whether to forget what the file has
       logical, intent(in) :: anew
 
+      self%path = path
       call check_plain(path, error)
       if (allocated(error)) return
       if (anew) then
@@ -194,9 +185,10 @@ contains
    end subroutine open_checkpoint
 
    !> Open a file that is there for writing, and learn where its columns are
-   subroutine attach(self, path, quantities, error)
+   subroutine attach(self, place, quantities, error)
       type(checkpoint_t), intent(inout) :: self
-      character(len=*), intent(in) :: path
+      !> Its path, as long as it does not have its name
+      character(len=*), intent(in) :: place
       type(quantity_t), intent(in) :: quantities(:)
       !> Set if it cannot be written
       type(error_t), allocatable, intent(out) :: error
@@ -205,10 +197,9 @@ contains
       integer(c_int) :: reason
       integer :: i, n
 
-      self%path = path
       n = size(quantities)
       self%offsets = [(0_c_int64_t, i=0, n)]
-      call open_hdf5(reader, path, error)
+      call open_hdf5(reader, place, error)
       if (allocated(error)) return
       do i = 1, n
          call find_place(reader, path_of(quantities(i)%name), self%offsets(i), error)
@@ -222,21 +213,21 @@ contains
          return
       end if
 
-      self%stream = c_fopen(c_text(path), c_text('rb+'))
+      self%stream = c_fopen(c_text(place), c_text('rb+'))
       reason = last_errno()
       if (.not. c_associated(self%stream)) then
-         call raise_system(error, 'cannot write '//quoted_path(path), reason)
+         call raise_system(error, 'cannot write '//quoted_path(self%path), reason)
          return
       end if
       ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
       ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
       ! goes without
       if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) /= 0) then
-         if (last_errno() == errno_locked) call raise_in_use(path, error)
+         if (last_errno() == errno_locked) call raise_in_use(self%path, error)
       end if
       ! no link, and no file that has been replaced or removed since
-      if (.not. same_file_id(file_at(path, follows=.false.), open_file(c_fileno(self%stream)))) &
-         call raise_in_use(path, error)
+      if (.not. same_file_id(file_at(place, follows=.false.), &
+         open_file(c_fileno(self%stream)))) call raise_in_use(self%path, error)
       if (allocated(error)) call self%close()
    end subroutine attach
 

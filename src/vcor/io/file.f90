@@ -9,8 +9,8 @@
 !>  - An interrupted process leaves nothing under the real name. There is no `fsync`: it takes 2 to
 !>    10 ms per file, as long as an impact with all the rest, and only a power failure within
 !>    seconds makes a difference. A full disk is seen without it.
-!>  - What is in private folders is remembered, and removed by `remove_all_scratch` if a signal ends
-!>    the process. A folder that a killed process has left means nothing, and may be removed.
+!>  - The private folder is remembered, and removed by `remove_scratch` if a signal ends the
+!>    process. A folder that a killed process has left means nothing, and may be removed.
 !>  - A symbolic link under the real name is replaced by the file; what it points at stays as it is.
 !>  - A directory, a device or a pipe under the real name, or a link to one, is never replaced but
 !>    refused: `/dev/stdout` would else become a file.
@@ -23,45 +23,38 @@ module vcor_io_file
       c_null_ptr, c_ptr, c_size_t
    use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_input, error_t, raise
-   use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, join_path, &
+   use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, folder_of, &
       plain_file_exists, quoted_path, raise_system
-   use vcor_io_posix, only : c_fallocate, c_fclose, c_fflush, c_fileno, c_fopen, c_fwrite, &
-      c_isatty, c_mkdtemp, c_rename, c_rmdir, c_text, c_unlink, c_write, errno_interrupted, &
-      last_errno, standard_error, standard_output
+   use vcor_io_posix, only : c_fallocate, c_fclose, c_fileno, c_fopen, c_isatty, c_mkdtemp, &
+      c_rename, c_rmdir, c_text, c_unlink, c_write, errno_interrupted, last_errno, &
+      standard_error, standard_output
    use vcor_text, only : buffer_t, printable, shortened
    implicit none
    private
 
    public :: read_text_file
-   public :: output_file_t, create_file, put, reserve, commit, discard, write_file
-   public :: move_file, remove_file
-   public :: make_scratch, remember, remove_scratch, remove_all_scratch
+   public :: output_file_t, create_file, put, reserve, complete, commit, discard, write_file
+   public :: move_file, remove_file, remove_scratch
    public :: write_stdout, write_terminal, stderr_is_terminal
 
    !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`.
    !> A procedure that fails discards the file
    type :: output_file_t
-      !> Its path until `commit`
+      !> Its path until `commit`, in a private folder
       character(len=:), allocatable :: temporary
-      !> The private folder that it is in
-      character(len=:), allocatable, private :: folder
       !> The real name
-      character(len=:), allocatable, private :: path
+      character(len=:), allocatable :: path
       !> Stream of C, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
 
-   !> Longest path that is remembered (PATH_MAX of Linux), and most of them; a run has few at a time
-   integer, parameter :: longest = 4096, most = 32
-
-   !> A path as C has it, empty while it is not in use
-   type :: place_t
-      !> The path, ends with NUL
-      character(kind=c_char) :: path(longest) = c_null_char
-   end type place_t
-
-   !> Private folders and what is in them now
-   type(place_t), volatile :: places(most)
+   !> Room for a path, more than the system takes (PATH_MAX of Linux)
+   integer, parameter :: room = 4200
+   !> Name of a file in its private folder
+   character(len=*), parameter :: new_name = '/new'
+   !> The private folder that is in use, and the file in it, as C has their paths; empty where there
+   !> is none. One file is written at a time
+   character(kind=c_char), volatile :: folder(room) = c_null_char, inside(room) = c_null_char
 
    !> Largest file that is read [bytes]; a case has a few hundred, a long Prony series a few
    !> thousand, a table of 10,000 points half a million
@@ -118,17 +111,29 @@ contains
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
 
+      character(len=:), allocatable :: name
       integer(c_int) :: reason
+      logical :: made
 
       call check_target(path, error)
       if (allocated(error)) return
       file%path = trim(path)
-      call make_scratch(file%folder, file%path, error)
-      if (allocated(error)) return
-      file%temporary = join_path(file%folder, 'new')
-      call remember(file%temporary)
-      file%stream = c_fopen(c_text(file%temporary), c_text('abx'))
+      name = folder_of(file%path)
+      ! what is cut is too long for the system, too, which says so
+      name = c_text(name(:min(len(name), room - 20))//'.vcor-XXXXXX')
+      ! remembered while it is made: mkdtemp writes each name that it tries over the X
+      call remember(name, folder)
+      made = c_associated(c_mkdtemp(folder))
       reason = last_errno()
+      if (made) then
+         name = transfer(folder(:len(name)), name)
+         file%temporary = name(:len(name) - 1)//new_name
+         call remember(c_text(file%temporary), inside)
+         file%stream = c_fopen(c_text(file%temporary), c_text('abx'))
+         reason = last_errno()
+      else
+         folder(1) = c_null_char
+      end if
       if (.not. c_associated(file%stream)) call fail(file, reason, error)
    end subroutine create_file
 
@@ -141,15 +146,12 @@ contains
       !> Set if the text could not be written as a whole
       type(error_t), allocatable, intent(out) :: error
 
-      integer(c_size_t) :: length
       integer(c_int) :: reason
 
       call check_open(file, error)
       if (allocated(error)) return
-      length = len(text, kind=c_size_t)
-      if (c_fwrite(text, 1_c_size_t, length, file%stream) == length) return
-      reason = last_errno()
-      call fail(file, reason, error)
+      call write_all(c_fileno(file%stream), text, reason)
+      if (reason /= 0) call fail(file, reason, error)
    end subroutine put
 
    !> Take room on the disk for somebody else who writes to the file by its temporary path, and may
@@ -164,14 +166,12 @@ contains
 
       integer(c_int) :: reason
 
-      reason = 0
-      if (c_fflush(file%stream) /= 0) reason = last_errno()
-      if (reason == 0) reason = c_fallocate(c_fileno(file%stream), 0_c_int64_t, bytes)
+      reason = c_fallocate(c_fileno(file%stream), 0_c_int64_t, bytes)
       if (reason /= 0) call fail(file, reason, error)
    end subroutine reserve
 
-   !> End a file: hand the rest of it to the system, close it and give it its real name
-   subroutine commit(file, error)
+   !> Close a file that is complete; its real name is left to the caller, who discards it then
+   subroutine complete(file, error)
       !> Open file; closed afterwards
       type(output_file_t), intent(inout) :: file
       !> Set if the file is not complete; then it is discarded
@@ -182,14 +182,21 @@ contains
       call check_open(file, error)
       if (allocated(error)) return
       status = c_fclose(file%stream)
-      file%stream = c_null_ptr
-      if (status == 0) status = c_rename(c_text(file%temporary), c_text(file%path))
       reason = last_errno()
-      if (status == 0) then
-         call discard(file)
-      else
-         call fail(file, reason, error)
-      end if
+      file%stream = c_null_ptr
+      if (status /= 0) call fail(file, reason, error)
+   end subroutine complete
+
+   !> End a file: close it and give it its real name
+   subroutine commit(file, error)
+      !> Open file; closed afterwards
+      type(output_file_t), intent(inout) :: file
+      !> Set if the file is not complete; then it is discarded
+      type(error_t), allocatable, intent(out) :: error
+
+      call complete(file, error)
+      if (.not. allocated(error)) call move_file(file%temporary, file%path, error)
+      call discard(file)
    end subroutine commit
 
    !> Give a file up: what is in the private folder goes, what has the real name stays. Does nothing
@@ -203,9 +210,11 @@ contains
       if (c_associated(file%stream)) ignored = c_fclose(file%stream)
       file%stream = c_null_ptr
       if (.not. allocated(file%temporary)) return
-      call remove_scratch(file%temporary)
-      call remove_scratch(file%folder)
-      deallocate (file%temporary, file%folder)
+      ignored = c_unlink(c_text(file%temporary))
+      ignored = c_rmdir(c_text(folder_of(file%temporary)))
+      deallocate (file%temporary)
+      folder(1) = c_null_char
+      inside(1) = c_null_char
    end subroutine discard
 
    !> Write a whole file at once
@@ -299,96 +308,27 @@ contains
       ignored = c_unlink(c_text(path))
    end subroutine remove_file
 
-   !> Make a private folder
-   subroutine make_scratch(folder, path, error)
-      !> Its path; unallocated if it cannot be made
-      character(len=:), allocatable, intent(out) :: folder
-      !> Path of what is to be written, in whose folder it is made
+   !> Remember a path as C has it. The first letter comes last: a signal in between finds none
+   subroutine remember(path, place)
       character(len=*), intent(in) :: path
-      !> Set if it cannot be made
-      type(error_t), allocatable, intent(out) :: error
+      !> Where it is kept
+      character(kind=c_char), volatile, intent(inout) :: place(room)
 
-      character(len=:), allocatable :: name
-      integer(c_int) :: reason
-      integer :: at
-      logical :: made
+      integer :: i
 
-      name = c_text(path(:index(path, '/', back=.true.))//'.vcor-XXXXXX')
-      ! remembered while it is made: mkdtemp writes each name that it tries over the X
-      call remember(name(:len(name) - 1), at)
-      if (at > 0) then
-         made = c_associated(c_mkdtemp(places(at)%path))
-         reason = last_errno()
-         name = transfer(places(at)%path(:len(name)), name)
-         if (.not. made) places(at)%path(1) = c_null_char
-      else
-         made = c_associated(c_mkdtemp(name))
-         reason = last_errno()
-      end if
-      if (made) then
-         folder = name(:len(name) - 1)
-      else
-         call raise_system(error, 'cannot write '//quoted_path(path), reason)
-      end if
-   end subroutine make_scratch
-
-   !> Remember a path: a signal that ends the process removes what has it
-   subroutine remember(path, at)
-      !> Path of a file in a private folder, or of such a folder
-      character(len=*), intent(in) :: path
-      !> Its place; 0 where there is no room for it
-      integer, intent(out), optional :: at
-
-      integer :: i, j
-
-      if (present(at)) at = 0
-      if (len(path) >= longest) return
-      do i = 1, most
-         if (places(i)%path(1) /= c_null_char) cycle
-         ! the first letter last: a signal in between finds the place empty
-         do j = len(path) + 1, 1, -1
-            places(i)%path(j) = c_null_char
-            if (j <= len(path)) places(i)%path(j) = path(j:j)
-         end do
-         if (present(at)) at = i
-         return
+      do i = len(path), 1, -1
+         place(i) = path(i:i)
       end do
    end subroutine remember
 
-   !> Remove a file in a private folder, or such a folder if it is empty, and forget it; none is
-   !> fine
-   subroutine remove_scratch(path)
-      character(len=*), intent(in) :: path
-
+   !> Remove the private folder that is in use, with the file in it; does nothing that a handler of
+   !> signals may not do
+   subroutine remove_scratch()
       integer(c_int) :: ignored
-      integer :: i, j
 
-      if (c_unlink(c_text(path)) /= 0) ignored = c_rmdir(c_text(path))
-      if (len(path) >= longest) return
-      do i = 1, most
-         if (places(i)%path(len(path) + 1) /= c_null_char) cycle
-         if (all([(places(i)%path(j) == path(j:j), j=1, len(path))])) &
-            places(i)%path(1) = c_null_char
-      end do
+      if (inside(1) /= c_null_char) ignored = c_unlink(inside)
+      if (folder(1) /= c_null_char) ignored = c_rmdir(folder)
    end subroutine remove_scratch
-
-   !> Remove all that is remembered; does nothing that a handler of signals may not do
-   subroutine remove_all_scratch()
-      integer(c_int) :: ignored
-      integer :: i, pass
-
-      ! files, the folders that are empty then, and those that hold such folders
-      do pass = 1, 3
-         do i = 1, most
-            if (places(i)%path(1) == c_null_char) cycle
-            if (pass == 1) then
-               ignored = c_unlink(places(i)%path)
-            else
-               ignored = c_rmdir(places(i)%path)
-            end if
-         end do
-      end do
-   end subroutine remove_all_scratch
 
    !> Write to the standard output at once, unbuffered: a full disk or a closed output is seen
    subroutine write_stdout(text, error)
@@ -397,7 +337,6 @@ contains
       !> Set if the text could not be written as a whole
       type(error_t), allocatable, intent(out) :: error
 
-      integer(c_size_t) :: first, length, written
       integer(c_int) :: reason
       integer :: status
       character(len=200) :: message
@@ -409,20 +348,33 @@ contains
          call raise(error, error_file, 'cannot write the standard output: '//trim(message))
          return
       end if
+      call write_all(standard_output, text, reason)
+      if (reason /= 0) call raise_system(error, 'cannot write the standard output', reason)
+   end subroutine write_stdout
 
+   !> Write a text as a whole, however many calls that takes
+   subroutine write_all(descriptor, text, reason)
+      integer(c_int), intent(in) :: descriptor
+      character(len=*), intent(in) :: text
+      !> Why it could not be written; 0 on success
+      integer(c_int), intent(out) :: reason
+
+      integer(c_size_t) :: first, length, written
+
+      reason = 0
       length = len(text, kind=c_size_t)
       first = 1_c_size_t
       do while (first <= length)
-         written = c_write(standard_output, text(first:), length - first + 1_c_size_t)
-         reason = last_errno()
+         written = c_write(descriptor, text(first:), length - first + 1_c_size_t)
          if (written >= 0_c_size_t) then
             first = first + written
-         else if (reason /= errno_interrupted) then
-            call raise_system(error, 'cannot write the standard output', reason)
-            return
+            cycle
          end if
+         reason = last_errno()
+         if (reason /= errno_interrupted) return
+         reason = 0
       end do
-   end subroutine write_stdout
+   end subroutine write_all
 
    !> Whether the standard error is a terminal
    function stderr_is_terminal() result(is_one)

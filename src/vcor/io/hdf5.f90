@@ -43,7 +43,7 @@ module vcor_io_hdf5
    implicit none
    private
 
-   public :: write_hdf5, begin_hdf5, end_hdf5, c_get_offset
+   public :: write_hdf5, fill_hdf5, begin_hdf5, end_hdf5, c_get_offset
 
    !> An identifier that stands for nothing
    integer(hid_t), parameter :: nothing = -1_hid_t
@@ -97,9 +97,27 @@ contains
    end subroutine end_hdf5
 
    !> Write tables to a file. It is there as a whole or, if that fails, as it was before
-   subroutine write_hdf5(filename, tables, error, data, part)
+   subroutine write_hdf5(filename, tables, error, data)
       !> Name of the file; replaced if it is there
       character(len=*), intent(in) :: filename
+      !> Tables as those of `fill_hdf5`
+      type(table_t), intent(in) :: tables(:)
+      !> Set if the file could not be written
+      type(error_t), allocatable, intent(out) :: error
+      !> Sum over the data that the case is made from; empty where there are none
+      character(len=*), intent(in), optional :: data
+
+      type(output_file_t) :: file
+
+      call create_file(file, filename, error)
+      if (.not. allocated(error)) call fill_hdf5(file, tables, error, data)
+      if (.not. allocated(error)) call commit(file, error)
+   end subroutine write_hdf5
+
+   !> Write tables to an open file, and the seal
+   subroutine fill_hdf5(file, tables, error, data, part)
+      !> Open file; discarded on failure
+      type(output_file_t), intent(inout) :: file
       !> Tables, shape (n), n > 0; version, title and case of the first one describe the file.
       !> Columns without values get their room in the file, where the caller puts them: they are no
       !> part of the seal
@@ -111,12 +129,8 @@ contains
       !> Part of a sweep that the rows are; absent: all of it
       type(part_t), intent(in), optional :: part
 
-      type(output_file_t) :: file
       type(writer_t) :: writer
       integer :: i, ignored
-
-      call create_file(file, filename, error)
-      if (allocated(error)) return
 
       call begin_hdf5(writer%fault)
       if (.not. allocated(writer%fault)) then
@@ -149,12 +163,11 @@ contains
       end if
       if (allocated(writer%fault)) then
          call raise(error, error_file, &
-            'cannot write '//quoted_path(filename)//': HDF5 cannot '//writer%fault)
+            'cannot write '//quoted_path(file%path)//': HDF5 cannot '//writer%fault)
          call discard(file)
       end if
       if (.not. allocated(error)) call put(file, seal_of(file%temporary, writer%left_out), error)
-      if (.not. allocated(error)) call commit(file, error)
-   end subroutine write_hdf5
+   end subroutine fill_hdf5
 
    !> Begin a file, with the property lists and the type that all its objects share
    subroutine begin_file(writer, file, bytes, error)

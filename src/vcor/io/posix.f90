@@ -11,8 +11,8 @@ module vcor_io_posix
    implicit none
    private
 
-   public :: c_fopen, c_fwrite, c_fflush, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, &
-      c_rmdir, c_mkdir, c_realpath, longest_path
+   public :: c_fopen, c_fclose, c_fileno, c_rename, c_unlink, c_mkdtemp, c_rmdir, c_mkdir, &
+      c_realpath, longest_path
    public :: c_write, c_isatty, c_fallocate, c_pwrite, c_fsync, c_lockf, c_link
    public :: standard_output, standard_error, all_permissions, lock_alone
    public :: last_errno, errno_exists, errno_interrupted, errno_locked, system_reason
@@ -54,24 +54,7 @@ module vcor_io_posix
          type(c_ptr) :: stream
       end function c_fopen
 
-      !> Write `count` items of `size` bytes to a stream; fewer are written if that fails
-      function c_fwrite(bytes, size, count, stream) result(written) bind(c, name='fwrite')
-         import :: c_char, c_ptr, c_size_t
-         character(kind=c_char), intent(in) :: bytes(*)
-         integer(c_size_t), intent(in), value :: size, count
-         type(c_ptr), intent(in), value :: stream
-         integer(c_size_t) :: written
-      end function c_fwrite
-
-      !> Hand what is left in a stream to the system
-      function c_fflush(stream) result(status) bind(c, name='fflush')
-         import :: c_int, c_ptr
-         type(c_ptr), intent(in), value :: stream
-         integer(c_int) :: status
-      end function c_fflush
-
-      !> Close a stream, whatever the status; what is left of it is written, and may not fit the
-      !> disk
+      !> Close a stream, whatever the status
       function c_fclose(stream) result(status) bind(c, name='fclose')
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: stream
@@ -131,8 +114,8 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_mkdir
 
-      !> Write `count` bytes to a file descriptor, the standard output or error: how many were
-      !> written, maybe fewer, or -1 if it failed
+      !> Write `count` bytes to a file descriptor: how many were written, maybe fewer, or -1 if it
+      !> failed
       function c_write(descriptor, bytes, count) result(written) bind(c, name='write')
          import :: c_char, c_int, c_size_t
          integer(c_int), intent(in), value :: descriptor
