@@ -1,13 +1,13 @@
 !> The files of a case, what is in their place before, and its bare numbers
 module vcor_app_files
-   use, intrinsic :: iso_fortran_env, only : error_unit
+   use, intrinsic :: iso_fortran_env, only : error_unit, int64
    use vcor_app_cli, only : request_t
    use vcor_app_job, only : directory_of, job_t
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_csv, only : write_csv, write_rows
    use vcor_io_file, only : write_stdout
    use vcor_io_hdf5, only : write_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, count_rows, open_hdf5, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
    use vcor_io_path, only : make_directory, plain_file_exists, quoted_path
    use vcor_io_table, only : place_in_table, table_t
@@ -83,7 +83,6 @@ contains
       type(identity_t) :: identity
       type(error_t), allocatable :: damage
       integer :: i
-      logical :: is_ours
 
       ! HDF5 first; a history says nothing that the others do not
       do i = 3, 1, -2
@@ -94,12 +93,12 @@ contains
       if (.not. previous%exist) return
       previous%has_hdf5 = i == 3
       if (previous%has_hdf5) then
-         call read_identity(previous%path, identity, is_ours, damage)
+         call read_identity(previous%path, identity, damage)
       else
-         call read_csv(previous%path, identity, is_ours)
+         call read_csv(previous%path, identity)
          identity%data = expected%data
       end if
-      if (is_ours) then
+      if (identity%version /= '') then
          call check_same(previous%path, identity, expected, previous%objection)
       else
          call raise(previous%objection, error_file, quoted_path(previous%path) &
@@ -146,7 +145,6 @@ contains
 
       type(identity_t) :: identity
       integer :: rows
-      logical :: is_ours
 
       is_whole = .not. job%writes(3)
       ! the summary of an earlier version has fewer columns
@@ -154,11 +152,11 @@ contains
          if (previous%has_hdf5) is_whole = rows_in(previous%path, 'summary/'//list%name) > 0
       end associate
       if (is_whole .and. job%writes(1)) then
-         call read_csv(job%file(1), identity, is_ours, rows)
+         call read_csv(job%file(1), identity, rows)
          is_whole = rows == job%part%count()
       end if
       if (.not. (is_whole .and. job%writes(2))) return
-      call read_csv(job%file(2), identity, is_ours, rows)
+      call read_csv(job%file(2), identity, rows)
       is_whole = rows > 0
       if (previous%has_hdf5) is_whole = rows == rows_in(previous%path, ['history/time'])
    end function is_whole
@@ -173,11 +171,15 @@ contains
 
       type(reader_t) :: reader
       type(error_t), allocatable :: error
+      integer(int64) :: ignored
+      integer :: i
 
       rows = 0
       call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      call count_rows(reader, columns, rows, error)
+      do i = 1, size(columns)
+         if (.not. allocated(error)) &
+            call find_dataset(reader, trim(columns(i)), rows, ignored, error)
+      end do
       if (allocated(error)) rows = 0
       call close_hdf5(reader)
    end function rows_in

@@ -75,14 +75,13 @@ contains
       type(identity_t) :: found
       character(len=:), allocatable :: shard
       integer :: i, j
-      logical :: is_ours
 
       allocate (numbers(size(request%files)))
       do i = 1, size(request%files)
          associate (path => request%files(i)%text, part => found%part)
-            call read_identity(path, found, is_ours, error)
+            call read_identity(path, found, error)
             if (allocated(error)) return
-            if (.not. is_ours .or. part%points == 0) then
+            if (found%version == '' .or. part%points == 0) then
                call raise(error, error_file, quoted_path(path)//' is no shard of a sweep of vcor')
                return
             end if

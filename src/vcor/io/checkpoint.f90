@@ -23,8 +23,8 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : complete, create_file, discard, move_file, output_file_t, remove_file
    use vcor_io_hdf5, only : fill_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, find_place, open_hdf5, read_column, &
-      reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, &
+      read_column, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
    use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
@@ -194,19 +194,21 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
+      character(len=:), allocatable :: name
       integer(c_int) :: reason
-      integer :: i, n
+      integer :: i, length
 
-      n = size(quantities)
-      self%offsets = [(0_c_int64_t, i=0, n)]
+      self%offsets = [(0_c_int64_t, i=0, size(quantities))]
       call open_hdf5(reader, place, error)
       if (allocated(error)) return
-      do i = 1, n
-         call find_place(reader, path_of(quantities(i)%name), self%offsets(i), error)
+      do i = 1, size(self%offsets)
+         name = 'check'
+         if (i <= size(quantities)) name = quantities(i)%name
+         call find_dataset(reader, path_of(name), length, self%offsets(i), error)
+         if (.not. allocated(error) .and. self%offsets(i) < 0) call raise(error, error_file, &
+            reader%path//": the dataset '"//path_of(name)//"' is not in one piece")
          if (allocated(error)) exit
       end do
-      if (.not. allocated(error)) &
-         call find_place(reader, path_of('check'), self%offsets(n + 1), error)
       call close_hdf5(reader)
       if (allocated(error)) then
          error%code = error_file
@@ -333,11 +335,10 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: found
-      logical :: is_ours
 
-      call read_identity(path, found, is_ours, error)
+      call read_identity(path, found, error)
       if (allocated(error)) return
-      if (.not. is_ours .or. found%part%points == 0) then
+      if (found%version == '' .or. found%part%points == 0) then
          call raise(error, error_file, quoted_path(path)//' is not a part of a sweep of vcor')
          return
       end if

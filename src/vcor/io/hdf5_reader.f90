@@ -27,7 +27,7 @@ module vcor_io_hdf5_reader
    private
 
    public :: reader_t, open_hdf5, close_hdf5, text_attribute
-   public :: read_column, count_rows, find_place
+   public :: read_column, find_dataset
 
    !> A file that is being read
    type :: reader_t
@@ -173,37 +173,19 @@ contains
          //trim(merge('text   ', 'numbers', kind == text_column)))
    end subroutine read_column
 
-   !> Number of rows of a table
-   subroutine count_rows(reader, paths, rows, error)
-      type(reader_t), intent(in) :: reader
-      !> Paths of its columns, shape (n), n > 0
-      character(len=*), intent(in) :: paths(:)
-      integer, intent(out) :: rows
-      !> Set if a column is missing
-      type(error_t), allocatable, intent(out) :: error
-
-      integer(hid_t) :: set, space
-      integer :: i, ignored
-
-      do i = 1, size(paths)
-         call open_dataset(reader, trim(paths(i)), set, space, rows, error)
-         if (allocated(error)) return
-         call h5sclose_f(space, ignored)
-         call h5dclose_f(set, ignored)
-      end do
-   end subroutine count_rows
-
-   !> Find where in the file a dataset is that is stored in one piece
-   subroutine find_place(reader, path, offset, error)
+   !> Find a dataset: how many values it has, and where in the file they are
+   subroutine find_dataset(reader, path, length, offset, error)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: path
-      !> Bytes before its first number
+      !> Number of its values
+      integer, intent(out) :: length
+      !> Bytes before the first one; negative where they are not in one piece
       integer(c_int64_t), intent(out) :: offset
-      !> Set if there is no dataset, or it is not in one piece
+      !> Set if there is none
       type(error_t), allocatable, intent(out) :: error
 
       integer(hid_t) :: set, space
-      integer :: ignored, length
+      integer :: ignored
 
       offset = -1_c_int64_t
       call open_dataset(reader, path, set, space, length, error)
@@ -211,9 +193,7 @@ contains
       offset = c_get_offset(int(set, c_int64_t))
       call h5sclose_f(space, ignored)
       call h5dclose_f(set, ignored)
-      if (offset < 0) call raise(error, error_file, reader%path//": the dataset '"// &
-         shortened(path)//"' is not in one piece")
-   end subroutine find_place
+   end subroutine find_dataset
 
    !> Open a dataset
    subroutine open_dataset(reader, path, set, space, length, error)

@@ -20,6 +20,7 @@ module vcor_io_identity
 
    !> What a file is about
    type :: identity_t
+      !> Empty where a file is not of this program
       character(len=:), allocatable :: version
       character(len=:), allocatable :: title
       character(len=:), allocatable :: case_text
@@ -85,26 +86,24 @@ contains
    end function number_of
 
    !> What an HDF5 file is about
-   subroutine read_identity(path, identity, is_ours, error)
+   subroutine read_identity(path, identity, error)
       character(len=*), intent(in) :: path
       !> What it is about; one shard without points where it says nothing of those
       type(identity_t), intent(out) :: identity
-      !> Whether the file is of this program
-      logical, intent(out) :: is_ours
       !> Error of code `error_file` if it cannot be read, or is no HDF5 file
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
 
-      is_ours = .false.
+      identity%version = ''
       call open_hdf5(reader, path, error)
       if (allocated(error)) then
          ! it is no input: it stands where results belong
          error%code = error_file
          return
       end if
-      is_ours = text_attribute(reader, 'program') == 'vcor'
-      identity%version = text_attribute(reader, 'version')
+      if (text_attribute(reader, 'program') == 'vcor') &
+         identity%version = text_attribute(reader, 'version')
       identity%title = text_attribute(reader, 'title')
       identity%case_text = text_attribute(reader, 'case')
       identity%data = text_attribute(reader, 'data')
@@ -132,12 +131,10 @@ contains
    end subroutine read_identity
 
    !> What a CSV file is about, from its head, and how many rows it has if that is asked for
-   subroutine read_csv(path, identity, is_ours, rows)
+   subroutine read_csv(path, identity, rows)
       character(len=*), intent(in) :: path
       !> What it is about; its data are not known
       type(identity_t), intent(out) :: identity
-      !> Whether the file is of this program
-      logical, intent(out) :: is_ours
       !> Number of complete rows below the names of the columns; 0 where there is no such file
       integer, intent(out), optional :: rows
 
@@ -153,7 +150,6 @@ contains
       identity%case_text = ''
       identity%data = ''
       in_case = .false.
-      is_ours = .false.
       ! below the head, the line of the names included
       lines = 0
       if (present(rows)) rows = 0
@@ -180,7 +176,7 @@ contains
       end do
       close (unit)
       if (present(rows)) rows = max(0, lines - 1)
-      is_ours = in_case .and. len(identity%version) > 0
+      if (.not. in_case) identity%version = ''
 
    contains
 

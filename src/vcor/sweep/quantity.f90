@@ -89,8 +89,7 @@ module vcor_sweep_quantity
       !> What they are, shape (most); unallocated where nobody asks
       type(quantity_t), allocatable :: quantities(:)
    contains
-      generic :: add => add_real, add_whole, add_label
-      procedure, private :: add_real, add_whole, add_label
+      procedure :: add
    end type list_t
 
    !> Values of one column, shape (points); NaN or 0 where a point has none, or is new
@@ -191,63 +190,45 @@ contains
       call list%add('peak_loss_tangent', 'tan(d)_p', '1', 'loss tangent at pi/t0', &
          outcome%peak_loss_tangent)
       call list%add('validity', '', '', 'whether the model holds: the worst of the measures', &
-         outcome%validity, levels, first=level_none)
+         real(outcome%validity, wp), labels=levels, first=level_none)
       call list%add('validity_cause', '', '', 'measure that decides on validity', &
-         outcome%validity_cause, [character(len=label_length) :: 'none', thresholds%measure], &
-         first=0)
-      call list%add('steps', '', '1', 'number of time steps', outcome%steps)
+         real(outcome%validity_cause, wp), &
+         labels=[character(len=label_length) :: 'none', thresholds%measure], first=0)
+      call list%add('steps', '', '1', 'number of time steps', real(outcome%steps, wp), &
+         is_whole=.true.)
       ! it has to be the last one
-      call list%add('status', '', '', 'how the contact ended', outcome%status, &
-         [statuses(size(statuses))%name, statuses(:size(statuses) - 1)%name], first=point_pending)
+      call list%add('status', '', '', 'how the contact ended', real(outcome%status, wp), &
+         labels=[statuses(size(statuses))%name, statuses(:size(statuses) - 1)%name], &
+         first=point_pending)
    end subroutine list_columns
 
-   !> Add a column of numbers
-   pure subroutine add_real(self, name, symbol, unit, meaning, value)
+   !> Add a column: of numbers, of whole numbers, or of texts
+   pure subroutine add(self, name, symbol, unit, meaning, value, is_whole, labels, first)
       class(list_t), intent(inout) :: self
       character(len=*), intent(in) :: name, symbol, unit, meaning
-      !> Value, in this unit
+      !> Value, in this unit, which is empty for texts; the number of the text
       real(wp), intent(in) :: value
-
-      self%n = self%n + 1
-      self%values(self%n) = value
-      if (allocated(self%quantities)) &
-         self%quantities(self%n) = quantity_t(name, symbol, unit, meaning)
-   end subroutine add_real
-
-   !> Add a column of whole numbers
-   pure subroutine add_whole(self, name, symbol, unit, meaning, value)
-      class(list_t), intent(inout) :: self
-      character(len=*), intent(in) :: name, symbol, unit, meaning
-      !> Value, in this unit
-      integer, intent(in) :: value
-
-      call self%add(name, symbol, unit, meaning, real(value, wp))
-      if (allocated(self%quantities)) self%quantities(self%n)%is_whole = .true.
-   end subroutine add_whole
-
-   !> Add a column of texts
-   pure subroutine add_label(self, name, symbol, unit, meaning, value, labels, first)
-      class(list_t), intent(inout) :: self
-      !> The unit is empty
-      character(len=*), intent(in) :: name, symbol, unit, meaning
-      !> Number of the text
-      integer, intent(in) :: value
-      !> All texts, each one word
-      character(len=*), intent(in) :: labels(:)
-      !> Number of the first one
-      integer, intent(in) :: first
+      !> Whether its values are whole numbers; those of texts are
+      logical, intent(in), optional :: is_whole
+      !> All texts, each one word, and the number of the first one
+      character(len=*), intent(in), optional :: labels(:)
+      integer, intent(in), optional :: first
 
       integer :: i
 
-      call self%add(name, symbol, unit, meaning, value)
+      self%n = self%n + 1
+      self%values(self%n) = value
       if (.not. allocated(self%quantities)) return
       associate (quantity => self%quantities(self%n))
+         quantity = quantity_t(name, symbol, unit, meaning)
+         quantity%is_whole = present(is_whole) .or. present(labels)
+         if (.not. present(labels)) return
          do i = 1, size(labels)
             quantity%labels = trim(quantity%labels)//' '//labels(i)
          end do
          quantity%first = first
       end associate
-   end subroutine add_label
+   end subroutine add
 
    !> Columns of a summary
    pure function quantities()
