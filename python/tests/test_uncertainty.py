@@ -227,3 +227,11 @@ def test_any_thickness_and_what_no_column_has(sls):
     assert 0 < float(row.numerical) < 1e-3 and np.isfinite(row.elasticity).all()
     assert (found.validity, found.validity_cause) == ("caution", "footprint_effect")
     assert "validity: caution by footprint_effect" in str(found)
+
+
+def test_the_figure_has_its_legend_where_all_matplotlibs_have_one(sls):
+    """Outside of the axes there is a place for it from Matplotlib 3.7 on only."""
+    (axis,) = vcor.propagate(sls, {"rubber.beta": "5%"}, samples=64).figure().axes
+    texts = [text.get_text() for text in axis.get_legend().get_texts()]
+    assert texts == ["− one standard deviation", "+ one"]
+    assert not axis.figure.legends

@@ -20,7 +20,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import ndtri, stdtrit
 
-from . import _command
+from . import _command, _library
 from ._command import number
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .case import Case, progress_bar, read
@@ -161,7 +161,7 @@ class Identification:
 
     def figure(self) -> Any:
         """Figure (matplotlib): data, model with the band of cor, and residuals below."""
-        from .plot import COLUMN, HEIGHT, PAGE, _label_decades, _legend, _panel_label, drawn
+        from .plot import COLUMN, HEIGHT, PAGE, _label_decades, _labelled, _legend, drawn
 
         names = list(dict.fromkeys(row["quantity"] for row in self.data))
         width = COLUMN if len(names) == 1 else PAGE
@@ -175,8 +175,9 @@ class Identification:
                     np.array([row[key] for row in rows])
                     for key in ("at", "value", "sigma", "model", "residual")
                 )
-                unit = {"force": "N"}.get(name, "Pa" if "modulus" in name else "")
-                factor, label = _panel_label(name, unit, value)
+                attrs = {"units": "N" if name == "force" else "Pa"}
+                column = _library.columns(0).get(name)
+                factor, label = _labelled(name, column.attrs if column else attrs, value)
                 # at several temperatures, say, no line leads through all
                 apart = len(set(at)) < len(set(zip(at, model, strict=True)))
                 line = at, factor * model
@@ -205,7 +206,7 @@ class Identification:
                     above.set_yscale("log")
                 for axis in (above.xaxis, above.yaxis):
                     _label_decades(axis)
-            _legend(made, *axes[0])
+            _legend(made)
         return made
 
 

@@ -14,7 +14,7 @@ import os
 import sys
 import textwrap
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FixedLocator, MaxNLocator
 
-from . import _command, _library
+from . import _command
 from ._command import FORMATS, printable
 from ._library import Floats, InputError, UsageError
 from .data import NAMES, PREFIXES, Data
@@ -152,6 +152,7 @@ def figure(
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
         made = draw(wishes)
+        _legend(made)
         _adjust(made, wishes)
     shown = {text for axis in made.axes for text in axis.get_legend_handles_labels()[1]}
     for one in data:
@@ -234,7 +235,6 @@ def _history(wishes: _Wishes) -> Figure:
         axis.set_xlim(0, factor * max(course["time"][-1] for course in courses))
         if not one:
             axis.locator_params(axis="x", nbins=4)
-    _legend(made, *axes)
     return made
 
 
@@ -261,7 +261,6 @@ def _loop(wishes: _Wishes) -> Figure:
     axis.set_ylabel(_with_unit("contact force", y_unit))
     axis.set_xlim(left=0)
     axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]) if wishes.data else 0)
-    _legend(made, axis)
     return made
 
 
@@ -324,7 +323,6 @@ def _moduli(wishes: _Wishes) -> Figure:
         low, high = axis.dataLim.intervaly
         axis.set_yscale("log" if high > 10 * low else "linear")
         axis.set_ylabel(_with_unit("storage and loss modulus" if single and k else words, unit))
-    _legend(made, *axes)
     return made
 
 
@@ -362,10 +360,10 @@ def _sweep(wishes: _Wishes) -> Figure:
     made, axes = _new(wishes, len(names), min(2, len(names)))
     lines = [(words, line.sortby(across)) for words, line in lines]
     at = [line[across] for _, line in lines]
-    fx, x_unit = _scale(at[0].attrs.get("units", ""), *[one.values for one in at])
+    fx, x_label = _labelled(across, at[0].attrs, *[one.values for one in at])
     for name, axis in zip(names, axes, strict=True):
-        unit = [result.column(name) for result in results][0].attrs.get("units", "")
-        fy, y_unit = _scale(unit, *[line[name].values for _, line in lines])
+        column, *_ = [result.column(name) for result in results]
+        fy, y_label = _labelled(name, column.attrs, *[line[name].values for _, line in lines])
         for i, (words, line) in enumerate(lines):
             _curve(axis, i, fx * line[across], fy * line[name], words)
         if wishes.hatch:
@@ -373,9 +371,7 @@ def _sweep(wishes: _Wishes) -> Figure:
         _points(axis, wishes.data, across, name, fx, fy)
         if all(_is_geometric(one.values) for one in at):
             axis.set_xscale("log")
-        y_label = _label(results[0].summary[name], y_unit)
-        axis.set(xlabel=_label(at[0], x_unit), ylabel=y_label)
-    _legend(made, *axes)
+        axis.set(xlabel=x_label, ylabel=y_label)
     return made
 
 
@@ -416,11 +412,11 @@ def _map(wishes: _Wishes) -> Figure:
         )
     ordered = result.summary.sortby(result.axes)
     x, y = (ordered[axis] for axis in result.axes)
-    (fx, x_unit), (fy, y_unit) = (_scale(a.attrs.get("units", ""), a.values) for a in (x, y))
+    (fx, x_label), (fy, y_label) = (_labelled(str(a.name), a.attrs, a.values) for a in (x, y))
     made, axes = _new(wishes, len(names), min(2, len(names)))
     for name, axis in zip(names, axes, strict=True):
         column = result.column(name)
-        fz, z_unit = _scale(column.attrs.get("units", ""), column.values)
+        fz, z_label = _labelled(name, column.attrs, column.values)
         z = np.ma.masked_invalid(fz * ordered[name].values.T)
         levels = _levels(wishes, float(z.min()), float(z.max()))
         extend = ("min" if z.min() < levels[0] else "") + ("max" if z.max() > levels[-1] else "")
@@ -443,7 +439,7 @@ def _map(wishes: _Wishes) -> Figure:
                 )
                 # no label over the frame
                 number.set_visible(0.08 < u < 0.92 and 0.05 < v < 0.95)
-        bar = made.colorbar(filled, ax=axis, label=_label(column, z_unit), ticks=levels)
+        bar = made.colorbar(filled, ax=axis, label=z_label, ticks=levels)
         bar.ax.minorticks_off()
         bar.ax.yaxis.set_major_formatter(lambda value, _: _number(value))
         for level, (lines, text) in _HATCHES.items():
@@ -464,8 +460,7 @@ def _map(wishes: _Wishes) -> Figure:
                 "c": fz * pz, "norm": filled.norm, "cmap": _SHADES}  # fmt: skip
             axis.scatter(fx * px, fy * py, s=18, edgecolors="k", linewidths=0.6, zorder=5,
                          label=_stem(one), **options)  # fmt: skip
-        axis.set(xlabel=_label(x, x_unit), ylabel=_label(y, y_unit))
-    _legend(made, *axes)
+        axis.set(xlabel=x_label, ylabel=y_label)
     return made
 
 
@@ -516,10 +511,10 @@ def _new(wishes: _Wishes, panels: int, columns: int) -> tuple[Figure, list[Axes]
     return made, axes
 
 
-def _legend(made: Figure, *axes: Axes) -> None:
-    """Legend above the panels, of the curves of some of them."""
+def _legend(made: Figure) -> None:
+    """Legend above the panels, of all curves in them."""
     found: dict[str, Any] = {}
-    for axis in axes:
+    for axis in made.axes:
         for handle, text in zip(*axis.get_legend_handles_labels(), strict=True):
             found.setdefault(text, handle)
     for _, text in _HATCHES.values():
@@ -593,10 +588,11 @@ def _name_of(address: str) -> str:
     return f"{group} {key}"
 
 
-def _label(array: xr.DataArray, unit: str) -> str:
-    name = str(array.name)
-    text = _WORDS.get(name) or printable(str(array.attrs.get("long_name") or name))
-    return _with_unit(_name_of(name) if "." in name else text, unit)
+def _labelled(name: str, attrs: Mapping[Any, Any], *values: Any) -> tuple[float, str]:
+    """Factor for the values of a quantity, and its name in words with the unit that they have."""
+    factor, unit = _scale(attrs.get("units", ""), *values)
+    text = _WORDS.get(name) or printable(str(attrs.get("long_name") or name.replace("_", " ")))
+    return factor, _with_unit(_name_of(name) if "." in name else text, unit)
 
 
 def _number(value: float) -> str:
@@ -607,14 +603,6 @@ def _number(value: float) -> str:
     raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     digits = f"{float(digits):g}·"
     return f"{'' if digits == '1·' else digits}10{raised}"
-
-
-def _panel_label(name: str, unit: str, values: Floats) -> tuple[float, str]:
-    """Factor for the values of a quantity, and its name in words with the unit that they have."""
-    column = _library.columns(0).get(name)
-    text = _WORDS.get(name) or (column.meaning if column else name.replace("_", " "))
-    factor, unit = _scale(column.unit if column else unit, values)
-    return factor, _with_unit(text, unit)
 
 
 def _is_geometric(values: Floats) -> bool:

@@ -166,7 +166,7 @@ class Uncertainty:
 
     def figure(self, quantity: str = "cor") -> Any:
         """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
-        from .plot import COLUMN, _name_of, _panel_label, drawn
+        from .plot import COLUMN, _labelled, _name_of, drawn
 
         row = self.table.sel(quantity=quantity)
         below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
@@ -175,7 +175,8 @@ class Uncertainty:
             joint = f"{row.parameter.size - row.source.size + 1} parameters together"
             names = [_name_of(str(name)) if "." in str(name) else joint
                      for name in row.source.values[order]]  # fmt: skip
-            factor, label = _panel_label(quantity, "", row["value"].values)
+            attrs = _library.columns(0)[quantity].attrs
+            factor, label = _labelled(quantity, attrs, row["value"].values)
             for color, side, text in (
                 ("0.75", below[order], "− one standard deviation"),
                 ("C1", above[order], "+ one"),
@@ -187,7 +188,8 @@ class Uncertainty:
             axis.tick_params(axis="y", length=0)
             axis.tick_params(axis="x", top=False)
             axis.locator_params(axis="x", nbins=4)
-            made.legend(loc="outside upper center", ncols=2)
+            # where Matplotlib 3.6 can have it, too
+            axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncol=2)
         return made
 
 
