@@ -65,12 +65,12 @@ class Column(NamedTuple):
     symbol: str
     unit: str
     meaning: str
-    #: Words that the numbers stand for, empty for numbers
-    labels: tuple[str, ...]
+    #: Words that the numbers stand for, between blanks; empty for numbers
+    labels: str
     #: Number of the first word
     first: int
     #: Whether the numbers are whole
-    is_whole: bool = False
+    is_whole: int
 
     @property
     def attrs(self) -> dict[str, str]:
@@ -81,13 +81,13 @@ class Column(NamedTuple):
     def value(self, number: float) -> float | str:
         """One value as it is shown."""
         if self.labels:
-            return self.labels[int(number) - self.first]
+            return self.labels.split()[int(number) - self.first]
         return int(number) if self.is_whole else number
 
     def values(self, numbers: Floats) -> NDArray[Any]:
         """Values as they are shown: numbers, or the words that they stand for."""
         if self.labels:
-            words: NDArray[Any] = np.array(self.labels)[numbers.astype(int) - self.first]
+            words: NDArray[Any] = np.array(self.labels.split())[numbers.astype(int) - self.first]
             return words
         return numbers.astype(np.int64) if self.is_whole else numbers
 
@@ -108,11 +108,8 @@ class ColumnStruct(Structure):
     @property
     def column(self) -> Column:
         """The same in words of Python."""
-        name, symbol, unit, meaning, labels = (
-            getattr(self, key).decode() for key in ("name", "symbol", "unit", "meaning", "labels")
-        )
-        whole = bool(self.is_whole)
-        return Column(name, symbol, unit, meaning, tuple(labels.split()), self.first, whole)
+        values = (getattr(self, key) for key in Column._fields)
+        return Column._make(one.decode() if isinstance(one, bytes) else one for one in values)
 
 
 def _find_library() -> Path:

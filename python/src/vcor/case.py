@@ -102,8 +102,8 @@ class Case:
                              "reads a file")  # fmt: skip
         text = source if source is None or isinstance(source, str) else _namelists(source)
         self.name = name
-        self._case = c_void_p()
-        call("vcor_read", text, os.fsencode(name), byref(self._case))
+        self._pointer = c_void_p()
+        call("vcor_read", text, os.fsencode(name), byref(self._pointer))
         if text is None:
             text = Path(name).read_text(encoding="utf-8", errors="surrogateescape")
         self._text = text
@@ -111,13 +111,13 @@ class Case:
         self._numbers: dict[str, float] = {}
 
     def __del__(self) -> None:
-        if getattr(self, "_case", None):
-            _library.free_case(self._case)
+        if getattr(self, "_pointer", None):
+            _library.free_case(self._pointer)
 
     def __setitem__(self, address: str, value: Value) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         written = _written(value) if not isinstance(value, str) else value
-        call("vcor_set", self._case, address, written)
+        call("vcor_set", self._pointer, address, written)
         self._settings[address] = written
         self._numbers.pop(address, None)
         if isinstance(value, float):
@@ -125,7 +125,7 @@ class Case:
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""
-        text = _library.text_of("vcor_get", self._case, address)
+        text = _library.text_of("vcor_get", self._pointer, address)
         return None if text is None else _value(text)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -145,7 +145,7 @@ class Case:
 
     def text(self, *, complete: bool = False) -> str:
         """The case as namelists, with `complete` also every default; the case is checked."""
-        return _library.text_of("vcor_case_text", self._case, int(complete)) or ""
+        return _library.text_of("vcor_case_text", self._pointer, int(complete)) or ""
 
     def save(self, path: str | os.PathLike[str], *, complete: bool = False) -> None:
         """Write the case to a file that the program reads."""
@@ -327,7 +327,7 @@ class Case:
         """
         columns = list(_library.columns(1).values())
         rows, pointer = c_int(), c_void_p()
-        call("vcor_history", self._case, byref(rows), byref(pointer))
+        call("vcor_history", self._pointer, byref(rows), byref(pointer))
         values = _library.take_numbers(pointer, rows.value * len(columns)).reshape(rows.value, -1).T
         variables = {
             column.name: ("time", row, column.attrs)
@@ -354,7 +354,7 @@ class Case:
         columns = _library.columns(2)
         names = ("best", "ive", "direct", "digits")
         values = np.empty((len(columns), len(names)))
-        call("vcor_verify", self._case, values)
+        call("vcor_verify", self._pointer, values)
         return xr.Dataset(
             {name: ("quantity", values[:, i]) for i, name in enumerate(names)},
             coords={
@@ -367,7 +367,7 @@ class Case:
     def _describe(self, address: str) -> _library.Column:
         """Path, unit and meaning of an address."""
         struct = _library.ColumnStruct()
-        call("vcor_describe", self._case, address, byref(struct))
+        call("vcor_describe", self._pointer, address, byref(struct))
         return struct.column
 
     def _axes(self) -> dict[str, Floats]:
@@ -375,7 +375,7 @@ class Case:
         axes: dict[str, Floats] = {}
         struct, n, values = _library.ColumnStruct(), c_int(), c_void_p()
         while True:
-            call("vcor_axis", self._case, len(axes), byref(struct), byref(n), byref(values))
+            call("vcor_axis", self._pointer, len(axes), byref(struct), byref(n), byref(values))
             if not values:
                 return axes
             axes[struct.column.name] = _library.take_numbers(values, n.value)
@@ -386,7 +386,7 @@ class Case:
         """Columns of points, shape (points, names), and a remark on points without a result."""
         results, values = np.empty((len(values), len(names))), np.ascontiguousarray(values)
         given, wanted = (_library.texts(tuple(words)) for words in (addresses, names))
-        remark = call("vcor_solve", self._case, len(addresses), given, len(values), values,
+        remark = call("vcor_solve", self._pointer, len(addresses), given, len(values), values,
                       len(names), wanted, results, threads)  # fmt: skip
         return results, remark
 
@@ -484,20 +484,21 @@ class Material:
         """Relaxation modulus E(t) [Pa] at times >= 0 [s], in their shape."""
         t = np.asarray(times, dtype=float)
         moduli = np.empty(t.size)
-        call("vcor_relaxation", self._case._case, self.name, t.size, t.ravel(), moduli)
+        call("vcor_relaxation", self._case._pointer, self.name, t.size, t.ravel(), moduli)
         return moduli.reshape(t.shape)
 
     def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
         """Complex modulus E' + i E'' [Pa] at angular frequencies >= 0 [rad/s], in their shape."""
         w = np.asarray(frequencies, dtype=float)
         storage, loss = np.empty(w.size), np.empty(w.size)
-        call("vcor_complex_modulus", self._case._case, self.name, w.size, w.ravel(), storage, loss)
+        given = self._case._pointer, self.name, w.size, w.ravel()
+        call("vcor_complex_modulus", *given, storage, loss)
         return (storage + 1j * loss).reshape(w.shape)
 
     def time_factor(self) -> float:
         """Shift factor a_T at `impact.temperature` [1]; 1 for a material without a shift."""
         factor = c_double()
-        call("vcor_time_factor", self._case._case, self.name, byref(factor))
+        call("vcor_time_factor", self._case._pointer, self.name, byref(factor))
         return factor.value
 
 
