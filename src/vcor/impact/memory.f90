@@ -19,7 +19,6 @@ module vcor_impact_memory
    use vcor_material_transform, only : transform_t
    use vcor_material_type, only : material_t
    use vcor_numeric_elliptic, only : branch_rule
-   use vcor_numeric_interlacing, only : zeros_between_poles
    implicit none
    private
 
@@ -29,14 +28,12 @@ module vcor_impact_memory
    !> pole i and pole i + 1, pole 1 = 0 being none of Q_b; with a dashpot there is one beyond the
    !> last pole
    type :: gaps_t
-      !> Poles [1/s]
-      real(wp), allocatable :: pole(:)
+      !> Poles d [1/s], and their weights w in Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)) [Pa]
+      real(wp), allocatable :: pole(:), weight(:)
       !> Number of the pole that each zero is counted from
       integer, allocatable :: near(:)
       !> Distance of the zero from it [1/s]
       real(wp), allocatable :: offset(:)
-      !> Q_b over the product of the distances from zeros and poles
-      real(wp) :: scale = 0.0_wp
    end type gaps_t
 
    !> Velocity of the plate per force as a modulus [m/(N s)], [m/(N s2)] in time
@@ -81,35 +78,19 @@ contains
          self%viscosity = coefficient/sqrt(modulus)
    end subroutine new_memory
 
-   !> Find zeros and poles: Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)), with the equilibrium
-   !> modulus at d = 0
+   !> Find zeros and poles
    pure subroutine find_gaps(gaps, material)
       !> Zeros and poles
       type(gaps_t), intent(out) :: gaps
       type(exponential_sum_t), intent(in) :: material
 
-      real(wp), allocatable :: weight(:)
-      integer :: zeros
-
-      call sort(material, gaps%pole, weight)
-      if (material%equilibrium > 0.0_wp) then
-         gaps%pole = [0.0_wp, gaps%pole]
-         weight = [material%equilibrium, weight]
-      end if
-      zeros = size(gaps%pole) - 1
-      gaps%scale = material%equilibrium + sum(material%moduli)
-      if (material%viscosity > 0.0_wp) then
-         zeros = size(gaps%pole)
-         gaps%scale = material%viscosity
-      end if
-      allocate (gaps%near(zeros), gaps%offset(zeros))
-      call zeros_between_poles(gaps%pole, weight, material%viscosity, gaps%near, gaps%offset)
-      if (.not. material%equilibrium > 0.0_wp) then
-         ! the factor l is a zero at 0
-         gaps%near = [1, gaps%near + 1]
-         gaps%offset = [0.0_wp, gaps%offset]
-         gaps%pole = [0.0_wp, gaps%pole]
-      end if
+      call material%find_zeros(gaps%pole, gaps%weight, gaps%near, gaps%offset)
+      if (material%equilibrium > 0.0_wp) return
+      ! the factor l is a zero at 0
+      gaps%near = [1, gaps%near + 1]
+      gaps%offset = [0.0_wp, gaps%offset]
+      gaps%pole = [0.0_wp, gaps%pole]
+      gaps%weight = [0.0_wp, gaps%weight]
    end subroutine find_gaps
 
    !> A s/sqrt(Q_b(s)), on the branch that is positive for s > 0
@@ -294,7 +275,8 @@ contains
 
    contains
 
-      !> w(l) at l = z_i + x = b_i - y, by the zeros and poles of Q_b
+      !> w(l) at l = z_i + x = b_i - y. As Q_b(-z_i) is 0,
+      !> -Q_b(-l) = x (viscosity + sum w_j d_j/((d_j - z_i) (d_j - l))): all terms are positive
       pure function density(i, x, y) result(w)
          !> Number of the zero
          integer, intent(in) :: i
@@ -305,48 +287,14 @@ contains
          !> Density
          real(wp) :: w
 
-         real(wp) :: root, from
-         integer :: j
+         real(wp), dimension(2:n + 1) :: from_zero, from
 
-         root = gaps%scale
-         do j = 1, zeros
-            from = x
-            if (j /= i) from = x + ((gaps%pole(gaps%near(i)) - gaps%pole(gaps%near(j))) &
-               + (gaps%offset(i) - gaps%offset(j)))
-            root = root*abs(from)
-            ! factor by factor the product stays in range
-            if (j > n) cycle
-            from = y
-            if (j /= i) from = x + ((gaps%pole(gaps%near(i)) - gaps%pole(j + 1)) + gaps%offset(i))
-            root = root/abs(from)
-         end do
-         w = self%coefficient/(pi*sqrt(root))
+         from_zero = (gaps%pole(2:) - gaps%pole(gaps%near(i))) - gaps%offset(i)
+         from = from_zero - x
+         if (i <= n) from(i + 1) = y
+         w = self%coefficient/(pi*sqrt(x*(self%material%viscosity &
+            + sum(gaps%weight(2:)*gaps%pole(2:)/(from_zero*from)))))
       end function density
    end subroutine sum_over_gaps
-
-   !> Rates in increasing order, those that are the same but for rounding taken together
-   pure subroutine sort(material, pole, weight)
-      type(exponential_sum_t), intent(in) :: material
-      !> Rates [1/s]
-      real(wp), allocatable, intent(out) :: pole(:)
-      !> Their moduli [Pa]
-      real(wp), allocatable, intent(out) :: weight(:)
-
-      real(wp), parameter :: same = 1.0e-13_wp
-      integer :: i, k
-
-      allocate (pole(0), weight(0))
-      do k = 1, size(material%rates)
-         i = 1 + count(pole < material%rates(k)*(1.0_wp - same))
-         if (i <= size(pole)) then
-            if (pole(i) <= material%rates(k)*(1.0_wp + same)) then
-               weight(i) = weight(i) + material%moduli(k)
-               cycle
-            end if
-         end if
-         pole = [pole(:i - 1), material%rates(k), pole(i:)]
-         weight = [weight(:i - 1), material%moduli(k), weight(i:)]
-      end do
-   end subroutine sort
 
 end module vcor_impact_memory

@@ -2,10 +2,14 @@
 !> internal variables
 module vcor_material_exponential_sum
    use vcor_kinds, only : wp
+   use vcor_numeric_interlacing, only : zeros_between_poles
    implicit none
    private
 
-   public :: exponential_sum_t
+   public :: exponential_sum_t, same_rate
+
+   !> Relative difference of rates that are the same but for rounding
+   real(wp), parameter :: same_rate = 1.0e-13_wp
 
    !> E(t) = equilibrium + sum_k moduli(k) exp(-rates(k) t) + viscosity delta(t),
    !> Eq. (17) of Green's paper with a dashpot beside the Maxwell elements
@@ -28,6 +32,7 @@ module vcor_material_exponential_sum
       procedure :: variables
       procedure :: integral
       procedure :: complex_modulus
+      procedure :: find_zeros
    end type exponential_sum_t
 
 contains
@@ -80,5 +85,44 @@ contains
 
       modulus = self%equilibrium + self%viscosity*s + sum(self%moduli*(s/(s + self%rates)))
    end function complex_modulus
+
+   !> Poles and zeros of the complex modulus at s = -x, -x (viscosity + sum w_j/(d_j - x)) with the
+   !> equilibrium modulus at d = 0: each zero lies between two poles, with a dashpot one more beyond
+   !> the last one. Pairs are left out
+   pure subroutine find_zeros(self, pole, weight, near, offset)
+      class(exponential_sum_t), intent(in) :: self
+      !> Poles d [1/s], increasing: 0 where there is an equilibrium modulus, and the rates, equal
+      !> ones but for rounding as one
+      real(wp), allocatable, intent(out) :: pole(:)
+      !> Weights w: their moduli [Pa]
+      real(wp), allocatable, intent(out) :: weight(:)
+      !> Number of the pole that each zero is counted from
+      integer, allocatable, intent(out) :: near(:)
+      !> Distance of the zero from it [1/s]
+      real(wp), allocatable, intent(out) :: offset(:)
+
+      integer :: i, k, zeros
+
+      allocate (pole(0), weight(0))
+      do k = 1, size(self%rates)
+         i = 1 + count(pole < self%rates(k)*(1.0_wp - same_rate))
+         if (i <= size(pole)) then
+            if (pole(i) <= self%rates(k)*(1.0_wp + same_rate)) then
+               weight(i) = weight(i) + self%moduli(k)
+               cycle
+            end if
+         end if
+         pole = [pole(:i - 1), self%rates(k), pole(i:)]
+         weight = [weight(:i - 1), self%moduli(k), weight(i:)]
+      end do
+      if (self%equilibrium > 0.0_wp) then
+         pole = [0.0_wp, pole]
+         weight = [self%equilibrium, weight]
+      end if
+      zeros = size(pole)
+      if (.not. self%viscosity > 0.0_wp) zeros = zeros - 1
+      allocate (near(zeros), offset(zeros))
+      call zeros_between_poles(pole, weight, self%viscosity, near, offset)
+   end subroutine find_zeros
 
 end module vcor_material_exponential_sum

@@ -11,12 +11,11 @@ module vcor_material_in_series
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
+   use vcor_material_exponential_sum, only : exponential_sum_t, same_rate
    use vcor_material_prony, only : new_prony, prony_t
    use vcor_material_spectrum, only : sum_of_resolved_spectrum
    use vcor_material_transform, only : transform_t
    use vcor_material_type, only : material_t
-   use vcor_numeric_interlacing, only : zeros_between_poles
    implicit none
    private
 
@@ -116,39 +115,33 @@ contains
 
       ! moduli of terms that nothing can feel, over the glassy modulus
       real(wp), parameter :: nothing = 1.0e-30_wp
-      real(wp), dimension(size(a%rates) + size(b%rates) + 1) :: pole, of_a, of_b, rate, modulus
-      real(wp), dimension(size(a%rates) + size(b%rates) + 1) :: offset, distance
-      integer :: near(size(pole)), n, k, zeros
-      real(wp) :: viscosity, part_a, part_b, slope
-      logical :: kept(size(pole))
+      type(exponential_sum_t) :: both
+      real(wp), allocatable :: pole(:), weight(:), offset(:), of_a(:), of_b(:), distance(:)
+      integer, allocatable :: near(:)
+      real(wp), dimension(size(a%rates) + size(b%rates) + 1) :: rate, modulus
+      real(wp) :: part_a, part_b
+      logical :: kept(size(rate))
+      integer :: k, zeros
 
-      ! -P(-x)/x = viscosity + sum E_j/(d_j - x), with the equilibrium modulus at d = 0
-      n = 0
-      if (a%equilibrium + b%equilibrium > 0.0_wp) &
-         call insert(0.0_wp, a%equilibrium, b%equilibrium, pole, of_a, of_b, n)
-      do k = 1, size(a%rates)
-         call insert(a%rates(k), a%moduli(k), 0.0_wp, pole, of_a, of_b, n)
-      end do
-      do k = 1, size(b%rates)
-         call insert(b%rates(k), 0.0_wp, b%moduli(k), pole, of_a, of_b, n)
-      end do
-      viscosity = a%viscosity + b%viscosity
-      zeros = n
-      if (.not. viscosity > 0.0_wp) zeros = n - 1
-      call zeros_between_poles(pole(:n), of_a(:n) + of_b(:n), viscosity, near(:zeros), &
-         offset(:zeros))
+      both%equilibrium = a%equilibrium + b%equilibrium
+      both%rates = [a%rates, b%rates]
+      both%moduli = [a%moduli, b%moduli]
+      both%viscosity = a%viscosity + b%viscosity
+      call both%find_zeros(pole, weight, near, offset)
+      of_a = moduli_at(a, pole)
+      of_b = moduli_at(b, pole)
 
+      zeros = size(near)
       do k = 1, zeros
          rate(k) = pole(near(k)) + offset(k)
-         distance(:n) = (pole(:n) - pole(near(k))) - offset(k)
+         distance = (pole - pole(near(k))) - offset(k)
          ! Q_a = -Q_b = -l part: where the two parts differ by rounding, the smaller one is right
-         part_a = a%viscosity + sum(of_a(:n)/distance(:n))
-         part_b = b%viscosity + sum(of_b(:n)/distance(:n))
-         slope = sum((of_a(:n) + of_b(:n))/distance(:n)**2)
-         modulus(k) = min(part_a**2, part_b**2)/slope
+         part_a = a%viscosity + sum(of_a/distance)
+         part_b = b%viscosity + sum(of_b/distance)
+         modulus(k) = min(part_a**2, part_b**2)/sum(weight/distance**2)
       end do
       ! a rate that both have stays one
-      do k = 1, n
+      do k = 1, size(pole)
          if (.not. (pole(k) > 0.0_wp .and. min(of_a(k), of_b(k)) > 0.0_wp)) cycle
          zeros = zeros + 1
          rate(zeros) = pole(k)
@@ -158,46 +151,24 @@ contains
       call new_prony(prony, in_series(a%equilibrium, b%equilibrium), &
          pack(modulus(:zeros), kept(:zeros)), pack(rate(:zeros), kept(:zeros)), &
          in_series(a%viscosity, b%viscosity), error)
-
    end subroutine combine
 
-   !> Insert a rate where it belongs
-   pure subroutine insert(l, e_a, e_b, pole, of_a, of_b, n)
-      !> Rate [1/s]
-      real(wp), intent(in) :: l
-      !> Modulus of the first material [Pa]
-      real(wp), intent(in) :: e_a
-      !> Modulus of the second material [Pa]
-      real(wp), intent(in) :: e_b
-      !> Rates, increasing, shape (> n)
-      real(wp), intent(inout) :: pole(:)
-      !> Moduli of the first material
-      real(wp), intent(inout) :: of_a(:)
-      !> Moduli of the second material
-      real(wp), intent(inout) :: of_b(:)
-      !> Number of rates
-      integer, intent(inout) :: n
+   !> Moduli of a series at given rates, its equilibrium modulus at 0
+   pure function moduli_at(series, rates) result(moduli)
+      type(exponential_sum_t), intent(in) :: series
+      !> Rates [1/s], shape (n)
+      real(wp), intent(in) :: rates(:)
+      !> Moduli [Pa], 0 for a rate that the series has not, shape (n)
+      real(wp) :: moduli(size(rates))
 
-      ! rates that are the same but for rounding
-      real(wp), parameter :: same = 1.0e-13_wp
-      integer :: i
+      integer :: k
 
-      i = 1 + count(pole(:n) < l*(1.0_wp - same))
-      if (i <= n) then
-         if (pole(i) <= l*(1.0_wp + same)) then
-            of_a(i) = of_a(i) + e_a
-            of_b(i) = of_b(i) + e_b
-            return
-         end if
-      end if
-      pole(i + 1:n + 1) = pole(i:n)
-      of_a(i + 1:n + 1) = of_a(i:n)
-      of_b(i + 1:n + 1) = of_b(i:n)
-      pole(i) = l
-      of_a(i) = e_a
-      of_b(i) = e_b
-      n = n + 1
-   end subroutine insert
+      do k = 1, size(rates)
+         moduli(k) = sum(series%moduli, &
+            mask=abs(series%rates - rates(k)) <= same_rate*rates(k))
+         if (.not. rates(k) > 0.0_wp) moduli(k) = series%equilibrium
+      end do
+   end function moduli_at
 
    !> Complex modulus Q_a Q_b/(Q_a + Q_b)
    elemental function complex_modulus(self, s) result(modulus)

@@ -60,8 +60,8 @@ contains
       real(wp), allocatable, intent(out) :: weight(:)
 
       integer, parameter :: most_nodes = 200
-      type(landen_t) :: landen
-      real(wp) :: m, complement, other, wanted, c, more, sn, cn, dn, rest
+      type(landen_t) :: landen, other
+      real(wp) :: m, complement, wanted, c, more, sn, cn, dn, rest
       integer :: j, n
 
       ! modulus m = k^2 of the functions and its complement
@@ -73,18 +73,19 @@ contains
          complement = before/(length + before)
       end if
       call descend(m, complement, landen)
-      other = 0.5_wp*pi/mean(1.0_wp, sqrt(m))
+      call descend(complement, m, other)
       ! a K' = more*wanted, with that of c in it
       wanted = log(2.0_wp/accuracy)
       if (ieee_is_finite(after)) then
-         c = 0.25_wp*time*sqrt((after + length)*(length + before))/(wanted*other)
+         c = 0.25_wp*time*sqrt((after + length)*(length + before))/(wanted*other%quarter)
          more = (sqrt(c) + sqrt(1.0_wp + c))**2
       else
          ! x^3 = 1 + 3 c x^2, to the second order
-         c = (time*(length + before)/(32.0_wp*wanted*other**2))**(1.0_wp/3.0_wp)
+         c = (time*(length + before)/(32.0_wp*wanted*other%quarter**2))**(1.0_wp/3.0_wp)
          more = (1.0_wp + c*(1.0_wp + c))**3
       end if
-      n = min(most_nodes, ceiling(min(more, 2.0_wp)*wanted*landen%quarter/(2.0_wp*pi*other)))
+      n = min(most_nodes, ceiling(min(more, 2.0_wp)*wanted*landen%quarter &
+         /(2.0_wp*pi*other%quarter)))
       allocate (from_lower(n), to_upper(n), weight(n))
       do j = 1, n
          call jacobi(landen, (real(j, wp) - 0.5_wp)/real(n, wp), sn, cn, dn)
@@ -95,30 +96,6 @@ contains
             /((before + length)*rest**2)
       end do
    end subroutine branch_rule
-
-   !> Arithmetic-geometric mean
-   pure function mean(a, b)
-      !> One number, > 0
-      real(wp), intent(in) :: a
-      !> The other number, > 0
-      real(wp), intent(in) :: b
-      !> Their mean
-      real(wp) :: mean
-
-      ! the number of nodes follows from it, nothing else
-      real(wp), parameter :: enough = 1.0e-8_wp
-      real(wp) :: other, next
-      integer :: i
-
-      mean = a
-      other = b
-      do i = 1, 40
-         next = 0.5_wp*(mean + other)
-         other = sqrt(mean*other)
-         mean = next
-         if (abs(mean - other) <= enough*mean) exit
-      end do
-   end function mean
 
    !> Descending Landen transformation: M. Abramowitz and I. A. Stegun, Handbook of Mathematical
    !> Functions (1964), 16.12 and 17.6
