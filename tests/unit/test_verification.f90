@@ -13,7 +13,7 @@ program test_verification
    use vcor_verify, only : build_law, evaluate_law, law_count
    use vcor_verify_comparison, only : compare
    use vcor_verify_judge, only : is_honest, judge_ends, judge_numbers
-   use vcor_verify_law, only : judge, law_t, row_t, second_cor, verdict_t
+   use vcor_verify_law, only : judge, law_t, row_t, verdict_t
    use vcor_verify_solutions, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
       comparison_t
    use vcor_verify_strike, only : elastic, sls, strike_t
@@ -118,7 +118,7 @@ contains
       type(verdict_t) :: verdict
 
       row = row_of(0.0_wp, 1.0e-3_wp)
-      row%expectation => second_cor
+      row%twin = 2
       verdict = judge(row, 1, [outcome_of(0.5_wp), outcome_of(0.5004_wp)])
       call check(verdict%passed, "a pair that agrees passes")
       call check_close(verdict%expected, 0.5004_wp, 0.0_wp, "the second one is expected")
@@ -218,7 +218,7 @@ contains
       call law%add_row("glue", 0.0_wp, more=1.0_wp, reason="any number would do")
       call law%add_row("glue again", 0.0_wp, more=1.0_wp)
       call law%add_check([rebound, glue], ive_only=.true.)
-      call law%add_row("pair", more=1.0_wp, expectation=second_cor)
+      call law%add_row("pair", more=1.0_wp, twin=2)
       call law%add_check([strike_t(elastic(-1.0_wp))], ive_only=.true.)
       call law%add_row("no material", 0.0_wp, more=1.0_wp)
       call evaluate_law(law, verdicts)

@@ -55,7 +55,7 @@ contains
       call law%add_row('static contact time / T', hertz_duration, 0.0_wp, 1.0e-5_wp, square, &
          measure=static_duration)
       call law%add_row('cor_sphere, thick: half space', times=0.0_wp, more=1.0e-7_wp, &
-         reason='accuracies of the two', measure=first_sphere, expectation=last_sphere)
+         reason='accuracies of the two', quantity='cor_sphere', twin=size(strikes))
    end subroutine thick_body
 
    !> Energy of the waves, which is all that the sphere loses, over that of first order, its growth
@@ -149,7 +149,7 @@ contains
       end do
       call law%add_check(plates, ive_only=.true.)
       call law%add_row('cor_sphere, elastic: constant', times=0.0_wp, more=left, reason=why, &
-         measure=second_sphere, expectation=last_sphere)
+         quantity='cor_sphere', subject=2, twin=size(plates))
       call law%add_row('x ln(1/x) of it, elastic', a_elastic, 0.0_wp, left_of_a, why_a, &
          measure=approach)
       do i = 1, 2
@@ -159,7 +159,7 @@ contains
       plates(3:)%waves = waves_hereditary
       call law%add_check(plates, ive_only=.true.)
       call law%add_row('cor_sphere, SLS: hereditary', times=0.0_wp, more=left, reason=why, &
-         measure=second_sphere, expectation=last_sphere)
+         quantity='cor_sphere', subject=2, twin=size(plates))
       call law%add_row('x ln(1/x) of it, SLS', a_sls, 0.0_wp, left_of_a, why_a, measure=approach)
    end subroutine thin_body
 
@@ -183,29 +183,5 @@ contains
          rate = (off(2) - off(1))/log(x(1)/x(2))
       end associate
    end function approach
-
-   !> cor_sphere of the first outcome
-   pure function first_sphere(outcomes) result(cor)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: cor
-
-      cor = outcomes(1)%cor_sphere
-   end function first_sphere
-
-   !> cor_sphere of the second outcome
-   pure function second_sphere(outcomes) result(cor)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: cor
-
-      cor = outcomes(2)%cor_sphere
-   end function second_sphere
-
-   !> cor_sphere of the last outcome
-   pure function last_sphere(outcomes) result(cor)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: cor
-
-      cor = outcomes(size(outcomes))%cor_sphere
-   end function last_sphere
 
 end module vcor_verify_body

@@ -5,7 +5,7 @@ module vcor_verify_closed_forms
    use vcor_impact_plate, only : waves_constant, waves_relaxing
    use vcor_kinds, only : wp
    use vcor_material, only : material_data_t
-   use vcor_verify_law, only : law_t, others_follow, second_cor
+   use vcor_verify_law, only : law_t, others_follow
    use vcor_verify_strike, only : elastic, hertz_duration, sls, strike_t, time_scale, zener_plate
    implicit none
    private
@@ -114,11 +114,11 @@ contains
          [cerf, 0.5_wp, 1.0_wp/beta**2]), waves=waves_relaxing), &
          strike_t(described('cerf', [names(:2), 'beta               '], [cerf, beta]), &
          waves=waves_relaxing)])
-      call law%add_row('cor, exponent 1/2: CERF', times=2.0_wp, reason=why, expectation=second_cor)
+      call law%add_row('cor, exponent 1/2: CERF', times=2.0_wp, reason=why, twin=2)
       call law%add_check([strike_t(described('mittag_leffler', names, &
          [drop*modulus, (1.0_wp - drop)*modulus, 1.0_wp, 1.0_wp/rate]), waves=waves_relaxing), &
          strike_t(sls(modulus, drop*rate, rate), waves=waves_relaxing)])
-      call law%add_row('cor, exponent 1: SLS', times=2.0_wp, reason=why, expectation=second_cor)
+      call law%add_row('cor, exponent 1: SLS', times=2.0_wp, reason=why, twin=2)
    end subroutine mittag_leffler
 
    !> A Maxwell fluid, k exp(-t/tau), that relaxes little within Hertz's contact time t_c. With q
@@ -204,11 +204,11 @@ contains
          call law%add_check([strike_t(data(i), velocity=16.0_wp*velocity, mass=4.0_wp*mass, &
             radius=radius), one])
          call law%add_row('cor, '//data(i)%model//', 4 m and 16 v0', times=0.0_wp, more=rounding, &
-            reason='rounding', expectation=second_cor)
+            reason='rounding', twin=2)
          call law%add_check([strike_t(data(i), velocity=velocity, mass=0.25_wp*mass, &
             radius=radius/16.0_wp), one])
          call law%add_row('cor, '//data(i)%model//', m/4 and R/16', times=0.0_wp, more=rounding, &
-            reason='rounding', expectation=second_cor)
+            reason='rounding', twin=2)
       end do
    end subroutine scaling
 
@@ -229,12 +229,12 @@ contains
       limit = strike_t(elastic(modulus), waves=waves_relaxing)
       call law%add_check([strike_t(sls(modulus, drop*slow, slow), waves=waves_relaxing), limit])
       call law%add_row('cor, beta -> 0', times=2.0_wp, more=slow*contact_time, &
-         reason='accuracies of the two, and beta t0', expectation=second_cor)
+         reason='accuracies of the two, and beta t0', twin=2)
       limit = strike_t(elastic(drop*modulus), waves=waves_relaxing)
       call law%add_check([strike_t(sls(modulus, drop*fast, fast), waves=waves_relaxing), limit])
       call law%add_row('cor, beta -> infinity', times=2.0_wp, &
          more=dashpot/(fast*time_scale(limit, drop*modulus)), &
-         reason='accuracies of the two, and the dashpot that is left', expectation=second_cor)
+         reason='accuracies of the two, and the dashpot that is left', twin=2)
    end subroutine limits
 
    !> A material by the names and values of its parameters

@@ -17,7 +17,7 @@ module vcor_verify_law
    implicit none
    private
 
-   public :: row_t, law_t, verdict_t, judge, evaluate_law, others_follow, second_cor
+   public :: row_t, law_t, verdict_t, judge, evaluate_law, others_follow
 
    !> Why most tolerances are what they are: that of cor ...
    character(len=*), parameter :: as_asked = 'twice what the method is asked for'
@@ -51,12 +51,15 @@ module vcor_verify_law
       real(wp) :: times = 1.0_wp, more = 0.0_wp
       !> Why the tolerance is what it is
       character(len=100) :: reason = as_asked
-      !> What is found: this quantity of the first outcome, in this unit ...
+      !> What is found: this quantity of this outcome, in this unit ...
       character(len=20) :: quantity = 'cor'
+      integer :: subject = 1
       real(wp) :: unit = 1.0_wp
       !> ... or, if there is one, this number made of all outcomes
       procedure(measure_i), pointer, nopass :: measure => null()
-      !> What takes the place of `expected` where the outcomes themselves tell it
+      !> What takes the place of `expected`: the same quantity of another outcome, 0: none ...
+      integer :: twin = 0
+      !> ... or, if there is one, this number made of all outcomes
       procedure(measure_i), pointer, nopass :: expectation => null()
    end type row_t
 
@@ -120,13 +123,14 @@ contains
    end subroutine add_check
 
    !> Append a row to the last check; what is left out has the default of `row_t`
-   subroutine add_row(self, name, expected, times, more, reason, quantity, unit, measure, &
-                      expectation)
+   subroutine add_row(self, name, expected, times, more, reason, quantity, unit, subject, twin, &
+                      measure, expectation)
       class(law_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       real(wp), intent(in), optional :: expected, times, more
       character(len=*), intent(in), optional :: reason, quantity
       real(wp), intent(in), optional :: unit
+      integer, intent(in), optional :: subject, twin
       procedure(measure_i), optional :: measure, expectation
 
       associate (check => self%checks(self%count))
@@ -139,6 +143,8 @@ contains
             if (present(reason)) row%reason = reason
             if (present(quantity)) row%quantity = quantity
             if (present(unit)) row%unit = unit
+            if (present(subject)) row%subject = subject
+            if (present(twin)) row%twin = twin
             if (present(measure)) row%measure => measure
             if (present(expectation)) row%expectation => expectation
          end associate
@@ -212,9 +218,10 @@ contains
       if (associated(row%measure)) then
          verdict%found = row%measure(outcomes)
       else
-         verdict%found = quantity_value(outcomes(1), row%quantity)
+         verdict%found = quantity_value(outcomes(row%subject), row%quantity)
          if (ieee_is_finite(verdict%found)) verdict%found = verdict%found/row%unit
       end if
+      if (row%twin > 0) verdict%expected = quantity_value(outcomes(row%twin), row%quantity)
       if (associated(row%expectation)) verdict%expected = row%expectation(outcomes)
       if (.not. ieee_is_finite(verdict%found)) return
       if (.not. ieee_is_finite(verdict%expected)) return
@@ -222,13 +229,5 @@ contains
       if (ieee_is_finite(verdict%tolerance)) &
          verdict%passed = abs(verdict%deviation) <= verdict%tolerance
    end function judge
-
-   !> The expectation of a row about two impacts of one restitution
-   pure function second_cor(outcomes) result(cor)
-      type(outcome_t), intent(in) :: outcomes(:)
-      real(wp) :: cor
-
-      cor = outcomes(2)%cor
-   end function second_cor
 
 end module vcor_verify_law
