@@ -56,7 +56,6 @@ module vcor_impact_plate
       procedure :: alpha_at
       procedure :: alpha_after
       procedure :: alpha_rate
-      procedure :: alpha_and_rate
       procedure :: frozen
       procedure :: layered
       procedure :: is_sheet
@@ -358,7 +357,7 @@ contains
       if (self%layered()) c = self%layer%instant(self%footprint)
    end function instant
 
-   !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b)
+   !> Rate of the plate parameter: alpha' = -alpha E_b'/(2 E_b), with 1/E_b = (alpha/coefficient)^2
    elemental function alpha_rate(self, t, alpha) result(value)
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
@@ -368,38 +367,16 @@ contains
       !> Rate [m/(N s^2)], >= 0
       real(wp) :: value
 
-      real(wp) :: other
+      real(wp) :: known
 
-      if (.not. allocated(self%material)) then
-         value = 0.0_wp
-      else if (present(alpha)) then
-         ! 1/E_b = (alpha/coefficient)^2
-         value = -0.5_wp*alpha*(self%material%rate(t)*(alpha/self%coefficient)**2)
+      value = 0.0_wp
+      if (.not. allocated(self%material)) return
+      if (present(alpha)) then
+         known = alpha
       else
-         call self%alpha_and_rate(t, other, value)
+         known = self%alpha(t)
       end if
+      value = -0.5_wp*known*(self%material%rate(t)*(known/self%coefficient)**2)
    end function alpha_rate
-
-   !> Plate parameter and its rate
-   elemental subroutine alpha_and_rate(self, t, alpha, rate)
-      class(plate_t), intent(in) :: self
-      !> Time since first contact [s], t > 0
-      real(wp), intent(in) :: t
-      !> Deflection per impulse [m/(N s)]
-      real(wp), intent(out) :: alpha
-      !> Its rate [m/(N s^2)], >= 0
-      real(wp), intent(out) :: rate
-
-      real(wp) :: inverse
-
-      if (allocated(self%material)) then
-         inverse = 1.0_wp/max(self%material%relaxation(t), least)
-         alpha = self%coefficient*sqrt(inverse)
-         rate = -0.5_wp*alpha*self%material%rate(t)*inverse
-      else
-         alpha = self%initial
-         rate = 0.0_wp
-      end if
-   end subroutine alpha_and_rate
 
 end module vcor_impact_plate

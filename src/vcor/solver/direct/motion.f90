@@ -131,7 +131,8 @@ contains
       last_alpha = self%alpha
       self%rates = [self%alpha_rate, self%rates(1)]
       if (n == 1 .and. self%smooth) self%rates(1) = impact%plate%alpha_rate(0.0_wp)
-      call impact%plate%alpha_and_rate(self%t, self%alpha, self%alpha_rate)
+      self%alpha = impact%plate%alpha(self%t)
+      self%alpha_rate = impact%plate%alpha_rate(self%t, self%alpha)
       if (self%layered) self%alpha = self%memory%newest
       response = self%alpha
       if (.not. self%layered) response = response + self%dt*self%memory%newest

@@ -329,7 +329,8 @@ contains
       integer :: p
 
       associate (dt => run%dt, share => run%share, force => run%force(1))
-         call impact%plate%alpha_and_rate(dt*real(n, wp), alpha, alpha_rate)
+         alpha = impact%plate%alpha(dt*real(n, wp))
+         alpha_rate = impact%plate%alpha_rate(dt*real(n, wp), alpha)
          run%damping = alpha*impact%law%slope(run%s)
          run%impulse = run%impulse + dt*(share*force + (1.0_wp - share)*run%force(2))
          if (impact%plate%frozen()) then
