@@ -30,6 +30,7 @@ module vcor_material_exponential_sum
    contains
       procedure :: scale
       procedure :: variables
+      procedure :: value
       procedure :: integral
       procedure :: complex_modulus
       procedure :: find_zeros
@@ -59,24 +60,39 @@ contains
       self%viscosity = factor*self%viscosity
    end subroutine scale
 
+   !> Value at t > 0; pairs are left out
+   elemental function value(self, t) result(modulus)
+      class(exponential_sum_t), intent(in) :: self
+      !> Time [s], >= 0
+      real(wp), intent(in) :: t
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium + sum(self%moduli*exp(-self%rates*t))
+   end function value
+
    !> Integral from 0 to t, dashpot included
-   pure function integral(self, t) result(value)
+   elemental function integral(self, t) result(value)
       class(exponential_sum_t), intent(in) :: self
       !> Upper limit [s], >= 0
       real(wp), intent(in) :: t
       !> Integral [Pa s]
       real(wp) :: value
 
-      real(wp) :: half(size(self%rates))
+      real(wp) :: half, relaxed
+      integer :: k
 
       ! 1 - exp(-l t) = 2 h/(1 + h), h = tanh(l t/2), to all digits where l t is small
-      half = tanh(0.5_wp*self%rates*t)
-      value = self%viscosity + self%equilibrium*t &
-         + sum(self%moduli/self%rates*(2.0_wp*half/(1.0_wp + half)))
+      relaxed = 0.0_wp
+      do k = 1, size(self%rates)
+         half = tanh(0.5_wp*self%rates(k)*t)
+         relaxed = relaxed + self%moduli(k)/self%rates(k)*(2.0_wp*half/(1.0_wp + half))
+      end do
+      value = self%viscosity + self%equilibrium*t + relaxed
    end function integral
 
    !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s; pairs are left out
-   pure function complex_modulus(self, s) result(modulus)
+   elemental function complex_modulus(self, s) result(modulus)
       class(exponential_sum_t), intent(in) :: self
       !> Laplace variable [1/s], not at -l_k
       complex(wp), intent(in) :: s

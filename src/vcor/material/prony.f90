@@ -42,12 +42,8 @@ module vcor_material_prony
    !> E(t) = E_0 + sum_i E_i exp(-b_i t) + viscosity delta(t), Eqs. (17) and (26)
    type, extends(material_t) :: prony_t
       private
-      !> Equilibrium modulus E_0 [Pa]
-      real(wp) :: equilibrium = 0.0_wp
-      !> Moduli E_i [Pa], shape (n)
-      real(wp), allocatable :: moduli(:)
-      !> Rates b_i = 1/tau_i [1/s], shape (n)
-      real(wp), allocatable :: rates(:)
+      !> The series without its dashpot
+      type(exponential_sum_t) :: terms
    contains
       procedure :: relaxation
       procedure :: relaxation_at
@@ -90,9 +86,9 @@ contains
       end if
       if (allocated(error)) return
 
-      self%equilibrium = equilibrium
-      allocate (self%moduli, source=moduli)
-      allocate (self%rates, source=rates)
+      self%terms%equilibrium = equilibrium
+      allocate (self%terms%moduli, source=moduli)
+      allocate (self%terms%rates, source=rates)
       self%viscosity = viscosity
       self%discrete = .true.
    end subroutine new_prony
@@ -146,8 +142,8 @@ contains
       type(prony_t), intent(out) :: self
 
       self%rigid = .true.
-      self%equilibrium = ieee_value(1.0_wp, ieee_positive_inf)
-      allocate (self%moduli(0), self%rates(0))
+      self%terms%equilibrium = ieee_value(1.0_wp, ieee_positive_inf)
+      allocate (self%terms%moduli(0), self%terms%rates(0))
    end subroutine new_rigid
 
    !> Relaxation modulus E(t) for t > 0
@@ -158,12 +154,7 @@ contains
       !> Modulus [Pa]
       real(wp) :: value
 
-      integer :: i
-
-      value = self%equilibrium
-      do i = 1, size(self%moduli)
-         value = value + self%moduli(i)*exp(-self%rates(i)*t)
-      end do
+      value = self%terms%value(t)
    end function relaxation
 
    !> Relaxation modulus E(t) at many times: the exponentials of one term are vector instructions
@@ -177,11 +168,11 @@ contains
       integer :: i, j
 
       do j = 1, size(t)
-         value(j) = self%equilibrium
+         value(j) = self%terms%equilibrium
       end do
-      do i = 1, size(self%moduli)
+      do i = 1, size(self%terms%moduli)
          do j = 1, size(t)
-            value(j) = value(j) + self%moduli(i)*exp(-self%rates(i)*t(j))
+            value(j) = value(j) + self%terms%moduli(i)*exp(-self%terms%rates(i)*t(j))
          end do
       end do
    end subroutine relaxation_at
@@ -194,12 +185,7 @@ contains
       !> Rate [Pa/s], <= 0
       real(wp) :: value
 
-      integer :: i
-
-      value = 0.0_wp
-      do i = 1, size(self%moduli)
-         value = value - self%moduli(i)*self%rates(i)*exp(-self%rates(i)*t)
-      end do
+      value = -sum(self%terms%moduli*self%terms%rates*exp(-self%terms%rates*t))
    end function rate
 
    !> Integral of E from 0 to t: E_0 t + sum E_i (1 - exp(-b_i t))/b_i
@@ -210,27 +196,8 @@ contains
       !> Integral [Pa s]
       real(wp) :: value
 
-      integer :: i
-
-      value = self%equilibrium*t
-      do i = 1, size(self%moduli)
-         value = value - self%moduli(i)*exp_minus_one(-self%rates(i)*t)/self%rates(i)
-      end do
+      value = self%terms%integral(t)
    end function integral
-
-   !> exp(x) - 1 without cancellation: 2 sinh(x/2) exp(x/2)
-   elemental function exp_minus_one(x) result(y)
-      !> Argument, <= 0
-      real(wp), intent(in) :: x
-      !> exp(x) - 1
-      real(wp) :: y
-
-      if (x < -1.0_wp) then
-         y = exp(x) - 1.0_wp
-      else
-         y = 2.0_wp*sinh(0.5_wp*x)*exp(0.5_wp*x)
-      end if
-   end function exp_minus_one
 
    !> Complex modulus E_0 + sum E_i s/(s + b_i) + viscosity s, Eq. (27)
    elemental function complex_modulus(self, s) result(modulus)
@@ -240,12 +207,7 @@ contains
       !> Complex modulus [Pa]
       complex(wp) :: modulus
 
-      integer :: i
-
-      modulus = self%equilibrium + self%viscosity*s
-      do i = 1, size(self%moduli)
-         modulus = modulus + self%moduli(i)*s/(s + self%rates(i))
-      end do
+      modulus = self%terms%complex_modulus(s) + self%viscosity*s
    end function complex_modulus
 
    !> Glassy modulus E_0 + sum E_i, the dashpot left out
@@ -254,7 +216,7 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%equilibrium + sum(self%moduli)
+      modulus = self%terms%equilibrium + sum(self%terms%moduli)
    end function glassy
 
    !> Rubbery modulus E_0
@@ -263,7 +225,7 @@ contains
       !> Modulus [Pa]
       real(wp) :: modulus
 
-      modulus = self%equilibrium
+      modulus = self%terms%equilibrium
    end function rubbery
 
    !> The series itself, whatever the window and the accuracy
@@ -278,9 +240,7 @@ contains
 
       associate (not_needed => [window, accuracy])
       end associate
-      terms%equilibrium = self%equilibrium
-      allocate (terms%moduli, source=self%moduli)
-      allocate (terms%rates, source=self%rates)
+      terms = self%terms
       terms%viscosity = self%viscosity
    end subroutine exponentials
 

@@ -166,19 +166,8 @@ contains
       time = self%first_time*exp([[(0.25_wp*real(i, wp)*step, i=1, 4*n)], self%x])
       self%early_excess = self%terms%integral(self%first_time) &
          - self%first_modulus*self%first_time
-      self%terms%error = maxval(abs(sum_at(self%terms, time)/self%relaxation(time) - 1.0_wp))
+      self%terms%error = maxval(abs(self%terms%value(time)/self%relaxation(time) - 1.0_wp))
    end subroutine set_terms
-
-   !> Value of the sum of exponentials
-   elemental function sum_at(terms, t) result(value)
-      type(exponential_sum_t), intent(in) :: terms
-      !> Time [s], >= 0
-      real(wp), intent(in) :: t
-      !> Modulus [Pa]
-      real(wp) :: value
-
-      value = terms%equilibrium + sum(terms%moduli*exp(-terms%rates*t))
-   end function sum_at
 
    !> y and its slope at x within the data
    elemental subroutine interpolate(self, x, y, slope)
@@ -292,7 +281,7 @@ contains
       !> Complex modulus [Pa]
       complex(wp) :: modulus
 
-      modulus = self%terms%equilibrium + sum(self%terms%moduli*s/(s + self%terms%rates))
+      modulus = self%terms%complex_modulus(s)
    end function complex_modulus
 
    !> Glassy modulus: that of the first point
@@ -330,7 +319,7 @@ contains
       terms = self%terms
       if (size(terms%rates) == 0) return
       terms%error = max(terms%error, &
-         abs(sum_at(terms, 0.5_wp*window)/self%relaxation(0.5_wp*window) - 1.0_wp)) &
+         abs(terms%value(0.5_wp*window)/self%relaxation(0.5_wp*window) - 1.0_wp)) &
          + abs(self%early_excess)/self%integral(window)
    end subroutine exponentials
 
