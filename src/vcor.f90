@@ -30,9 +30,8 @@ module vcor
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_sweep_part, only : new_part
-   use vcor_sweep_points, only : failures_t, solve_points
-   use vcor_sweep_quantity, only : new_summary, summary_t
+   use vcor_sweep_points, only : failures_t, solve_sweep
+   use vcor_sweep_quantity, only : summary_t
    use vcor_sweep_sweep, only : new_sweep, sweep_t
    use vcor_version, only : version
    implicit none
@@ -57,7 +56,7 @@ module vcor
    public :: case_t, read_case, read_case_text, override, read_data
    public :: validate, case_text, problem_t, problem_of_case, material_of_case
    ! sweeps
-   public :: sweep_t, new_sweep, solve_points, new_part, summary_t, new_summary, failures_t
+   public :: sweep_t, new_sweep, solve_sweep, summary_t, failures_t
    ! results
    public :: table_t, summary_table, history_table, write_csv, write_hdf5
    ! identification

@@ -3,19 +3,17 @@
 !> together
 program test_library
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_quiet_nan, ieee_value
-   use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, &
-      contact_modulus_t, contact_resting, contact_separated, contact_sticking, error_file, &
-      error_input, error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, &
-      fit_t, &
+   use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
+      contact_resting, contact_separated, contact_sticking, error_file, error_input, &
+      error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, fit_t, &
       history_table, impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
-      new_part, new_plate, new_power_law, new_prony, new_rigid, new_sls, &
-      new_solver, new_summary, new_sweep, new_tabulated, outcome_t, override, pair_eq1, &
-      pair_series, plate_t, power_law_t, problem_of_case, problem_t, prony_t, read_case, &
-      read_case_text, read_data, samples_t, solve_impact, solve_points, solver_settings_t, &
-      solver_t, summary_t, summary_table, sweep_t, table_t, tabulated_t, trajectory_t, &
-      validate, version, waves_body, waves_constant, waves_frozen, waves_hereditary, waves_none, &
-      waves_relaxing, wp, write_csv, write_hdf5
+      new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
+      new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
+      problem_of_case, problem_t, prony_t, read_case, read_case_text, read_data, samples_t, &
+      solve_impact, solve_sweep, solver_settings_t, solver_t, summary_t, summary_table, sweep_t, &
+      table_t, tabulated_t, trajectory_t, validate, version, waves_body, waves_constant, &
+      waves_frozen, waves_hereditary, waves_none, waves_relaxing, wp, write_csv, write_hdf5
    use vcor_test, only : check, check_close, check_contains, check_relative, finish, suite
    implicit none
 
@@ -305,9 +303,7 @@ contains
       if (.not. allocated(error)) call validate(case, error)
       if (.not. allocated(error)) call new_sweep(sweep, case, error)
       call success(error, "a sweep is built")
-      call new_summary(summary, sweep%grid%count(), error)
-      call success(error, "there is room for its outcomes")
-      call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), 2, summary, failures, error)
+      call solve_sweep(sweep, 2, summary, failures, error)
       call success(error, "its points are solved")
       call check(failures%count == 0, "all points have a result")
       call check(summary%quantities(1)%name == 'cor', "the first quantity is the COR")

@@ -15,12 +15,12 @@ module vcor_sweep_points
    use vcor_sweep_mpi, only : gathered, largest, numbers_of, of_first, rank_count, text_of, &
       this_rank
    use vcor_sweep_part, only : most_threads, new_part, part_t
-   use vcor_sweep_quantity, only : point_pending, summary_t, values_of
+   use vcor_sweep_quantity, only : new_summary, point_pending, summary_t, values_of
    use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
    implicit none
    private
 
-   public :: failure_t, failures_t, solve_points, monitor_t, default_threads, clock
+   public :: failure_t, failures_t, solve_sweep, solve_points, monitor_t, default_threads, clock
 
    !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
    !> and threads wait for each other at its end
@@ -101,6 +101,24 @@ contains
       threads = 1
 !$    threads = min(omp_get_max_threads(), most_threads)
    end function default_threads
+
+   !> Solve all points of a sweep
+   subroutine solve_sweep(sweep, threads, summary, failures, error)
+      type(sweep_t), intent(in) :: sweep
+      !> Threads, > 0; without OpenMP there is one
+      integer, intent(in) :: threads
+      !> Outcomes, each at the number of its point
+      type(summary_t), intent(out) :: summary
+      !> What points have no result and why
+      type(failures_t), intent(out) :: failures
+      !> Error of code `error_file` if there is not enough memory, unallocated on success, with or
+      !> without results
+      type(error_t), allocatable, intent(out) :: error
+
+      call new_summary(summary, sweep%grid%count(), error)
+      if (.not. allocated(error)) call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), &
+         threads, summary, failures, error)
+   end subroutine solve_sweep
 
    !> Solve what is pending of a part of a sweep; all ranks call this
    subroutine solve_points(sweep, part, threads, summary, failures, error, monitor, stopped)
