@@ -52,19 +52,19 @@ module vcor_c_api
    !> `vcor_column`
    type, bind(c) :: c_column_t
       !> Name, or address of what is swept
-      character(kind=c_char) :: name(256)
+      character(kind=c_char) :: name(256) = c_null_char
       !> Symbol of the paper
-      character(kind=c_char) :: symbol(16)
+      character(kind=c_char) :: symbol(16) = c_null_char
       !> Unit
-      character(kind=c_char) :: unit(32)
+      character(kind=c_char) :: unit(32) = c_null_char
       !> What it is
-      character(kind=c_char) :: meaning(128)
+      character(kind=c_char) :: meaning(128) = c_null_char
       !> Words that its numbers stand for
-      character(kind=c_char) :: labels(512)
+      character(kind=c_char) :: labels(512) = c_null_char
       !> Number of the first word
-      integer(c_int) :: first
+      integer(c_int) :: first = 0
       !> 1 if its numbers are whole
-      integer(c_int) :: is_whole
+      integer(c_int) :: is_whole = 0
    end type c_column_t
 
    !> What `vcor_case` points at
@@ -73,14 +73,12 @@ module vcor_c_api
       type(case_t) :: case
       !> What its impacts have in common
       type(sweep_t) :: sweep
-      !> Addresses that `sweep` was built for, a line each; unallocated: it has to be built
-      character(len=:), allocatable :: built_for
+      !> Addresses that `sweep` was built for; unallocated: it has to be built
+      type(address_t), allocatable :: built_for(:)
    end type handle_t
 
    !> Tables of `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
-   !> What ends each address of `built_for`
-   character(len=*), parameter :: line_end = new_line('a')
    !> The version for C
    character(kind=c_char), target :: version_text(len(version) + 1) = ' '
    !> Process that has solved on several threads, 0: none
@@ -159,15 +157,18 @@ contains
 
       type(handle_t), pointer :: handle
       type(error_t), allocatable :: trouble
+      type(address_t) :: place
+      character(len=:), allocatable :: message
 
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call override(handle%case, fortran(address)//'='//fortran(value), trouble)
-      if (allocated(handle%built_for)) then
-         ! points bring their own values of the addresses that it was built for
-         if (index(line_end//handle%built_for, line_end//fortran(address)//line_end) == 0) &
-            deallocate (handle%built_for)
+      if (.not. allocated(trouble)) then
+         call override(handle%case, fortran(address)//'='//fortran(value), trouble)
+         call resolve(handle%case, fortran(address), place, message)
+         if (allocated(handle%built_for)) then
+            ! points bring their own values of the addresses that it was built for
+            if (all(.not. handle%built_for == place)) deallocate (handle%built_for)
+         end if
       end if
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
@@ -186,10 +187,10 @@ contains
       type(entry_t) :: entry
 
       value = c_null_ptr
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call find_place(handle%case, fortran(address), place, trouble)
+      if (.not. allocated(trouble)) &
+         call find_place(handle%case, fortran(address), place, trouble)
       if (.not. allocated(trouble)) then
          entry = handle%case%entry(place)
          if (place%element > 0) then
@@ -213,10 +214,10 @@ contains
       type(error_t), allocatable :: trouble
       type(address_t) :: place
 
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call find_place(handle%case, fortran(address), place, trouble)
+      if (.not. allocated(trouble)) &
+         call find_place(handle%case, fortran(address), place, trouble)
       if (.not. allocated(trouble)) then
          associate (key => catalogue(max(place%row, handle%case%row(place))))
             call put_column(column, handle%case%path(place), key%unit, key%meaning)
@@ -238,10 +239,9 @@ contains
       type(error_t), allocatable :: trouble
 
       text = c_null_ptr
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call validate(handle%case, trouble)
+      if (.not. allocated(trouble)) call validate(handle%case, trouble)
       if (.not. allocated(trouble)) text = c_text(case_text(handle%case, complete=complete /= 0))
 !$omp end critical (vcor_c_api)
       code = told(trouble, error)
@@ -298,10 +298,9 @@ contains
 
       n = 0
       values = c_null_ptr
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call validate(handle%case, trouble)
+      if (.not. allocated(trouble)) call validate(handle%case, trouble)
       if (.not. allocated(trouble)) call new_grid(handle%case, grid, trouble)
       if (.not. allocated(trouble)) then
          if (index >= 0 .and. index < size(grid%axes)) then
@@ -340,15 +339,11 @@ contains
       integer :: places(k), team, i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (is_null(self, error, code)) return
-      if (min(m, n, k) < 0) then
-         call raise(trouble, error_usage, 'found a negative number of addresses, points or columns')
-         code = told(trouble, error)
-         return
-      end if
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
+      if (.not. allocated(trouble) .and. min(m, n, k) < 0) call raise(trouble, error_usage, &
+         'found a negative number of addresses, points or columns')
 !$omp critical (vcor_c_api)
-      call new_summary(summary, n, trouble)
+      if (.not. allocated(trouble)) call new_summary(summary, n, trouble)
       do i = 1, k
          if (allocated(trouble)) exit
          places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)
@@ -361,7 +356,7 @@ contains
          sweep = handle%sweep
          do i = 1, size(sweep%grid%axes)
             associate (axis => sweep%grid%axes(i))
-               axis%values = values(column_of(axis%address, handle%case, addresses), :)
+               axis%values = values(findloc(handle%built_for == axis%address, .true., dim=1), :)
             end associate
          end do
       end if
@@ -390,7 +385,7 @@ contains
             summary%status(1) == point_invalid), handle%case%source//': ' &
             //failures%reason(1)%message)
       else if (failures%count > 0) then
-         call put_remark(error, integer_text(failures%count)//' of '//integer_text(int(n)) &
+         call tell(error, 0_c_int, integer_text(failures%count)//' of '//integer_text(int(n)) &
             //' points have no result, the first is point ' &
             //integer_text(failures%reason(1)%first)//': '//failures%reason(1)%message)
       end if
@@ -418,10 +413,9 @@ contains
 
       rows = 0
       values = c_null_ptr
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call build(handle, none, nothing, trouble)
+      if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
       if (.not. allocated(trouble)) sweep = handle%sweep
 !$omp end critical (vcor_c_api)
       if (.not. allocated(trouble)) then
@@ -515,12 +509,13 @@ contains
       integer :: i
 
       results = ieee_value(1.0_wp, ieee_quiet_nan)
-      if (is_null(self, error, code)) return
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, trouble)
 !$omp critical (vcor_c_api)
-      call build(handle, none, nothing, trouble)
-      case = handle%case
-      if (.not. allocated(trouble)) call read_data(case, trouble)
+      if (.not. allocated(trouble)) call build(handle, none, nothing, trouble)
+      if (.not. allocated(trouble)) then
+         case = handle%case
+         call read_data(case, trouble)
+      end if
       if (.not. allocated(trouble)) then
          call compare(case, handle%sweep%problem%impact, comparison, trouble)
          if (allocated(trouble)) trouble%message = case%source//': '//trouble%message
@@ -566,27 +561,27 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(case_t) :: case
+      type(address_t) :: places(size(addresses)), address
       type(address_t), allocatable :: own(:)
-      type(address_t) :: address
       type(entry_t) :: entry
-      character(len=:), allocatable :: list
       integer :: i, item
 
-      list = ''
       do i = 1, size(addresses)
-         list = list//fortran(addresses(i))//line_end
+         call find_place(handle%case, fortran(addresses(i)), places(i), error)
+         if (allocated(error)) return
       end do
       if (allocated(handle%built_for)) then
-         if (handle%built_for == list) return
+         if (size(handle%built_for) == size(places)) then
+            if (all(handle%built_for == places)) return
+         end if
          deallocate (handle%built_for)
       end if
       case = handle%case
       allocate (own, source=swept_addresses(case))
       do i = 1, size(addresses)
-         call find_place(case, fortran(addresses(i)), address, error)
-         if (allocated(error)) return
-         if (any(own == address)) cycle
+         if (any(own == places(i))) cycle
          ! a value that was set, or a list of them, has no say in a point that brings its own
+         address = places(i)
          address%element = 0
          call case%oust(address, always=.true.)
          entry = case%entry(address)
@@ -608,14 +603,14 @@ contains
       if (.not. allocated(error)) call new_sweep(handle%sweep, case, error)
       if (allocated(error)) return
       do i = 1, size(handle%sweep%grid%axes)
-         if (column_of(handle%sweep%grid%axes(i)%address, handle%case, addresses) > 0) cycle
+         if (any(places == handle%sweep%grid%axes(i)%address)) cycle
          call raise(error, error_input, case%location('sweep', 'parameter', i) &
             //": the case varies '"//handle%sweep%grid%axes(i)%name &
             //"', expected values for it among those of the points, or no &sweep group")
          return
       end do
       handle%sweep%grid%is_list = size(addresses) > 0
-      call move_alloc(list, handle%built_for)
+      handle%built_for = places
    end subroutine build
 
    !> Check a case and read its data files
@@ -630,24 +625,6 @@ contains
       if (.not. allocated(error)) call read_data(case, error)
    end subroutine check
 
-   !> Which of some addresses, as texts, an address is
-   function column_of(address, case, addresses) result(column)
-      type(address_t), intent(in) :: address
-      type(case_t), intent(in) :: case
-      !> The texts
-      type(c_ptr), intent(in) :: addresses(:)
-      !> The number, 0 if it is none of them
-      integer :: column
-
-      type(address_t) :: other
-      character(len=:), allocatable :: message
-
-      do column = size(addresses), 1, -1
-         call resolve(case, fortran(addresses(column)), other, message)
-         if (other == address) return
-      end do
-   end function column_of
-
    !> A material of a case
    subroutine find_body(self, name, material, error)
       type(c_ptr), intent(in) :: self
@@ -660,11 +637,8 @@ contains
       type(case_t) :: case
       integer :: item
 
-      if (.not. c_associated(self)) then
-         call refuse_null(error)
-         return
-      end if
-      call c_f_pointer(self, handle)
+      call open_case(self, handle, error)
+      if (allocated(error)) return
 !$omp critical (vcor_c_api)
       case = handle%case
       item = case%find_material(fortran(name))
@@ -678,30 +652,21 @@ contains
 !$omp end critical (vcor_c_api)
    end subroutine find_body
 
-   !> Whether there is no case, which is an error
-   function is_null(self, error, code)
+   !> What a `vcor_case` points at
+   subroutine open_case(self, handle, error)
       type(c_ptr), intent(in) :: self
-      !> `vcor_error`, or null
-      type(c_ptr), intent(in) :: error
-      !> Code of that error
-      integer(c_int), intent(out) :: code
-      logical :: is_null
-
-      type(error_t), allocatable :: trouble
-
-      code = 0
-      is_null = .not. c_associated(self)
-      if (.not. is_null) return
-      call refuse_null(trouble)
-      code = told(trouble, error)
-   end function is_null
-
-   !> There is no case
-   subroutine refuse_null(error)
+      !> The case, null without one
+      type(handle_t), pointer, intent(out) :: handle
+      !> Error of code `error_usage` if there is none, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      call raise(error, error_usage, 'the case is NULL: vcor_read has not made one')
-   end subroutine refuse_null
+      nullify (handle)
+      if (c_associated(self)) then
+         call c_f_pointer(self, handle)
+      else
+         call raise(error, error_usage, 'the case is NULL: vcor_read has not made one')
+      end if
+   end subroutine open_case
 
    !> Code of an error, which goes to the caller with its message
    function told(trouble, error) result(code)
@@ -712,49 +677,41 @@ contains
       !> 0 or its code
       integer(c_int) :: code
 
-      type(c_error_t), pointer :: to
-
       code = 0
-      if (allocated(trouble)) code = int(trouble%code, c_int)
-      if (.not. c_associated(error)) return
-      call put_remark(error, '')
-      if (.not. allocated(trouble)) return
-      call put_remark(error, trouble%message)
-      call c_f_pointer(error, to)
-      to%code = code
+      if (allocated(trouble)) then
+         code = int(trouble%code, c_int)
+         call tell(error, code, trouble%message)
+      else
+         call tell(error, code, '')
+      end if
    end function told
 
-   !> Tell the caller something that is no error
-   subroutine put_remark(error, message)
+   !> Tell the caller a code and a line
+   subroutine tell(error, code, message)
       !> `vcor_error`, or null
       type(c_ptr), intent(in) :: error
-      !> The remark
+      integer(c_int), intent(in) :: code
+      !> What is wrong, or a remark
       character(len=*), intent(in) :: message
 
       type(c_error_t), pointer :: to
 
       if (.not. c_associated(error)) return
       call c_f_pointer(error, to)
-      to%code = 0
+      to%code = code
       call put_text(message, to%message)
-   end subroutine put_remark
+   end subroutine tell
 
    !> Name, unit and meaning of a column
    pure subroutine put_column(column, name, unit, meaning)
       !> The column, the rest of it empty
       type(c_column_t), intent(out) :: column
-      character(len=*), intent(in) :: name
-      character(len=*), intent(in) :: unit
-      character(len=*), intent(in) :: meaning
+      character(len=*), intent(in) :: name, unit, meaning
 
       call put_text(trim(name), column%name)
-      call put_text('', column%symbol)
       call put_text(trim(unit), column%unit)
       if (unit == '') call put_text('1', column%unit)
       call put_text(trim(meaning), column%meaning)
-      call put_text('', column%labels)
-      column%first = 0
-      column%is_whole = 0
    end subroutine put_column
 
    !> A text into room of C, cut if it does not fit
