@@ -8,7 +8,7 @@ module vcor_app_help
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
    use vcor_material_parameter, only : interval_text
    use vcor_json, only : array, member, object, strings, words
-   use vcor_words, only : nearest_name, suggestion
+   use vcor_words, only : contains_word, nearest_name, suggestion
    use vcor_sweep_quantity, only : history_quantities, quantities, quantity_names, quantity_t, &
       statuses
    use vcor_text, only : integer_text, printable
@@ -56,17 +56,13 @@ contains
          text = overview()
       case ("input")
          text = "A case file holds Fortran namelists, &GROUP KEY = VALUE, ... /, in SI units." &
-            //nl//nl//input_page()
+            //nl//nl//words_page(topic)
       case ("output")
-         text = output_page()
+         text = words_page(topic)
       case default
          call get_page(topic, page)
          text = command_page(page)
-         if (text /= "") return
-         text = input_page(topic)
-         words = output_page(topic)
-         if (text /= "" .and. words /= "") text = text//nl
-         text = text//words
+         if (text == "") text = words_page(topic)
          if (text /= "") return
          if (missing_package(topic) /= "") then
             call raise(error, error_usage, missing_package(topic))
@@ -167,48 +163,87 @@ contains
       end do
    end function command_page
 
-   !> The groups with their keys, all or those that a word is about
-   function input_page(word) result(text)
-      !> Name of a group, KEY, GROUP.KEY, or a choice of a key, such as a model; absent: all
-      character(len=*), intent(in), optional :: word
-      !> The page; empty if the word is unknown
+   !> What the input and the output are made of, as far as it is about a topic
+   function words_page(topic) result(text)
+      !> `input`: all keys; `output`: the columns of the summary and the statuses; or a word: the
+      !> name of a group, KEY, GROUP.KEY, a choice of a key, such as a model, name or symbol of a
+      !> column, name of a status, a word of the screen
+      character(len=*), intent(in) :: topic
+      !> Lines below headings, empty if the word is unknown
       character(len=:), allocatable :: text
 
-      type(key_t), allocatable :: rows(:)
-      character(len=:), allocatable :: keys
+      type(key_t), allocatable :: keys(:)
+      character(len=:), allocatable :: heading, last, advice
       integer :: i, j
 
-      allocate (rows, source=described_keys())
       text = ""
+      last = ""
+      allocate (keys, source=described_keys())
       do i = 1, size(groups)
-         keys = ""
-         do j = 1, size(rows)
-            if (rows(j)%group /= groups(i)%name) cycle
-            if (present(word)) then
-               if (.not. is_about(word, rows(j))) cycle
-            end if
-            keys = keys//item("   "//rows(j)%name, about(rows(j)))
+         heading = "&"//trim(groups(i)%name)//"  "//trim(groups(i)%meaning)
+         if (groups(i)%repeated) heading = heading//"; may be repeated"
+         if (.not. groups(i)%required) heading = heading//"; optional"
+         do j = 1, size(keys)
+            associate (key => keys(j))
+               if (key%group == groups(i)%name) call show("input", item("   "//key%name, &
+                  about(key)), trim(key%group)//" "//trim(key%name)//" "//trim(key%group)//"." &
+                  //trim(key%name)//" "//trim(key%choices)//" "//key%models)
+            end associate
          end do
-         if (keys == "") cycle
-         if (text /= "") text = text//nl
-         text = text//"&"//trim(groups(i)%name)//"  "//trim(groups(i)%meaning)
-         if (groups(i)%repeated) text = text//"; may be repeated"
-         if (.not. groups(i)%required) text = text//"; optional"
-         text = text//nl//keys
       end do
-   end function input_page
+      heading = "Columns of STEM_summary.csv and names for --print:"
+      call show_columns("output", quantities())
+      heading = "Values of status; the numbers are nan for all but separated:"
+      do i = 1, size(statuses)
+         advice = ""
+         if (statuses(i)%advice /= "") advice = item("", "what to do: "//statuses(i)%advice)
+         call show("output", item("   "//statuses(i)%name, statuses(i)%meaning)//advice, &
+            "status "//statuses(i)%name)
+      end do
+      heading = "Columns of STEM.csv, the time history:"
+      call show_columns("", history_quantities)
+      heading = "On the screen of a run:"
+      do i = 1, size(screen_words)
+         call show("", item("", screen_meanings(i)), screen_words(i))
+      end do
 
-   !> Whether a word is about a key
-   pure function is_about(word, key) result(yes)
-      character(len=*), intent(in) :: word
-      type(key_t), intent(in) :: key
-      !> True if it is its name, its group, both, or one of its choices or models
-      logical :: yes
+   contains
 
-      yes = index(word, " ") == 0 .and. index(" "//trim(key%group)//" "//trim(key%name)//" " &
-         //trim(key%group)//"."//trim(key%name)//" "//key%choices//" "//key%models//" ", &
-         " "//word//" ") > 0
-   end function is_about
+      !> Show lines below their heading if they are about the topic
+      subroutine show(page, lines, about)
+         !> Page that has them in any case, empty: none
+         character(len=*), intent(in) :: page
+         character(len=*), intent(in) :: lines
+         !> Words that they are about
+         character(len=*), intent(in) :: about
+
+         if (.not. merge(topic == page, contains_word(about, topic), &
+            contains_word("input output", topic))) return
+         if (heading /= last .and. text /= "") text = text//nl
+         if (heading /= last) text = text//heading//nl
+         last = heading
+         text = text//lines
+      end subroutine show
+
+      !> Show columns of a file
+      subroutine show_columns(page, columns)
+         !> Page that has them in any case, empty: none
+         character(len=*), intent(in) :: page
+         type(quantity_t), intent(in) :: columns(:)
+
+         character(len=:), allocatable :: unit
+         integer :: k
+
+         do k = 1, size(columns)
+            associate (column => columns(k))
+               unit = ""
+               if (column%symbol /= "") unit = " ["//trim(column%unit)//"], symbol "//column%symbol
+               call show(page, item("   "//column%name, trim(column%meaning)//unit), &
+                  trim(column%name)//" "//column%symbol)
+            end associate
+         end do
+      end subroutine show_columns
+   end function words_page
 
    !> What a key means and takes
    function about(key) result(words)
@@ -227,77 +262,6 @@ contains
       end if
       if (key%models /= "") words = words//"; "//trim(key%models)
    end function about
-
-   !> The columns of the summary and the statuses, all or those that a word is about
-   function output_page(word) result(text)
-      !> Name or symbol of a column, name of a status, or a word of the screen; absent: all columns
-      !> of the summary and statuses
-      character(len=*), intent(in), optional :: word
-      !> The page; empty if the word is unknown
-      character(len=:), allocatable :: text
-
-      character(len=:), allocatable :: lines
-      integer :: i
-
-      text = lines_of(quantities())
-      if (text /= "") text = "Columns of STEM_summary.csv and names for --print:"//nl//text
-
-      lines = ""
-      do i = 1, size(statuses)
-         if (.not. (is_wanted(statuses(i)%name) .or. is_wanted("status"))) cycle
-         lines = lines//item("   "//statuses(i)%name, statuses(i)%meaning)
-         if (statuses(i)%advice /= "") &
-            lines = lines//item("", "what to do: "//statuses(i)%advice)
-      end do
-      if (lines /= "") call append("Values of status; the numbers are nan for all but " &
-         //"separated:", lines)
-
-      if (.not. present(word)) return
-      call append("Columns of STEM.csv, the time history:", lines_of(history_quantities))
-      do i = 1, size(screen_words)
-         if (word /= "" .and. index(screen_words(i), " "//word//" ") > 0) &
-            call append("On the screen of a run:", item("", screen_meanings(i)))
-      end do
-
-   contains
-
-      !> Append a part of the page, unless it is empty
-      subroutine append(heading, part)
-         !> Line above it
-         character(len=*), intent(in) :: heading
-         character(len=*), intent(in) :: part
-
-         if (part == "") return
-         if (text /= "") text = text//nl
-         text = text//heading//nl//part
-      end subroutine append
-
-      !> Lines of the columns that are wanted
-      function lines_of(list) result(lines)
-         type(quantity_t), intent(in) :: list(:)
-         character(len=:), allocatable :: lines
-
-         character(len=:), allocatable :: unit
-         integer :: k
-
-         lines = ""
-         do k = 1, size(list)
-            unit = ""
-            if (list(k)%symbol /= "") unit = " ["//trim(list(k)%unit)//"], symbol "//list(k)%symbol
-            if (is_wanted(list(k)%name) .or. (unit /= "" .and. is_wanted(list(k)%symbol))) &
-               lines = lines//item("   "//list(k)%name, trim(list(k)%meaning)//unit)
-         end do
-      end function lines_of
-
-      !> Whether a name is the word, or all are wanted
-      pure function is_wanted(name) result(yes)
-         character(len=*), intent(in) :: name
-         logical :: yes
-
-         yes = .true.
-         if (present(word)) yes = name == word
-      end function is_wanted
-   end function output_page
 
    !> All words of the input and the output but GROUP.KEY, a blank before each
    function all_words() result(words)
