@@ -4,18 +4,21 @@ module vcor_app_cli
    use vcor_app_commands, only : commands, missing_package, options_of, package_names
    use vcor_case_real, only : read_real
    use vcor_error, only : error_t, error_usage, raise
+   use vcor_fit, only : estimate_t
+   use vcor_io_header, only : frequency_units, modulus_units, time_units
+   use vcor_io_sample_file, only : reading_t
    use vcor_kinds, only : wp
+   use vcor_material, only : identifiable_models
    use vcor_material_moduli, only : time_range_t
    use vcor_numeric_crc, only : crc32
    use vcor_sweep_part, only : most_threads
    use vcor_sweep_quantity, only : quantity_names
    use vcor_text, only : control_in, integer_text, name_flaw, printable
-   use vcor_words, only : contains_word, suggestion
+   use vcor_words, only : contains_word, join_words, suggestion
    implicit none
    private
 
    public :: argument_t, request_t, get_arguments, sum_of_words, parse
-   public :: read_whole, read_number, read_positive
 
    !> A word
    type :: argument_t
@@ -43,8 +46,24 @@ module vcor_app_cli
       type(time_range_t) :: range
       !> Nothing on the screen but numbers that were asked for
       logical :: quiet = .false.
-      !> Options that the command alone knows, each as --name=value, shape (n)
-      type(argument_t), allocatable :: own(:)
+      !> File of the JSON document of fit; allocated if help is to print one
+      character(len=:), allocatable :: json
+      !> Model to fit
+      character(len=:), allocatable :: model
+      !> Terms of a Prony series; 0: as many as the data support
+      integer :: terms = 0
+      !> Parameters that a fit is given, shape (n)
+      type(estimate_t), allocatable :: fixed(:)
+      !> What the options say about a file of moduli
+      type(reading_t) :: reading
+      !> Density of a fitted material [kg/m3]; 0: not given
+      real(wp) :: density = 0.0_wp
+      !> Name of a fitted material; unallocated: made from that of the file
+      character(len=:), allocatable :: name
+      !> Case, and perhaps material, that is sampled in place of data; unallocated: none
+      character(len=:), allocatable :: source
+      !> Whether storage and loss modulus are sampled
+      logical :: dynamic = .false.
    end type request_t
 
 contains
@@ -109,8 +128,9 @@ contains
       integer :: i, mark
       logical :: plain, flag
 
-      allocate (request%files(0), request%settings(0), request%names(0))
-      allocate (request%own(0))
+      allocate (request%files(0), request%settings(0), request%names(0), request%fixed(0))
+      allocate (request%reading%units(0))
+      request%model = 'prony'
       if (size(words) == 0) then
          call raise(error, error_usage, 'no command; known: run, merge, check, material, fit, ' &
             //'verify, help (vcor help says more)')
@@ -204,7 +224,8 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer, parameter :: most_points = 100000
+      integer, parameter :: most_points = 100000, most_terms = 60
+      character(len=*), parameter :: expected = 'a number in (-1, 0.5]'
 
       select case (option)
       case ('--quiet')
@@ -214,9 +235,7 @@ contains
       case ('--set')
          call append(request%settings, value)
       case ('--output')
-         request%directory = value
-         if (name_flaw(value) /= '') call raise(error, error_usage, "--output: the name '" &
-            //printable(value)//"' "//name_flaw(value)//', expected another name')
+         call read_name(option, value, request%directory, error)
       case ('--threads')
          call read_whole(option, value, 1, most_threads, request%threads, error)
       case ('--shard')
@@ -229,10 +248,117 @@ contains
          call read_positive(option, value, request%range%last, error)
       case ('--print')
          call add_names(value, request, error)
+      case ('--json')
+         call read_name(option, value, request%json, error)
+      case ('--shear')
+         request%reading%shear = .true.
+      case ('--dynamic')
+         request%dynamic = .true.
+      case ('--model')
+         request%model = trim(adjustl(value))
+         if (.not. contains_word(identifiable_models, request%model)) call raise(error, &
+            error_usage, "--model: found '"//printable(request%model)//"', expected one of " &
+            //join_words(identifiable_models)//'; ' &
+            //suggestion(request%model, identifiable_models))
+      case ('--terms')
+         call read_whole(option, value, 1, most_terms, request%terms, error)
+      case ('--fix')
+         call add_fixed(value, request, error)
+      case ('--units')
+         call take_units(trim(adjustl(value)), request%reading, error)
+      case ('--poisson-ratio')
+         call read_number(option, value, expected, request%reading%poisson_ratio, error)
+         if (allocated(error)) return
+         if (.not. (request%reading%poisson_ratio > -1.0_wp .and. request%reading%poisson_ratio &
+                    <= 0.5_wp)) call raise(error, error_usage, option//': found ' &
+            //printable(value)//', expected '//expected)
+      case ('--density')
+         call read_positive(option, value, request%density, error)
+      case ('--name')
+         request%name = trim(adjustl(value))
       case default
-         call append(request%own, option//'='//value)
+         ! --from-model
+         request%source = value
       end select
    end subroutine apply
+
+   !> Take the name of a file or a folder
+   subroutine read_name(option, value, name, error)
+      character(len=*), intent(in) :: option, value
+      character(len=:), allocatable, intent(out) :: name
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      name = value
+      if (name_flaw(value) /= '') call raise(error, error_usage, option//": the name '" &
+         //printable(value)//"' "//name_flaw(value)//', expected another name')
+   end subroutine read_name
+
+   !> Take a parameter of --fix
+   subroutine add_fixed(value, request, error)
+      !> KEY=VALUE
+      character(len=*), intent(in) :: value
+      type(request_t), intent(inout) :: request
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      type(estimate_t) :: parameter
+      integer :: mark
+
+      mark = index(value, '=')
+      if (mark < 2) then
+         call raise(error, error_usage, "--fix: found '"//printable(value) &
+            //"', expected KEY=VALUE, such as --fix exponent=0.5")
+         return
+      end if
+      parameter%name = adjustl(value(:mark - 1))
+      call read_number('--fix '//printable(value(:mark - 1)), value(mark + 1:), 'a number', &
+         parameter%value, error)
+      request%fixed = [request%fixed, parameter]
+   end subroutine add_fixed
+
+   !> Take the units of --units: time and modulus, or frequency and one or two moduli
+   subroutine take_units(list, reading, error)
+      !> Units with commas between them
+      character(len=*), intent(in) :: list
+      !> What the options say about the file
+      type(reading_t), intent(inout) :: reading
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=len(reading%units)) :: words(3)
+      integer :: first, last, n, i
+      logical :: good
+
+      n = 0
+      first = 1
+      words = ''
+      do while (first <= len(list) + 1)
+         last = first + index(list(first:)//',', ',') - 2
+         n = n + 1
+         if (n <= size(words)) words(n) = adjustl(list(first:last))
+         first = last + 2
+      end do
+      good = n == 2 .or. n == 3
+      do i = 2, min(n, 3)
+         good = good .and. contains_word(modulus_units, words(i))
+      end do
+      if (contains_word(time_units, words(1))) then
+         good = good .and. n == 2
+      else
+         good = good .and. contains_word(frequency_units, words(1))
+         if (n == 2) words(3) = words(2)
+         n = 3
+      end if
+      if (good) then
+         reading%units = words(:n)
+      else
+         call raise(error, error_usage, "--units: found '"//printable(list)//"', expected " &
+            //'TIME,MODULUS or FREQUENCY,MODULUS, such as s,MPa or Hz,MPa; units of time are ' &
+            //join_words(time_units)//', of frequency '//join_words(frequency_units) &
+            //', of modulus '//join_words(modulus_units))
+      end if
+   end subroutine take_units
 
    !> Whether the parts of a request go together
    subroutine check_request(request, error)
@@ -258,7 +384,7 @@ contains
       if (request%command == 'help' .and. size(request%files) > 1) &
          call raise(error, error_usage, "help takes one topic, found '" &
          //printable(request%files(2)%text)//"' as well")
-      if (request%command == 'help' .and. size(request%own) > 0 .and. size(request%files) > 0) &
+      if (request%command == 'help' .and. allocated(request%json) .and. size(request%files) > 0) &
          call raise(error, error_usage, "help --json takes no topic, found '" &
          //printable(request%files(1)%text)//"'")
    end subroutine check_request

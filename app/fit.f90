@@ -1,6 +1,6 @@
 !> The command fit: identification of a material from data, or from another model
 module vcor_app_fit
-   use vcor_app_cli, only : read_number, read_positive, read_whole, request_t
+   use vcor_app_cli, only : request_t
    use vcor_app_fit_screen, only : fit_remarks, fit_report
    use vcor_app_job, only : find_window, job_t, prepare, window_t
    use vcor_case_address, only : material_names
@@ -8,51 +8,27 @@ module vcor_app_fit
    use vcor_case_identified, only : material_text, put_material
    use vcor_case_problem, only : material_of_case, solve_case
    use vcor_error, only : error_input, error_t, error_usage, raise
-   use vcor_fit, only : check_fixed, estimate_t, fit_material, fit_t, moduli_of, samples_t
+   use vcor_fit, only : check_fixed, fit_material, fit_t, moduli_of, samples_t
    use vcor_fit_json, only : fit_json
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_file, write_stdout
-   use vcor_io_header, only : frequency_units, modulus_units, time_units
    use vcor_io_path, only : directory_exists, file_exists, folder_of, join_path, make_directory, &
       same_file
-   use vcor_io_sample_file, only : read_samples, reading_t, standard_input
+   use vcor_io_sample_file, only : read_samples, standard_input
    use vcor_kinds, only : wp
-   use vcor_material, only : identifiable_models, material_data_t, material_t
+   use vcor_material, only : material_data_t, material_t
    use vcor_material_moduli, only : sampled_times, time_range_t
-   use vcor_text, only : integer_text, name_flaw, printable
-   use vcor_words, only : contains_word, join_words, suggestion
+   use vcor_text, only : integer_text, printable
+   use vcor_words, only : suggestion
    implicit none
    private
 
    public :: fit_data
 
-   !> Poisson's ratio where none is given: that of rubber, which is incompressible; and what stands
-   !> for one that was not given
-   real(wp), parameter :: incompressible = 0.5_wp, no_ratio = 1.0_wp
-
-   !> What is to be fitted, by the options that fit alone has
-   type :: wish_t
-      character(len=:), allocatable :: model
-      !> Terms of a Prony series; 0: as many as the data support
-      integer :: terms = 0
-      !> Parameters that are given, shape (n)
-      type(estimate_t), allocatable :: fixed(:)
-      !> What the options say about the data file
-      type(reading_t) :: reading
-      !> Whether its units were given
-      logical :: has_units = .false.
-      !> Density [kg/m3]; 0: not given
-      real(wp) :: density = 0.0_wp
-      !> Name of the material; unallocated: made from that of the file
-      character(len=:), allocatable :: name
-      !> File of the JSON document; unallocated: none
-      character(len=:), allocatable :: json
-      !> Case, and perhaps material, to be sampled in place of data
-      character(len=:), allocatable :: source
-      logical :: dynamic = .false.
-   end type wish_t
+   !> Poisson's ratio where none is given: that of rubber, which is incompressible
+   real(wp), parameter :: incompressible = 0.5_wp
 
    !> Decades before and after the contact time that are sampled unless the user says otherwise
    integer, parameter :: before = 5, after = 1
@@ -73,43 +49,42 @@ contains
       type(request_t), intent(in) :: request
       type(error_t), allocatable, intent(out) :: error
 
-      type(wish_t) :: wish
       type(sampled_t) :: sampled
       type(samples_t) :: samples
       type(fit_t) :: fit
       character(len=:), allocatable :: source, place, note, path, group, remarks, tail
       real(wp) :: density, poisson_ratio
 
-      call read_wish(request, wish, error)
+      call check_wish(request, error)
       if (allocated(error)) return
-      if (allocated(wish%source)) then
-         source = wish%source
+      if (allocated(request%source)) then
+         source = request%source
          place = printable(source)
-         call sample_model(request, source, wish%dynamic, sampled, samples, note, error)
+         call sample_model(request, source, sampled, samples, note, error)
       else
          source = request%files(1)%text
-         call read_samples(samples, source, wish%reading, note, place, error)
+         call read_samples(samples, source, request%reading, note, place, error)
          if (source == standard_input) source = 'stdin'
       end if
       if (allocated(error)) return
-      call fit_material(fit, wish%model, wish%terms, wish%fixed, samples, error)
+      call fit_material(fit, request%model, request%terms, request%fixed, samples, error)
       if (allocated(error)) then
          error%message = place//': '//error%message
          return
       end if
 
-      density = wish%density
+      density = request%density
       poisson_ratio = incompressible
       fit%data%name = stem_of(source)
       tail = ''
-      if (allocated(wish%source)) then
+      if (allocated(request%source)) then
          fit%data%name = sampled%material%name
          if (.not. density > 0.0_wp) density = sampled%material%density()
          poisson_ratio = sampled%material%poisson_ratio()
          tail = sampled%window%notes//compare_impacts(sampled, fit%data)
       end if
-      if (allocated(wish%name)) fit%data%name = wish%name
-      if (wish%reading%poisson_ratio < no_ratio) poisson_ratio = wish%reading%poisson_ratio
+      if (allocated(request%name)) fit%data%name = request%name
+      if (request%reading%poisson_ratio <= incompressible) poisson_ratio = request%reading%poisson_ratio
       remarks = fit_remarks(fit, source, samples)
       group = material_text(fit%data, density, poisson_ratio, samples%first_time(), &
          samples%last_time(), samples%keys)
@@ -120,18 +95,18 @@ contains
          if (allocated(error)) return
          tail = tail//'  written '//path//new_line('a')
       end if
-      if (allocated(wish%json)) then
-         if (same_file(wish%json, path)) call raise(error, error_usage, &
+      if (allocated(request%json)) then
+         if (same_file(request%json, path)) call raise(error, error_usage, &
             '--json and --output are the same file '//printable(path))
-         if (.not. allocated(error)) call keep_what_was_read(wish%json, source, sampled, error)
-         if (.not. allocated(error)) call make_directory(folder_of(wish%json), error)
+         if (.not. allocated(error)) call keep_what_was_read(request%json, source, sampled, error)
+         if (.not. allocated(error)) call make_directory(folder_of(request%json), error)
          if (.not. allocated(error)) &
-            call write_file(wish%json, fit_json(fit, samples, group), error)
+            call write_file(request%json, fit_json(fit, samples, group), error)
          if (allocated(error)) return
-         tail = tail//'  written '//wish%json//new_line('a')
+         tail = tail//'  written '//request%json//new_line('a')
       end if
       if (request%quiet) return
-      if (.not. (wish%reading%poisson_ratio < no_ratio .or. allocated(wish%source))) &
+      if (.not. (request%reading%poisson_ratio <= incompressible .or. allocated(request%source))) &
          tail = tail//'  note: poisson_ratio is taken as 0.5, --poisson-ratio gives another' &
          //new_line('a')
       if (.not. density > 0.0_wp) tail = tail//'  note: the density is not known, --density ' &
@@ -139,153 +114,38 @@ contains
       call write_stdout(fit_report(fit, source, note, samples, tail)//remarks//group, error)
    end subroutine fit_data
 
-   !> Read the options of fit, and see whether they go together
-   subroutine read_wish(request, wish, error)
+   !> See whether the options of fit go together
+   subroutine check_wish(request, error)
       type(request_t), intent(in) :: request
-      type(wish_t), intent(out) :: wish
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: i, mark
+      logical :: samples
 
-      wish%model = 'prony'
-      wish%reading%poisson_ratio = no_ratio
-      allocate (wish%fixed(0), wish%reading%units(0))
-      do i = 1, size(request%own)
-         mark = index(request%own(i)%text, '=')
-         call apply(wish, request%own(i)%text(:mark - 1), request%own(i)%text(mark + 1:), error)
-         if (allocated(error)) return
-      end do
-      if (allocated(wish%source)) then
-         if (size(request%files) > 0) then
-            call raise(error, error_usage, '--from-model takes the place of a data file, found ' &
-               //'both')
-         else if (wish%has_units .or. wish%reading%shear) then
-            call raise(error, error_usage, '--units and --shear are for data files, found ' &
-               //'--from-model')
-         end if
-      else if (size(request%files) /= 1) then
+      samples = allocated(request%source)
+      if (samples .and. size(request%files) > 0) then
+         call raise(error, error_usage, '--from-model takes the place of a data file, found both')
+      else if (samples .and. (size(request%reading%units) > 0 .or. request%reading%shear)) then
+         call raise(error, error_usage, '--units and --shear are for data files, found ' &
+            //'--from-model')
+      else if (.not. samples .and. size(request%files) /= 1) then
          call raise(error, error_usage, 'fit takes one data file, or --from-model CASE.nml')
-      else if (wish%dynamic) then
+      else if (.not. samples .and. request%dynamic) then
          call raise(error, error_usage, '--dynamic is for --from-model; data tell by their ' &
             //'columns, or by --units, what they are')
+      else if (request%terms > 0 .and. request%model /= 'prony') then
+         call raise(error, error_usage, '--terms is for --model prony, found --model ' &
+            //request%model)
       end if
       if (allocated(error)) return
-      if (wish%terms > 0 .and. wish%model /= 'prony') then
-         call raise(error, error_usage, '--terms is for --model prony, found --model '//wish%model)
-         return
-      end if
-      call check_fixed(wish%model, wish%fixed, error)
+      call check_fixed(request%model, request%fixed, error)
       if (allocated(error)) then
          error%message = '--fix: '//error%message
-      else if (.not. allocated(wish%source) .and. (max(request%range%first, request%range%last) &
-               > 0.0_wp .or. request%range%points > 0 .or. size(request%settings) > 0)) then
+      else if (.not. samples .and. (max(request%range%first, request%range%last) > 0.0_wp &
+               .or. request%range%points > 0 .or. size(request%settings) > 0)) then
          call raise(error, error_usage, '--from, --to, --points and --set are for --from-model')
       end if
-   end subroutine read_wish
-
-   !> Take an option
-   subroutine apply(wish, option, value, error)
-      type(wish_t), intent(inout) :: wish
-      !> One of those that fit alone has
-      character(len=*), intent(in) :: option
-      !> Its value, empty if it takes none
-      character(len=*), intent(in) :: value
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      integer, parameter :: most_terms = 60
-      character(len=*), parameter :: expected = 'a number in (-1, 0.5]'
-      type(estimate_t) :: parameter
-      integer :: mark
-
-      select case (option)
-      case ('--shear')
-         wish%reading%shear = .true.
-      case ('--dynamic')
-         wish%dynamic = .true.
-      case ('--model')
-         wish%model = trim(adjustl(value))
-         if (.not. contains_word(identifiable_models, wish%model)) call raise(error, error_usage, &
-            "--model: found '"//printable(wish%model)//"', expected one of " &
-            //join_words(identifiable_models)//'; '//suggestion(wish%model, identifiable_models))
-      case ('--terms')
-         call read_whole(option, value, 1, most_terms, wish%terms, error)
-      case ('--fix')
-         mark = index(value, '=')
-         if (mark < 2) then
-            call raise(error, error_usage, "--fix: found '"//printable(value) &
-               //"', expected KEY=VALUE, such as --fix exponent=0.5")
-            return
-         end if
-         parameter%name = adjustl(value(:mark - 1))
-         call read_number('--fix '//printable(value(:mark - 1)), value(mark + 1:), 'a number', &
-            parameter%value, error)
-         wish%fixed = [wish%fixed, parameter]
-      case ('--units')
-         wish%has_units = .true.
-         call take_units(trim(adjustl(value)), wish%reading, error)
-      case ('--poisson-ratio')
-         call read_number(option, value, expected, wish%reading%poisson_ratio, error)
-         if (allocated(error)) return
-         if (.not. (wish%reading%poisson_ratio > -1.0_wp .and. wish%reading%poisson_ratio &
-                    <= incompressible)) call raise(error, error_usage, option//': found ' &
-            //printable(value)//', expected '//expected)
-      case ('--density')
-         call read_positive(option, value, wish%density, error)
-      case ('--name')
-         wish%name = trim(adjustl(value))
-      case ('--json')
-         wish%json = value
-         if (name_flaw(value) /= '') call raise(error, error_usage, "--json: the name '" &
-            //printable(value)//"' "//name_flaw(value)//', expected another name')
-      case default
-         wish%source = value
-      end select
-   end subroutine apply
-
-   !> Take the units of --units: time and modulus, or frequency and one or two moduli
-   subroutine take_units(list, reading, error)
-      !> Units with commas between them
-      character(len=*), intent(in) :: list
-      !> What the options say about the file
-      type(reading_t), intent(inout) :: reading
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=len(reading%units)) :: words(3)
-      integer :: first, last, n, i
-      logical :: good
-
-      n = 0
-      first = 1
-      words = ''
-      do while (first <= len(list) + 1)
-         last = first + index(list(first:)//',', ',') - 2
-         n = n + 1
-         if (n <= size(words)) words(n) = adjustl(list(first:last))
-         first = last + 2
-      end do
-      good = n == 2 .or. n == 3
-      do i = 2, min(n, 3)
-         good = good .and. contains_word(modulus_units, words(i))
-      end do
-      if (contains_word(time_units, words(1))) then
-         good = good .and. n == 2
-      else
-         good = good .and. contains_word(frequency_units, words(1))
-         if (n == 2) words(3) = words(2)
-         n = 3
-      end if
-      if (good) then
-         reading%units = words(:n)
-      else
-         call raise(error, error_usage, "--units: found '"//printable(list)//"', expected " &
-            //'TIME,MODULUS or FREQUENCY,MODULUS, such as s,MPa or Hz,MPa; units of time are ' &
-            //join_words(time_units)//', of frequency '//join_words(frequency_units) &
-            //', of modulus '//join_words(modulus_units))
-      end if
-   end subroutine take_units
+   end subroutine check_wish
 
    !> Where the group goes: a file, or a file in a directory; no file that was read is replaced
    subroutine choose_path(output, source, sampled, path, error)
@@ -361,11 +221,10 @@ contains
    end function stem_of
 
    !> Sample a material of a case
-   subroutine sample_model(request, source, dynamic, sampled, samples, note, error)
+   subroutine sample_model(request, source, sampled, samples, note, error)
       type(request_t), intent(in) :: request
       !> CASE.nml or CASE.nml:MATERIAL
       character(len=*), intent(in) :: source
-      logical, intent(in) :: dynamic
       type(sampled_t), intent(out) :: sampled
       type(samples_t), intent(out) :: samples
       !> What they are, in words
@@ -398,16 +257,16 @@ contains
          call raise(error, error_usage, 'expected --from before --to')
          return
       end if
-      samples%dynamic = dynamic
+      samples%dynamic = request%dynamic
       if (samples%dynamic) range = time_range_t(1.0_wp/range%last, 1.0_wp/range%first, range%points)
       samples%at = sampled_times(range)
       n = size(samples%at)
-      allocate (samples%modulus(n), samples%loss(merge(n, 0, dynamic)))
+      allocate (samples%modulus(n), samples%loss(merge(n, 0, samples%dynamic)))
       moduli = moduli_of(sampled%material, samples)
       samples%modulus = moduli(:n)
       samples%loss = moduli(n + 1:)
       note = integer_text(n)//' samples of '//printable(sampled%material%name)//', '
-      if (dynamic) then
+      if (samples%dynamic) then
          note = note//'angular frequency [rad/s], storage modulus [Pa], loss modulus [Pa]'
       else
          note = note//'time [s], relaxation modulus [Pa]'

@@ -78,7 +78,7 @@ contains
       case ('help')
          topic = ''
          if (size(request%files) > 0) topic = request%files(1)%text
-         if (size(request%own) > 0) then
+         if (allocated(request%json)) then
             text = help_json()
          else
             call help_text(topic, text, error)
