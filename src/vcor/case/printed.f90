@@ -32,66 +32,37 @@ contains
       !> Lines, each with a line feed at its end
       character(len=:), allocatable :: text
       type(buffer_t) :: buffer
+      type(entry_t) :: entry
+      character(len=:), allocatable :: line
       logical :: all, remarked
-      integer :: group, item
+      integer :: group, item, items, row, applicable
 
       all = .false.
       if (present(complete)) all = complete
       remarked = .false.
       if (present(remarks)) remarked = remarks
       do group = 1, size(groups)
-         do item = 1, items_to_print(self, group, all)
-            call print_group(buffer, self, group, item, all, remarked)
+         items = self%count(groups(group)%name)
+         if (all .and. .not. groups(group)%repeated) items = 1
+         do item = 1, items
+            if (buffer%length > 0) call buffer%add(newline)
+            call buffer%add("&"//trim(groups(group)%name)//newline)
+            do row = first_row(group), last_row(group)
+               ! The further rows of a key that has one for each model
+               if (key_row(row) /= row) cycle
+               applicable = row_for_model(row, self%model(group, item))
+               if (applicable == 0) cycle
+               entry = self%entry(address_t(group, item, row))
+               if (.not. (entry%given .or. all .and. entry%present)) cycle
+               line = indent//trim(catalogue(row)%name)//" = "//value_text(catalogue(row), entry)
+               if (remarked) call add_remark(line, catalogue(applicable), entry)
+               call buffer%add(line//newline)
+            end do
+            call buffer%add("/"//newline)
          end do
       end do
       text = buffer%text()
    end function case_text
-
-   !> Number of items of a group that are printed
-   pure function items_to_print(self, group, all) result(n)
-      type(case_t), intent(in) :: self
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Whether groups that are not in the case are printed
-      logical, intent(in) :: all
-      integer :: n
-
-      n = self%count(groups(group)%name)
-      if (all .and. .not. groups(group)%repeated) n = 1
-   end function items_to_print
-
-   !> Print one group
-   pure subroutine print_group(buffer, self, group, item, all, remarks)
-      !> Where the lines go
-      type(buffer_t), intent(inout) :: buffer
-      type(case_t), intent(in) :: self
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Number of the item
-      integer, intent(in) :: item
-      !> Whether keys that were not given are printed with their defaults
-      logical, intent(in) :: all
-      !> Whether remarks are wanted
-      logical, intent(in) :: remarks
-      type(entry_t) :: entry
-      character(len=:), allocatable :: line
-      integer :: row, applicable
-
-      if (buffer%length > 0) call buffer%add(newline)
-      call buffer%add("&"//trim(groups(group)%name)//newline)
-      do row = first_row(group), last_row(group)
-         ! The further rows of a key that has one for each model
-         if (key_row(row) /= row) cycle
-         applicable = row_for_model(row, self%model(group, item))
-         if (applicable == 0) cycle
-         entry = self%entry(address_t(group, item, row))
-         if (.not. (entry%given .or. all .and. entry%present)) cycle
-         line = indent//trim(catalogue(row)%name)//" = "//value_text(catalogue(row), entry)
-         if (remarks) call add_remark(line, catalogue(applicable), entry)
-         call buffer%add(line//newline)
-      end do
-      call buffer%add("/"//newline)
-   end subroutine print_group
 
    !> Put unit and meaning of a key behind its value
    pure subroutine add_remark(line, key, entry)
