@@ -2,7 +2,7 @@
 module vcor_app_fit
    use vcor_app_cli, only : request_t
    use vcor_app_fit_screen, only : fit_remarks, fit_report
-   use vcor_app_job, only : find_window, job_t, prepare, window_t
+   use vcor_app_job, only : file_read, find_window, job_t, prepare, window_t
    use vcor_case_address, only : material_names
    use vcor_case_case, only : case_t
    use vcor_case_identified, only : material_text, put_material
@@ -12,7 +12,6 @@ module vcor_app_fit
    use vcor_fit_json, only : fit_json
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
-   use vcor_io_data_file, only : data_file
    use vcor_io_file, only : write_file, write_stdout
    use vcor_io_path, only : directory_exists, file_exists, folder_of, join_path, make_directory, &
       same_file
@@ -191,18 +190,12 @@ contains
       !> Of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: i
       logical :: taken
 
       if (sampled%item == 0) then
          taken = same_file(name, source)
       else
-         taken = same_file(name, sampled%window%case%source)
-         do i = 1, sampled%window%case%count('material')
-            if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i))
-            if (.not. taken) taken = same_file(name, data_file(sampled%window%case, i, &
-               'shift_file'))
-         end do
+         taken = file_read(sampled%window%case, name) /= ''
       end if
       if (taken) call raise(error, error_input, printable(source)//': the fit would replace ' &
          //name//', which is read: give another name')

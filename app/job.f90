@@ -3,9 +3,11 @@ module vcor_app_job
    use vcor_app_cli, only : request_t
    use vcor_app_screen, only : significant
    use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : catalogue, key_t, real_key
    use vcor_case_checks, only : validate
    use vcor_case_grid, only : grid_t
    use vcor_case_unread, only : refuse_unread
+   use vcor_case_values, only : range_message
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
@@ -23,7 +25,7 @@ module vcor_app_job
    implicit none
    private
 
-   public :: job_t, window_t, prepare, find_window, name_files, directory_of, shard_text
+   public :: job_t, window_t, prepare, find_window, file_read, name_files, directory_of, shard_text
 
    !> Letters of the longest ending
    integer, parameter :: longest_ending = 24
@@ -47,7 +49,7 @@ module vcor_app_job
       !> Whether there is a time history in them
       logical :: history = .true.
    contains
-      procedure :: file, written, coordinates
+      procedure :: file, written, coordinates, case_at
    end type job_t
 
    !> The impact of a case as that on which commands about its materials look: its contact time
@@ -111,10 +113,28 @@ contains
       do i = 1, size(places)
          if (i > 1) text = text//', '
          associate (axis => self%sweep%grid%axes(i))
-            text = text//axis%name//' = '//trim(adjustl(significant(axis%values(places(i)))))
+            text = text//axis%name//' = '//significant(axis%values(places(i)), 8, 0)
          end associate
       end do
    end function coordinates
+
+   !> The case with the values of a point of its sweep
+   pure function case_at(self, point) result(case)
+      class(job_t), intent(in) :: self
+      integer, intent(in) :: point
+      type(case_t) :: case
+
+      integer :: i, places(size(self%sweep%grid%axes))
+
+      places = self%sweep%grid%places(point)
+      case = self%case
+      do i = 1, size(places)
+         associate (axis => self%sweep%grid%axes(i))
+            call case%oust(axis%address, always=.true.)
+            call case%set(axis%address, axis%values(places(i)))
+         end associate
+      end do
+   end function case_at
 
    !> Read, override, validate and build all cases of a request
    subroutine prepare(request, jobs, error)
@@ -178,7 +198,6 @@ contains
       type(job_t), intent(inout) :: job
       type(error_t), allocatable, intent(out) :: error
 
-      character(len=:), allocatable :: method, scheme
       integer :: i
 
       do i = 1, size(request%settings)
@@ -198,10 +217,8 @@ contains
             'verify takes single impacts, found a &sweep group', error)
       end if
       if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
-      if (allocated(error)) return
-      call job%case%get('solver', 'method', method)
-      call job%case%get('solver', 'scheme', scheme)
-      job%method = method_for(method, scheme)
+      job%method = method_for(job%sweep%problem%settings%method, &
+         job%sweep%problem%settings%scheme)
    end subroutine prepare_job
 
    !> Find out which files a case writes, and where
@@ -399,31 +416,41 @@ contains
       subroutine keep_inputs(writer, reader)
          type(job_t), intent(in) :: writer, reader
 
-         integer :: k
+         character(len=:), allocatable :: path, kind
 
          do i = 1, size(writer%endings)
             if (.not. writer%writes(i)) cycle
-            if (same_file(writer%file(i), reader%case%source)) call raise(error, error_input, &
-               writer%case%source//': its results would replace the case file ' &
-               //reader%case%source//': give it another output.stem')
-            do k = 1, reader%case%count('material')
-               call keep(writer, reader%case%source_of(k))
-               call keep(writer, data_file(reader%case, k))
-               call keep(writer, data_file(reader%case, k, 'shift_file'))
-            end do
+            path = file_read(reader%case, writer%file(i))
+            kind = trim(merge('case', 'data', path == reader%case%source))
+            if (path /= '') call raise(error, error_input, writer%case%source//': its results ' &
+               //'would replace the '//kind//' file '//path//': give it another output.stem')
+            if (allocated(error)) return
          end do
       end subroutine keep_inputs
-
-      !> File i that is written may not be one of data
-      subroutine keep(writer, path)
-         type(job_t), intent(in) :: writer
-         character(len=*), intent(in) :: path
-
-         if (allocated(error)) return
-         if (same_file(writer%file(i), path)) call raise(error, error_input, writer%case%source &
-            //': its results would replace the data file '//path//': give it another output.stem')
-      end subroutine keep
    end subroutine refuse_clash
+
+   !> Which of the files that a case reads a name leads to
+   function file_read(case, name) result(path)
+      type(case_t), intent(in) :: case
+      !> Name of a file
+      character(len=*), intent(in) :: name
+      !> The case file or one of those of its materials; empty if it is none of them
+      character(len=:), allocatable :: path
+
+      integer :: i
+
+      path = case%source
+      if (same_file(name, path)) return
+      do i = 1, case%count('material')
+         path = case%source_of(i)
+         if (same_file(name, path)) return
+         path = data_file(case, i)
+         if (same_file(name, path)) return
+         path = data_file(case, i, 'shift_file')
+         if (same_file(name, path)) return
+      end do
+      path = ''
+   end function file_read
 
    !> Solve the impact of a case, the first one of a sweep
    subroutine find_window(job, window, error)
@@ -437,16 +464,23 @@ contains
       type(worker_t) :: worker
       type(outcome_t) :: outcome
       type(error_t), allocatable :: trouble
+      character(len=:), allocatable :: message
+      type(key_t) :: key
       integer :: i
 
-      window%case = job%case
+      window%case = job%case_at(1)
       window%notes = ''
       do i = 1, size(job%sweep%grid%axes)
          associate (axis => job%sweep%grid%axes(i))
-            call window%case%put(axis%address, axis%values(1), error)
-            if (allocated(error)) return
+            key = catalogue(window%case%row(axis%address))
+            if (axis%address%element > 0) key%value_kind = real_key
+            message = range_message(key, window%case%entry(axis%address))
+            if (message /= '') then
+               call raise(error, error_input, axis%name//': '//message)
+               return
+            end if
             window%notes = window%notes//'  note: the case varies '//axis%name//', here it is ' &
-               //trim(adjustl(significant(axis%values(1))))//new_line('a')
+               //significant(axis%values(1), 8, 0)//new_line('a')
          end associate
       end do
       call solve_point(job%sweep, 1, worker, outcome, trouble)

@@ -330,7 +330,7 @@ contains
       real(wp), intent(in) :: value
       character(len=:), allocatable :: text
 
-      text = trim(adjustl(significant(value, 3)))
+      text = significant(value, 3, 0)
    end function brief
 
    !> Warn on stderr of materials of the bodies that the impacts lean on beyond their data.
@@ -340,23 +340,14 @@ contains
       type(job_t), intent(in) :: job
       type(summary_t), intent(in) :: summary
 
-      integer :: sphere, plate
+      integer :: items(2), i
 
-      sphere = job%case%material_of('sphere')
-      plate = job%case%material_of('plate')
-      call warn_of_one(sphere)
-      if (plate /= sphere) call warn_of_one(plate)
-
-   contains
-
-      !> Warn of one material
-      subroutine warn_of_one(item)
-         integer, intent(in) :: item
-
-         call warn_of_band(job, summary, item)
-         call warn_of_table(job, summary, item)
-         call warn_of_temperatures(job, item)
-      end subroutine warn_of_one
+      items = [job%case%material_of('sphere'), job%case%material_of('plate')]
+      do i = 1, merge(1, 2, items(1) == items(2))
+         call warn_of_band(job, summary, items(i))
+         call warn_of_table(job, summary, items(i))
+         call warn_of_temperatures(job, items(i))
+      end do
    end subroutine warn_of_bands
 
    !> Warn of contacts of a sweep that a table of data does not cover; of a single impact its report
@@ -476,7 +467,7 @@ contains
       type(case_t) :: case
       type(error_t), allocatable :: error
       real(wp) :: ends(2)
-      integer :: points(2), i, k, time, worst_point, unseen
+      integer :: points(2), i, time, worst_point, unseen
       integer, allocatable :: places(:)
       logical, allocatable :: known(:)
 
@@ -490,14 +481,8 @@ contains
          maxloc(summary%values(time)%reals, dim=1, mask=known)]
       worst_point = 0
       do i = 1, merge(1, 2, points(1) == points(2))
-         case = job%case
-         do k = 1, size(job%sweep%grid%axes)
-            associate (axis => job%sweep%grid%axes(k), place => job%sweep%grid%places(points(i)))
-               call case%put(axis%address, axis%values(place(k)), error)
-            end associate
-            if (allocated(error)) return
-         end do
-         call find_reliance(reliance, case, item, summary%values(time)%reals(points(i)))
+         call find_reliance(reliance, job%case_at(points(i)), item, &
+            summary%values(time)%reals(points(i)))
          if (.not. reliance%leans) cycle
          if (worst_point > 0) then
             if (change(reliance) <= change(worst)) cycle
@@ -548,9 +533,10 @@ contains
             associate (temperatures => job%sweep%grid%axes(warm)%values)
                starts = [(0.0_wp, i = 1, size(temperatures))]
                do i = 1, size(temperatures)
+                  if (.not. temperatures(i) > 0.0_wp) cycle
                   case = job%case
-                  call case%put(address, temperatures(i), error)
-                  if (.not. allocated(error)) call find_band(case, item, ends, error)
+                  call case%set(address, temperatures(i))
+                  call find_band(case, item, ends, error)
                   if (.not. allocated(error)) starts(i) = ends(1)
                end do
             end associate
@@ -589,8 +575,8 @@ contains
             text = text//'): with the modulus held constant there '
             if (found%solved) then
                text = text//'cor changes by '//short(found%held - found%cor)//', from ' &
-                  //trim(adjustl(significant(cor, 5)))//' to ' &
-                  //trim(adjustl(significant(cor + found%held - found%cor, 5))) &
+                  //significant(cor, 5, 0)//' to ' &
+                  //significant(cor + found%held - found%cor, 5, 0) &
                   //', a lower bound of the doubt'
             else
                text = text//'it has no result'

@@ -8,11 +8,10 @@
 module vcor_case_case
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
-      integer_key, last_row, list_key, logical_key, real_key, row_for_model, text_key, wanted
-   use vcor_material_parameter, only : contains_number
-   use vcor_error, only : error_input, error_internal, error_t, raise
+      integer_key, last_row, logical_key, real_key, row_for_model, text_key
+   use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_text, only : canonical_name, integer_text, lower, printable, real_text
+   use vcor_text, only : canonical_name, integer_text, lower, printable
    implicit none
    private
 
@@ -78,7 +77,7 @@ module vcor_case_case
       type(items_t), allocatable, private :: group(:)
    contains
       procedure :: start, add, adopt, is_materials, source_of, revision, model, find_material
-      procedure :: material_of, address, path, row, number, given, put, unset, oust, refuse
+      procedure :: material_of, address, path, row, number, given, unset, oust, refuse
       procedure :: count => count_items
       procedure :: line => line_of_item
       procedure :: entry => entry_at
@@ -594,43 +593,6 @@ contains
       item%entry(row)%given = given
       if (given) item%present = .true.
    end subroutine note_change
-
-   !> Set a number if it is within its range
-   subroutine put(self, address, number, error)
-      class(case_t), intent(inout) :: self
-      !> Address of a real or integer key, or of a number in a list
-      type(address_t), intent(in) :: address
-      !> The number, in the unit of the key; integral where the key is an integer
-      real(wp), intent(in) :: number
-      !> Error of code `error_input` if it is out of range, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      logical :: is_sound
-      integer :: row
-
-      if (address%group == 0) then
-         call raise(error, error_internal, 'there is no such address in the case')
-         return
-      end if
-      row = self%row(address)
-      if (row == 0) row = address%row
-      associate (key => catalogue(row))
-         if (all(key%value_kind /= [real_key, integer_key]) .and. address%element == 0) then
-            call raise(error, error_internal, self%path(address)//' is not a number')
-            return
-         end if
-         is_sound = contains_number(key%range, number)
-         if (is_sound .and. key%value_kind == integer_key) &
-            is_sound = .not. abs(number - anint(number)) > 0.0_wp
-         if (is_sound) then
-            call self%oust(address, always=.true.)
-            call self%set(address, number)
-         else
-            call raise(error, error_input, self%path(address)//': found '//real_text(number) &
-               //', expected '//wanted(key))
-         end if
-      end associate
-   end subroutine put
 
    !> Take a value back: the key has its default
    pure subroutine unset(self, address)
