@@ -484,29 +484,17 @@ contains
          call find_reliance(reliance, job%case_at(points(i)), item, &
             summary%values(time)%reals(points(i)))
          if (.not. reliance%leans) cycle
-         if (worst_point > 0) then
-            if (change(reliance) <= change(worst)) cycle
-         end if
+         if (worst_point > 0 .and. reliance%change <= worst%change) cycle
          worst = reliance
          worst_point = points(i)
       end do
+      if (worst_point == 0) return
       unseen = 0
-      if (worst_point > 0 .and. worst%ends(1)) &
-         unseen = unseen_contacts(summary%values(time)%reals)
-      if (worst_point > 0) write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
+      if (worst%ends(1)) unseen = unseen_contacts(summary%values(time)%reals)
+      write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
          //message(worst, worst_point)
 
    contains
-
-      !> Change of cor by what is held constant
-      pure function change(found)
-         type(reliance_t), intent(in) :: found
-         !> The change, large where the other impact has no result
-         real(wp) :: change
-
-         change = huge(change)
-         if (found%solved) change = abs(found%held - found%cor)
-      end function change
 
       !> Contacts that end before the data begin, each at its temperature
       function unseen_contacts(times) result(number)

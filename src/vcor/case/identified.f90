@@ -47,6 +47,8 @@ module vcor_case_identified
       real(wp) :: held = 0.0_wp
       !> Whether that impact has a result
       logical :: solved = .false.
+      !> How far both cor are apart [-], more than any two where one has no result
+      real(wp) :: change = huge(1.0_wp)
    end type reliance_t
 
 contains
@@ -189,9 +191,9 @@ contains
       reliance%solved = .not. allocated(error)
       if (reliance%solved) reliance%solved = held%status == contact_separated
       reliance%held = held%cor
+      if (reliance%solved) reliance%change = abs(held%cor - free%cor)
       ! a contact that is over before the data begin is made up altogether, whatever changes
-      reliance%leans = .not. reliance%solved .or. (reliance%ends(1) .and. first > contact_time)
-      if (.not. reliance%leans) reliance%leans = abs(held%cor - free%cor) > little
+      reliance%leans = reliance%change > little .or. (reliance%ends(1) .and. first > contact_time)
    end subroutine find_reliance
 
 end module vcor_case_identified
