@@ -144,10 +144,10 @@ contains
          return
       end if
       if (request%command == '--help' .or. request%command == '-h') request%command = 'help'
-      if (.not. contains_word(commands, request%command)) then
+      if (.not. contains_word(commands(), request%command)) then
          name = missing_package(request%command)
          if (name == '') name = "unknown command '"//printable(request%command)//"'; " &
-            //suggestion(request%command, commands//package_names()//' --help --version')
+            //suggestion(request%command, commands()//' '//package_names()//' --help --version')
          call raise(error, error_usage, name)
          return
       end if

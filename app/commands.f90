@@ -4,26 +4,21 @@ module vcor_app_commands
    implicit none
    private
 
-   public :: entry_t, commands, command_count, package_commands, get_page, options_of, texts_of
-   public :: missing_package, package_names
-
-   !> Known commands
-   character(len=*), parameter :: commands = "run merge check material fit verify help"
-   integer :: k
-   !> Number of these
-   integer, parameter :: command_count = count([(commands(k:k) == " ", k=1, len(commands))]) + 1
+   public :: entry_t, command_names, package_commands, page_of, options_of, texts_of
+   public :: missing_package, commands, package_names
 
    !> One line of a command's page. Backquotes stand around what is to be typed as it is
    type :: entry_t
-      !> `usage`, `summary` or `example`; an option with the name of its value; another word that is
-      !> explained; blank: a paragraph
+      !> `command`, which begins a page; `usage`, `summary` or `example`; an option with the name of
+      !> its value; another word that is explained; blank: a paragraph
       character(len=32) :: term
       !> What is to be said
       character(len=560) :: text
    end type entry_t
 
-   !> Page of run
-   type(entry_t), parameter :: run_page(*) = [ &
+   !> The pages, one after the other
+   type(entry_t), parameter :: pages(*) = [ &
+      entry_t("command", "run"), &
       entry_t("usage", "vcor run CASE.nml ... [options]"), &
       entry_t("summary", "solve impacts and write the results"), &
       entry_t("", "Solves the impact of each case and writes three files: STEM_summary.csv (one " &
@@ -63,10 +58,9 @@ module vcor_app_commands
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
       //"among ranks."), &
       entry_t("example", "vcor run examples/paper/sls.nml"), &
-      entry_t("example", "vcor run examples/paper/sls.nml --set impact.velocity=2.5 --print cor")]
-
-   !> Page of merge
-   type(entry_t), parameter :: merge_page(*) = [ &
+      entry_t("example", "vcor run examples/paper/sls.nml --set impact.velocity=2.5 --print cor"), &
+      !
+      entry_t("command", "merge"), &
       entry_t("usage", "vcor merge STEM_shard_*.h5 [options]"), &
       entry_t("summary", "join the shards of a sweep"), &
       entry_t("", "Joins the files that `vcor run --shard I/N` has written and makes " &
@@ -76,19 +70,17 @@ module vcor_app_commands
       entry_t("--output DIR", "folder of the files; created if it does not exist; default: the " &
       //"folder of the case"), &
       entry_t("--quiet", "print nothing"), &
-      entry_t("example", "vcor merge sls_velocity_shard_*_of_8.h5")]
-
-   !> Page of check
-   type(entry_t), parameter :: check_page(*) = [ &
+      entry_t("example", "vcor merge sls_velocity_shard_*_of_8.h5"), &
+      !
+      entry_t("command", "check"), &
       entry_t("usage", "vcor check CASE.nml ... [options]"), &
       entry_t("summary", "validate a case and print it with all defaults"), &
       entry_t("", "Validates each case and prints it with every default filled in. The output is " &
       //"a case file again."), &
       entry_t("--set GROUP.KEY=VALUE", "replace a value of the case, as for run; repeatable"), &
-      entry_t("example", "vcor check examples/paper/sls.nml")]
-
-   !> Page of material
-   type(entry_t), parameter :: material_page(*) = [ &
+      entry_t("example", "vcor check examples/paper/sls.nml"), &
+      !
+      entry_t("command", "material"), &
       entry_t("usage", "vcor material CASE.nml ... [options]"), &
       entry_t("summary", "compute moduli over time and frequency"), &
       entry_t("", "Computes the moduli of each material of a case: relaxation modulus over time; " &
@@ -110,10 +102,9 @@ module vcor_app_commands
       //"The frequencies are the reciprocals of the times"), &
       entry_t("--points N", "number of times; default: 50 per decade"), &
       entry_t("--quiet", "print nothing"), &
-      entry_t("example", "vcor material examples/paper/sls.nml --from 1e-6 --to 10")]
-
-   !> Page of fit
-   type(entry_t), parameter :: fit_page(*) = [ &
+      entry_t("example", "vcor material examples/paper/sls.nml --from 1e-6 --to 10"), &
+      !
+      entry_t("command", "fit"), &
       entry_t("usage", "vcor fit DATA [options]"), &
       entry_t("usage", "vcor fit --from-model CASE.nml[:MATERIAL] [options]"), &
       entry_t("summary", "identify a material from measured moduli"), &
@@ -164,10 +155,9 @@ module vcor_app_commands
       //"reported as ""not seen"": the fitted value contains everything that relaxes later."), &
       entry_t("", "The exit code is 5 if the fit does not converge or the data do not determine " &
       //"the parameters."), &
-      entry_t("example", "vcor fit examples/soft_rubber_data.csv --output soft_rubber.nml")]
-
-   !> Page of verify
-   type(entry_t), parameter :: verify_page(*) = [ &
+      entry_t("example", "vcor fit examples/soft_rubber_data.csv --output soft_rubber.nml"), &
+      !
+      entry_t("command", "verify"), &
       entry_t("usage", "vcor verify [CASE.nml ...] [options]"), &
       entry_t("summary", "verify the program, or cases"), &
       entry_t("", "Without a case: compares the program with laws of impact and with independent " &
@@ -189,10 +179,9 @@ module vcor_app_commands
       entry_t("", "Ends with exit code 5 if a row fails, the methods disagree by more than their " &
       //"estimates, the energies do not close, or a solution fails. A contact that does not end " &
       //"is no failure if both methods agree on it."), &
-      entry_t("example", "vcor verify examples/paper/sls.nml")]
-
-   !> Page of help
-   type(entry_t), parameter :: help_page(*) = [ &
+      entry_t("example", "vcor verify examples/paper/sls.nml"), &
+      !
+      entry_t("command", "help"), &
       entry_t("usage", "vcor help [TOPIC]"), &
       entry_t("summary", "explain a command or a word"), &
       entry_t("", "Prints a page of help. TOPIC is a command, `input` (all groups and keys of a " &
@@ -201,6 +190,11 @@ module vcor_app_commands
       entry_t("--json", "print everything that the program knows about its commands, input and " &
       //"output as one JSON document"), &
       entry_t("example", "vcor help velocity")]
+
+   integer :: k
+   !> Known commands
+   character(len=8), parameter :: command_names(*) = &
+      pack([(pages(k)%text(:8), k=1, size(pages))], pages%term == "command")
 
    !> Commands of the Python package, which are programs of their own, and what each does
    type(entry_t), parameter :: package_commands(*) = [ &
@@ -213,18 +207,32 @@ module vcor_app_commands
 
 contains
 
-   !> Names of the commands of the Python package
-   pure function package_names() result(names)
-      !> A blank before each
+   !> Names of the commands, separated by blanks
+   pure function commands() result(names)
       character(len=:), allocatable :: names
+
+      names = words_of(command_names)
+   end function commands
+
+   !> Names of the commands of the Python package, separated by blanks
+   pure function package_names() result(names)
+      character(len=:), allocatable :: names
+
+      names = words_of(package_commands%term)
+   end function package_names
+
+   !> Words with blanks between them
+   pure function words_of(list) result(words)
+      character(len=*), intent(in) :: list(:)
+      character(len=:), allocatable :: words
 
       integer :: i
 
-      names = ""
-      do i = 1, size(package_commands)
-         names = names//" "//trim(package_commands(i)%term)
+      words = trim(list(1))
+      do i = 2, size(list)
+         words = words//" "//trim(list(i))
       end do
-   end function package_names
+   end function words_of
 
    !> What to do about a command of the Python package that is not there
    pure function missing_package(word) result(text)
@@ -239,31 +247,18 @@ contains
    end function missing_package
 
    !> Page of a command
-   pure subroutine get_page(command, page)
+   pure function page_of(command) result(page)
       !> One of `commands`
       character(len=*), intent(in) :: command
       !> Its page; of no entries for another word
-      type(entry_t), allocatable, intent(out) :: page(:)
+      type(entry_t), allocatable :: page(:)
 
-      select case (command)
-      case ("run")
-         allocate (page, source=run_page)
-      case ("merge")
-         allocate (page, source=merge_page)
-      case ("check")
-         allocate (page, source=check_page)
-      case ("material")
-         allocate (page, source=material_page)
-      case ("fit")
-         allocate (page, source=fit_page)
-      case ("verify")
-         allocate (page, source=verify_page)
-      case ("help")
-         allocate (page, source=help_page)
-      case default
-         allocate (page(0))
-      end select
-   end subroutine get_page
+      integer :: i, number
+
+      number = findloc(command_names == command, .true., dim=1)
+      page = pack(pages, [(count(pages(:i)%term == "command") == number .and. number > 0 &
+         .and. pages(i)%term /= "command", i=1, size(pages))])
+   end function page_of
 
    !> Options of a command, separated by blanks
    pure function options_of(command, flags_only) result(words)
@@ -277,7 +272,7 @@ contains
       type(entry_t), allocatable :: page(:)
       integer :: i, mark
 
-      call get_page(command, page)
+      allocate (page, source=page_of(command))
       words = ""
       do i = 1, size(page)
          if (index(page(i)%term, "--") /= 1) cycle
@@ -294,11 +289,11 @@ contains
       character(len=*), intent(in) :: command
       !> `usage`, `summary` or `example`
       character(len=*), intent(in) :: term
-      character(len=len(run_page%text)), allocatable :: texts(:)
+      character(len=len(pages%text)), allocatable :: texts(:)
 
       type(entry_t), allocatable :: page(:)
 
-      call get_page(command, page)
+      allocate (page, source=page_of(command))
       allocate (texts, source=pack(page%text, page%term == term))
    end function texts_of
 

@@ -93,7 +93,7 @@ contains
       end if
       text = called(1)%text
       if (len(text) == 0 .or. verify(text, letters) > 0) return
-      if (contains_word(commands//' input output', text)) return
+      if (contains_word(commands()//' input output', text)) return
       called(1)%text = 'vcor-'//text
       do i = 1, size(called)
          text = called(i)%text//c_null_char
@@ -138,7 +138,7 @@ contains
                name = fortran_text(paths(j))
                first = index(name, '/vcor-', back=.true.) + 6
                if (verify(name(first:), letters) == 0 .and. all(names /= name(first:)) .and. &
-                  .not. contains_word(commands, name(first:))) &
+                  .not. contains_word(commands(), name(first:))) &
                   names = [character(len=longest) :: names, name(first:)]
             end do
          end if

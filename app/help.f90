@@ -1,8 +1,8 @@
 !> Help: screens about the commands and about the words of the input and the output, and everything
 !> in one JSON document, `vcor help --json`, which scripts/manual.py makes the manual of
 module vcor_app_help
-   use vcor_app_commands, only : command_count, commands, entry_t, get_page, missing_package, &
-      options_of, package_commands, texts_of
+   use vcor_app_commands, only : command_names, commands, entry_t, missing_package, options_of, &
+      package_commands, page_of, texts_of
    use vcor_app_external, only : external_commands
    use vcor_case_catalogue, only : described_keys, groups, key_t, kind_name, range_text
    use vcor_error, only : code_meanings, code_names, error_t, error_usage, raise
@@ -48,7 +48,6 @@ contains
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(entry_t), allocatable :: page(:)
       character(len=:), allocatable :: words
 
       select case (topic)
@@ -60,8 +59,7 @@ contains
       case ("output")
          text = words_page(topic)
       case default
-         call get_page(topic, page)
-         text = command_page(page)
+         text = command_page(page_of(topic))
          if (text == "") text = words_page(topic)
          if (text /= "") return
          if (missing_package(topic) /= "") then
@@ -69,9 +67,9 @@ contains
             return
          end if
          ! too many words to list, but not too many to search for a near one
-         words = commands//" input output"//all_words()
+         words = commands()//" input output"//all_words()
          if (nearest_name(topic, words) == "") then
-            text = suggestion(topic, commands//" input output") &
+            text = suggestion(topic, commands()//" input output") &
                //", or a word of the input or the output"
          else
             text = suggestion(topic, words)
@@ -86,15 +84,12 @@ contains
 
       integer, parameter :: column = 30
       character(len=:), allocatable :: usage, words
-      character(len=8) :: names(command_count)
       integer :: i, place
 
       text = "vcor "//version//": coefficient of restitution of viscoelastic impacts"//nl//nl
-      usage = commands
-      read (usage, *) names
-      do i = 1, size(names)
-         associate (usages => texts_of(names(i), "usage"), &
-                    meanings => texts_of(names(i), "summary"))
+      do i = 1, size(command_names)
+         associate (usages => texts_of(command_names(i), "usage"), &
+                    meanings => texts_of(command_names(i), "summary"))
             usage = trim(usages(1))
             usage = usage(:index(usage//" [options]", " [options]") - 1)
             text = text//merge("usage: ", "       ", i == 1)//usage &
@@ -340,15 +335,12 @@ contains
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: list
-      character(len=8) :: names(command_count)
       integer :: i
 
       text = member("program", "vcor")//member("version", version)
-      list = commands
-      read (list, *) names
       list = ""
-      do i = 1, size(names)
-         list = list//command_object(trim(names(i)))
+      do i = 1, size(command_names)
+         list = list//command_object(command_names(i))
       end do
       text = text//array(list, "commands")
       list = ""
@@ -397,7 +389,7 @@ contains
       character(len=:), allocatable :: entries, name
       integer :: i, mark
 
-      call get_page(command, page)
+      allocate (page, source=page_of(command))
       entries = ""
       do i = 1, size(page)
          mark = index(page(i)%term//" ", " ")
