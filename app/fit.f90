@@ -83,7 +83,8 @@ contains
          tail = sampled%window%notes//compare_impacts(sampled, fit%data)
       end if
       if (allocated(request%name)) fit%data%name = request%name
-      if (request%reading%poisson_ratio <= incompressible) poisson_ratio = request%reading%poisson_ratio
+      if (request%reading%poisson_ratio <= incompressible) &
+         poisson_ratio = request%reading%poisson_ratio
       remarks = fit_remarks(fit, source, samples)
       group = material_text(fit%data, density, poisson_ratio, samples%first_time(), &
          samples%last_time(), samples%keys)

@@ -79,8 +79,10 @@ module vcor_c_api
 
    !> Tables of `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
+   integer :: k
    !> The version for C
-   character(kind=c_char), target :: version_text(len(version) + 1) = ' '
+   character(kind=c_char), target :: version_text(len(version) + 1) = &
+      [(version(k:k), k=1, len(version)), c_null_char]
    !> Process that has solved on several threads, 0: none
    integer(c_int) :: process = 0
 
@@ -106,10 +108,7 @@ contains
    function vcor_library_version() bind(c) result(text)
       type(c_ptr) :: text
 
-!$omp critical (vcor_c_api)
-      call put_text(version, version_text)
       text = c_loc(version_text)
-!$omp end critical (vcor_c_api)
    end function vcor_library_version
 
    !> A case from its text or its file

@@ -107,16 +107,12 @@ contains
       real(wp) :: number
       integer :: i, n
 
-      n = 0
-      do i = 1, size(values)
-         if (values(i)%repeats > longest_list - n) then
-            message = 'found more than '//integer_text(longest_list)//' numbers'
-            return
-         end if
-         n = n + values(i)%repeats
-      end do
+      if (sum(real(values%repeats, wp)) > real(longest_list, wp)) then
+         message = 'found more than '//integer_text(longest_list)//' numbers'
+         return
+      end if
       if (allocated(list)) deallocate (list)
-      allocate (list(n))
+      allocate (list(sum(values%repeats)))
       expected = wanted(key)
       n = 0
       do i = 1, size(values)
