@@ -242,8 +242,9 @@ module vcor_solver_tuning
    !> What the rule over a step makes of alpha' of a frozen plate may be off by, over the rise of
    !> alpha in the step: beyond, the step does not resolve it
    real(wp), parameter :: unresolved_rise = 0.1_wp ! tested
-   !> Share of the weights of a layer after the last one that is added to the first ones
-   real(wp), parameter :: aliased = 1.0e-10_wp ! tested
+   !> Share of the changes of a layer's weights after the last one that is added to the first ones;
+   !> the root of its inverse is what errors of the compliance grow by in the last ones
+   real(wp), parameter :: aliased = 1.0e-6_wp ! tested
    !> Distance of the exponent from an integer that is none: the force is smooth at first
    real(wp), parameter :: next_to_integer = 1.0e-3_wp ! tested
 

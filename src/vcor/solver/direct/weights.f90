@@ -125,7 +125,7 @@ contains
          slope = (f(2) - f(1))/(lambda(2) - lambda(1))
          value = f(1) + slope*(2.5_wp + 2.0_wp*zeta - lambda(1)) &
             - 0.5_wp*slope*(2.0_wp + 8.0_wp*zeta - zeta**2)
-         value = value/((1.0_wp - zeta)*real(n, wp))
+         value = value/real(n, wp)
          if (mod(k, n) == 0) value = 0.5_wp*value
          at = 0
          do i = 0, n - 1
@@ -134,6 +134,11 @@ contains
          end do
       end do
       weight = weight*radius**[(-i, i=0, n - 1)]
+      ! the series is that of the differences: what is aliased of them comes to nothing where a plate
+      ! stays where an impulse has moved it
+      do i = 1, n - 1
+         weight(i) = weight(i) + weight(i - 1)
+      end do
    end function layer_weights
 
    !> Weights and moments from means. By parts the moment is, with K the integral of k,
