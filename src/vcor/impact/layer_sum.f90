@@ -53,15 +53,15 @@ module vcor_impact_layer_sum
    !> with the damping of its steps, up to `top`
    integer, parameter :: equidistant = 40, series = 11
    real(wp), parameter :: step = pi/1.2_wp, damping = 3.0_wp, ratio = 1.25_wp
-   !> Real rates
-   integer, parameter :: slow = 16
+   !> Real rates, first that of a thin plate: it stays where an impulse has moved it
+   integer, parameter :: slow = 17
    real(wp), parameter :: slowest = 0.3_wp, fastest = 3000.0_wp
    integer :: i_rate
    !> The last of the equidistant rates
    real(wp), parameter :: first = step*real(equidistant, wp)
    !> Real rates, and one of each pair, times the window
-   real(wp), parameter :: rate(slow) = [(slowest*(fastest/slowest)**(real(i_rate, wp) &
-      /real(slow - 1, wp)), i_rate=0, slow - 1)]
+   real(wp), parameter :: rate(slow) = [0.0_wp, (slowest*(fastest/slowest)**(real(i_rate, wp) &
+      /real(slow - 2, wp)), i_rate=0, slow - 2)]
    complex(wp), parameter :: pair_rate(equidistant + series) = [ &
       (cmplx(damping, -step*real(i_rate, wp), wp), i_rate=1, equidistant), &
       (first*ratio**i_rate*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i_rate=1, series)]

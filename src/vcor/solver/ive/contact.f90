@@ -225,7 +225,9 @@ contains
                self%accuracy, self%step, self%panel, self%inverse)
          else if (self%panel%converged .and. trajectory%status /= contact_separated) then
             self%ends = first_without_force(self%panel) > 0
-            if (self%ends) call land_on_zero(problem, self%start, self%accuracy, &
+            ! what rings in a layer does not keep the end from being found
+            if (self%ends) call land_on_zero(problem, self%start, &
+               min(self%accuracy, usual_accuracy), &
                shallow_end*trajectory%max_indentation, self%step, self%panel, self%inverse)
          end if
          if (.not. self%panel%converged) return
