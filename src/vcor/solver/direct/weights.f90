@@ -134,8 +134,8 @@ contains
          end do
       end do
       weight = weight*radius**[(-i, i=0, n - 1)]
-      ! the series is that of the differences: what is aliased of them comes to nothing where a plate
-      ! stays where an impulse has moved it
+      ! the series is that of the differences: what is aliased of them comes to nothing where a
+      ! plate stays where an impulse has moved it
       do i = 1, n - 1
          weight(i) = weight(i) + weight(i - 1)
       end do
