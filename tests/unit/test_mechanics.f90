@@ -524,7 +524,7 @@ contains
       type(plate_t) :: plate
       type(exponential_sum_t) :: terms
       type(error_t), allocatable :: error
-      real(wp) :: time, expected, instant, velocity_error
+      real(wp) :: time, expected, instant, misfit(3)
       integer :: i, j, k, m
 
       call new_sls(prony(1), 2.7e5_wp, 10.0_wp, 3300.0_wp, error)
@@ -540,7 +540,7 @@ contains
          call success(error, "a hereditary plate is built")
          do j = 1, size(window)
             do k = 1, size(accuracy)
-               call plate%response(window(j), accuracy(k), terms, instant, velocity_error)
+               call plate%response(window(j), accuracy(k), terms, instant, misfit)
                do m = 0, 24
                   time = window(j)*10.0_wp**(-0.25_wp*real(m, wp))
                   expected = plate%alpha(0.0_wp) + plate%memory_integral(time)

@@ -42,6 +42,8 @@ module vcor_impact_layer_sum
       !> Largest misfits of C at the radii as the motion feels it and as its rate does, times the
       !> radius [m2/N]
       real(wp) :: misfit(radii) = 0.0_wp, misfit_of_rate(radii) = 0.0_wp
+      !> The same of echoes alone, beyond the equidistant rates, and for the rate of all the rest
+      real(wp) :: echo(radii) = 0.0_wp, echo_of_rate(radii) = 0.0_wp
    contains
       !> Whether they are for a footprint and a window
       procedure :: holds
@@ -76,10 +78,12 @@ module vcor_impact_layer_sum
       (first*(last/first)**(real(i_rate, wp)/real(sparse, wp)), i_rate=1, sparse)]
    complex(wp), parameter :: point(points) = [(cmplx(line + slope*max(omega(i_rate) - first, &
       0.0_wp), omega(i_rate), wp), i_rate=1, points)]
-   !> Points on the line beyond the equidistant rates, which show what is left of echoes there
+   !> Points on the line beyond the equidistant rates, in pairs that are a step apart: what they
+   !> differ by is an echo of about the window, the rest has no memory as long as that
    integer, parameter :: beyond = 10
-   complex(wp), parameter :: echo(beyond) = [(cmplx(line, &
-      first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond)]
+   complex(wp), parameter :: echo(2*beyond) = [ &
+      (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond), &
+      (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp) + step, wp), i_rate=1, beyond)]
 
    !> Error of the rate beyond all rates, over what stands in for it elsewhere, measured
    real(wp), parameter :: beyond_rates = 5.0e-3_wp
@@ -123,9 +127,9 @@ contains
       real(wp), intent(in) :: window
 
       integer, parameter :: middle = (radii + 1)/2
-      complex(wp) :: c(points, radii), column(points), left(radii)
-      complex(wp) :: all(points + beyond)
-      real(wp) :: radius(radii), passive(points + beyond), size_of_force(points + beyond)
+      complex(wp) :: c(points, radii), column(points)
+      complex(wp) :: all(points + 2*beyond), left(points + 2*beyond, radii)
+      real(wp) :: tail, radius(radii), passive(points), size_of_force(points + beyond)
       real(wp), allocatable :: matrix(:, :)
       integer :: i, j
 
@@ -143,25 +147,35 @@ contains
          column = response(j, point)
          matrix(:, j) = [real(column, wp), aimag(column)]
       end do
-      call least_squares(matrix, 1.0_wp/(passive(:points) &
+      call least_squares(matrix, 1.0_wp/(passive &
          *(1.0_wp + (abs(point)/bend)**power_of_fit)), c, self%coefficient)
       if (.not. allocated(self%coefficient)) return
-      size_of_force = abs([point, echo])/bend
+      size_of_force = abs([point, echo(:beyond)])/bend
       ! a dent that goes on beyond all rates, as that of a power law, counts as the root of time
-      if (.not. abs(at_once()) > 0.0_wp) self%misfit_of_rate = beyond_rates*radius(middle) &
+      tail = 0.0_wp
+      if (.not. abs(at_once()) > 0.0_wp) tail = beyond_rates*radius(middle) &
          *abs(layer%dent(point(points)/window, radius(middle)))*sqrt(bend/abs(point(points)))
-      do i = 1, points + beyond
-         left = (0.0_wp, 0.0_wp)
+      do i = 1, size(all)
+         if (i <= points) then
+            left(i, :) = -c(i, :)
+         else
+            left(i, :) = at_once() - radius*layer%compliance(all(i), radius, accuracy(i))
+         end if
          do j = 1, terms_of_fit
-            left = left + response(j, all(i)*window)*self%coefficient(j, :)
+            left(i, :) = left(i, :) + response(j, all(i)*window)*self%coefficient(j, :)
          end do
-         if (i <= points) left = left - c(i, :)
-         if (i > points) left = left - radius*layer%compliance(all(i), radius, accuracy(i)) &
-            + at_once()
-         self%misfit_of_rate = max(self%misfit_of_rate, &
-            abs(left)/(1.0_wp + size_of_force(i)**power_of_rate))
-         if (i <= points) self%misfit = max(self%misfit, &
-            abs(left)/(1.0_wp + size_of_force(i)**power))
+      end do
+      do j = 1, radii
+         associate (all_left => abs(left(:points + beyond, j)), size_beyond => &
+                    size_of_force(points + 1:), echoes => 0.5_wp &
+                    *abs(left(points + beyond + 1:, j) - left(points + 1:points + beyond, j)))
+            self%misfit(j) = maxval(all_left(:points)/(1.0_wp + size_of_force(:points)**power))
+            self%misfit_of_rate(j) = max(tail, &
+               maxval(all_left/(1.0_wp + size_of_force**power_of_rate)))
+            self%echo(j) = maxval(echoes/(1.0_wp + size_beyond**power))
+            self%echo_of_rate(j) = max(maxval(echoes/(1.0_wp + size_beyond**power_of_rate)), &
+               maxval(all_left(:near)/(1.0_wp + size_of_force(:near)**power_of_rate)))
+         end associate
       end do
       self%coefficient = self%coefficient/window
 
@@ -215,15 +229,16 @@ contains
    end function response
 
    !> The sum for a footprint
-   pure subroutine at(self, footprint, terms, error_of_rate)
+   pure subroutine at(self, footprint, terms, misfit)
       class(layer_sum_t), intent(in) :: self
       !> Radius of the disc that is loaded [m], in the band
       real(wp), intent(in) :: footprint
       !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k; the
       !> error is the misfit of C as the motion feels it [m/N]
       type(exponential_sum_t), intent(out) :: terms
-      !> Misfit of C as the velocity at the end feels it [m/N]
-      real(wp), intent(out) :: error_of_rate
+      !> Misfits of C [m/N]: that of echoes as the motion feels it, and what the velocity feels at
+      !> an end at which the force is smooth, and at one at which it is not
+      real(wp), intent(out) :: misfit(3)
 
       real(wp) :: weight(radii), distance(radii), c(terms_of_fit)
       integer :: i
@@ -239,7 +254,7 @@ contains
       c = matmul(self%coefficient, weight/(sum(weight)*footprint))
       i = minloc(abs(distance), 1)
       terms%error = self%misfit(i)/footprint
-      error_of_rate = self%misfit_of_rate(i)/footprint
+      misfit = [self%echo(i), self%echo_of_rate(i), self%misfit_of_rate(i)]/footprint
       terms%rates = rate/self%window
       terms%pair_rates = pair_rate/self%window
       terms%moduli = c(:slow)

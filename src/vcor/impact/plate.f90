@@ -284,7 +284,7 @@ contains
 
    !> Response of a hereditary plate on a window of time as a sum of exponentials,
    !> U' = viscosity F + instant F' + int psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
-   pure subroutine response(self, window, accuracy, terms, instant, velocity_error)
+   pure subroutine response(self, window, accuracy, terms, instant, misfit)
       !> The plate, a hereditary one
       class(plate_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
@@ -296,23 +296,24 @@ contains
       type(exponential_sum_t), intent(out) :: terms
       !> Deflection that follows the force at once [m/N], <= 0; not 0 for a layer only
       real(wp), intent(out) :: instant
-      !> Error of a layer's velocity times the window per force [m/N], else 0
-      real(wp), intent(out) :: velocity_error
+      !> Errors of a layer's deflection per force [m/N], else 0: by echoes, and as its velocity
+      !> feels them at an end at which the force is smooth, and at one at which it is not
+      real(wp), intent(out) :: misfit(3)
 
       type(layer_sum_t) :: sum
       integer :: i
 
       instant = 0.0_wp
-      velocity_error = 0.0_wp
+      misfit = 0.0_wp
       if (allocated(self%layer)) then
          instant = self%layer%instant(self%footprint)
          i = 0
          if (allocated(self%sums)) i = findloc(self%sums%holds(self%footprint, window), .true., 1)
          if (i > 0) then
-            call self%sums(i)%at(self%footprint, terms, velocity_error)
+            call self%sums(i)%at(self%footprint, terms, misfit)
          else
             call new_layer_sum(sum, self%layer, self%footprint, window)
-            call sum%at(self%footprint, terms, velocity_error)
+            call sum%at(self%footprint, terms, misfit)
          end if
       else
          call self%memory%exponentials(window, accuracy, terms)

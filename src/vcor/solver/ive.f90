@@ -9,14 +9,16 @@
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
-   use vcor_impact_trajectory, only : col_impulse, col_time, contact_separated, trajectory_t
+   use vcor_impact_trajectory, only : col_impulse, col_indentation, col_time, contact_separated, &
+      trajectory_t
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_solver_ive_collocator, only : collocator_t, new_collocator
    use vcor_solver_ive_contact, only : follow
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_tuning, only : error_of_kernel, error_of_layer, kernel_share, layer_growth, &
-      layer_reach, layer_start, loosest_accuracy, plate_share, window_growth, window_margin
+   use vcor_solver_tuning, only : error_of_echo, error_of_kernel, error_of_layer, kernel_share, &
+      layer_growth, layer_reach, layer_start, loosest_accuracy, plate_share, shallow_end, &
+      window_growth, window_margin
    use vcor_solver_type, only : default_accuracy, solver_settings_t, solver_t
    implicit none
    private
@@ -81,10 +83,10 @@ contains
          end if
          if (impact%plate%hereditary()) then
             call impact%plate%response(window, plate_share*self%accuracy, modes%plate, &
-               modes%instant, modes%velocity_error)
+               modes%instant, modes%misfit)
             if (impact%plate%layered()) then
                modes%plate%error = modes%plate%error*impact%mass/window**2
-               modes%velocity_error = error_of_layer*modes%velocity_error*impact%mass/window**2
+               modes%misfit = modes%misfit*impact%mass/window**2
             end if
             if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
@@ -110,8 +112,10 @@ contains
       end if
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel &
-            *(error_felt(impact, modes%contact, trajectory) + modes%plate%error)
-         trajectory%cor_error = trajectory%cor_error + error_of_sums + modes%velocity_error
+            *(error_felt(impact, modes%contact, trajectory) + modes%plate%error) &
+            + error_of_echo*modes%misfit(1)
+         trajectory%cor_error = trajectory%cor_error + error_of_sums &
+            + error_of_layer*modes%misfit(merge(3, 2, ends_as_power(impact, trajectory)))
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
       trajectory%accuracy = self%settings%accuracy
@@ -123,6 +127,17 @@ contains
          trajectory%kernel_error = contact%error
       end associate
    end subroutine solve
+
+   !> Whether the force ends as s^1.5, so that what the response of a layer does at once shows in
+   !> the velocity at the end
+   pure function ends_as_power(impact, trajectory)
+      type(impact_t), intent(in) :: impact
+      type(trajectory_t), intent(in) :: trajectory
+      logical :: ends_as_power
+
+      ends_as_power = impact%law%receding .or. trajectory%state(col_indentation, trajectory%last) &
+         < shallow_end*trajectory%max_indentation
+   end function ends_as_power
 
    !> Error of the kernel as an impact feels it: that of the kernel's integral up to the largest
    !> force, in the share of the momentum that the loading has taken, if that is more, as it is

@@ -39,6 +39,9 @@ module vcor_solver_tuning
    real(wp), parameter :: layer_reach = 3.0e-4_wp ! tested
    !> Accuracy that an impact on a layer is worked to at best: what rings is not to be resolved
    real(wp), parameter :: layer_accuracy = 1.0e-7_wp ! tested
+   !> What the motion feels of the misfit of echoes, measured: most where a layer is soft, elastic
+   !> and as thick as the footprint is wide
+   real(wp), parameter :: error_of_echo = 20.0_wp ! tested
    !> What the velocity of its face at the end feels of the misfit, measured between sums of other
    !> rates: most where the force ends as s^1.5
    real(wp), parameter :: error_of_layer = 1.0e3_wp ! tested

@@ -24,8 +24,8 @@ module vcor_solver_ive_modes
       type(exponential_sum_t) :: plate
       !> Deflection of the plate that follows the force at once [m/N]
       real(wp) :: instant = 0.0_wp
-      !> Error of the velocity of a layer at the end over that of the impact [-]
-      real(wp) :: velocity_error = 0.0_wp
+      !> Misfits of the sum of a layer as `response` of the plate has them [m/N], over window^2/mass
+      real(wp) :: misfit(3) = 0.0_wp
    end type modes_t
 
 contains
