@@ -139,13 +139,14 @@ contains
       real(wp), intent(inout) :: inverse(width, width)
 
       type(panel_t) :: last
-      real(wp) :: time, correction, last_correction, tolerance, kappa, memory_rate, old_memory, &
-         memory, velocity
+      real(wp) :: length, time, correction, last_correction, tolerance, kappa, memory_rate, &
+         old_memory, memory, velocity
       logical :: elastic
       integer :: iteration, n
 
       n = panel%stages
       last = panel
+      length = step%duration()
       associate (contact => problem%modes%contact, law => problem%impact%law)
          elastic = size(contact%rates) == 0 .and. .not. contact%viscosity > 0.0_wp
          ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
@@ -159,7 +160,8 @@ contains
          old_memory = 0.0_wp
          correction = 0.0_wp
          do iteration = 1, most_iterations
-            if (.not. time > 0.0_wp) return
+            ! the zero is in the panel: beyond twice its length polynomials say nothing
+            if (.not. (time > 0.0_wp .and. time < 2.0_wp*length)) return
             step = step_to(start%time, time)
             call solve_cut(problem, last, start, step, panel, inverse)
             if (.not. panel%converged) return
