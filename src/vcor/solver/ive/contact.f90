@@ -227,7 +227,7 @@ contains
             self%ends = first_without_force(self%panel) > 0
             ! what rings in a layer does not keep the end from being found
             if (self%ends) call land_on_zero(problem, self%start, &
-               min(self%accuracy, usual_accuracy), &
+               merge(usual_accuracy, self%accuracy, problem%impact%plate%layered()), &
                shallow_end*trajectory%max_indentation, self%step, self%panel, self%inverse)
          end if
          if (.not. self%panel%converged) return
