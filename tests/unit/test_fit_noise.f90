@@ -23,6 +23,7 @@ program test_fit_noise
    call wrong_models()
    call ends_of_laws()
    call ends_of_series()
+   call a_damaged_value()
    call refusals()
    call finish()
 
@@ -190,6 +191,22 @@ contains
          call check(right == 5, 'the equilibrium modulus is stated where it is seen')
       end do
    end subroutine ends_of_series
+
+   !> A loss modulus with a damaged exponent, twelve decades off, is a misfit and no stop: a trial
+   !> material without any loss has a logarithm there
+   subroutine a_damaged_value()
+      type(fit_t) :: fit
+      type(samples_t) :: samples
+      type(error_t), allocatable :: error
+
+      samples%dynamic = .true.
+      samples%at = [6.3e-2_wp, 0.63_wp, 6.3_wp, 63.0_wp, 630.0_wp]
+      samples%modulus = [2.8e6_wp, 3.0e6_wp, 4.0e6_wp, 6.0e6_wp, 9.5e6_wp]
+      samples%loss = [1.0e18_wp, 5.0e5_wp, 1.0e6_wp, 2.0e6_wp, 3.0e6_wp]
+      call fit_material(fit, 'sls', 0, none, samples, error)
+      call check(.not. allocated(error), 'a damaged value is fitted')
+      if (.not. allocated(error)) call check(fit%largest > 1.0_wp, 'and said to be far off')
+   end subroutine a_damaged_value
 
    !> What cannot be fitted
    subroutine refusals()

@@ -223,7 +223,8 @@ contains
       if (allocated(error)) then
          r = far_off
       else
-         r = log(max(moduli_of(material, problem%samples), tiny(1.0_wp))/problem%samples%all())
+         r = log(max(moduli_of(material, problem%samples), tiny(1.0_wp))) &
+            - log(problem%samples%all())
       end if
    end function misfit
 
