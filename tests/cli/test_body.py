@@ -154,6 +154,35 @@ def test_contacts_that_do_not_end(vcor, law, reason):
     assert done.code == NUMERICAL and reason in done.err
 
 
+def test_growth_that_comes_slowly(vcor):
+    """Where t1 comes to a rest and rises, a rebound that is cut short of that says so in the end."""
+    vcor.write(
+        "&impact velocity = 0.0354629 /\n&sphere radius = 0.00105814, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'body', half_thickness = 4.91884e-5 /\n&contact law = 'receding' /\n"
+        "&material name = 'ball', density = 7800.0, poisson_ratio = 0.202176, model = 'prony', "
+        "equilibrium_modulus = 9.92974e6, moduli = 1.85815e8, 7.32952e7, 5.87675e7, 7.35755e7, 4.34279e7, "
+        "rates = 23.8651, 1447.46, 130074.0, 207809.0, 1.26457e6 /\n"
+        "&material name = 'plate', density = 1036.82, poisson_ratio = 0.499, model = 'cerf', "
+        "equilibrium_modulus = 5.45044e6, relaxing_modulus = 2.01084e7, beta = 25.1028 /\n"
+    )
+    for accuracy in ("1e-5", "1e-6", "1e-7"):
+        done = vcor("run", "case.nml", "--print", "cor", "--set", f"solver.accuracy={accuracy}")
+        assert done.code == NUMERICAL and "grows again" in done.err
+
+
+def test_growth_known_no_better_than_its_material(vcor):
+    """The same on a layer given by a table, of which the sum of exponentials is known to 3e-4."""
+    vcor.write(
+        "&impact velocity = 0.0790716 /\n&sphere radius = 0.0045679, material = 'ball' /\n"
+        "&plate material = 'plate', waves = 'body', half_thickness = 1.70262e-4 /\n"
+        "&contact law = 'receding', pair = 'series' /\n&material name = 'ball', density = 7800.0, model = 'rigid' /\n"
+        "&material name = 'plate', density = 1164.89, poisson_ratio = 0.375743, model = 'table', "
+        f"file = '{ROOT / 'tests' / 'reference' / 'table.csv'}' /\n"
+    )
+    done = vcor("run", "case.nml", "--print", "cor")
+    assert done.code == NUMERICAL and "seems to grow again" in done.err and "method = 'direct'" in done.err
+
+
 def test_glassy_modulus_that_lasts_for_no_time(vcor):
     """Steel on a Kelvin-Voigt layer, Eq. (1): direct takes no steps of the time that steel would need."""
     vcor.write(

@@ -45,8 +45,8 @@ module vcor_solver_ive_rebound
       real(wp) :: rate = 0.0_wp, bend = 0.0_wp
       !> Length of the panel refused before [s]
       real(wp) :: refused_length = huge(1.0_wp)
-      !> The longest panel from here on in which t1 rises [s]
-      real(wp) :: longest_growing = 0.0_wp
+      !> The longest panel in which t1 rises, and its end [s]
+      real(wp) :: longest_growing = 0.0_wp, growing_until = 0.0_wp
       !> Whether the panel only said where the contact ends
       logical :: misled = .false.
       !> Errors of the coefficients of restitution, by the relative velocity and of the sphere, that
@@ -84,11 +84,14 @@ contains
          if (is_refused(rebound)) cycle
          if (is_growing(rebound)) then
             if (is_crude(rebound)) cycle
-            ! it may be the error of the kernel that makes it grow
-            if (rebound%problem%modes%contact%error > rebound%accuracy) exit
+            if (rebound%problem%modes%contact%error > rebound%accuracy) then
+               call raise(error, error_numerical, 'the contact seems to grow again before it ' &
+                  //'has ended, which may be the error of the sum of exponentials that stands ' &
+                  //"for the material: use method = 'direct'")
             ! what its weight pushes back does not come off any more
-            if (.not. trajectory%has_died_out(rebound%problem%impact, .true.)) &
+            else if (.not. trajectory%has_died_out(rebound%problem%impact, .true.)) then
                call refuse_growth(rebound%problem%impact, error)
+            end if
             return
          end if
          call accept(rebound, trajectory)
@@ -333,7 +336,10 @@ contains
       !> Whether it may; the panel is cut then
       logical :: is_crude
 
-      self%longest_growing = max(self%longest_growing, self%taken)
+      if (self%taken > self%longest_growing) then
+         self%longest_growing = self%taken
+         self%growing_until = self%start%time + self%taken
+      end if
       is_crude = self%taken > sure_growth*self%longest_growing
       if (.not. is_crude) return
       self%length = 0.5_wp*self%taken
@@ -346,7 +352,7 @@ contains
       type(trajectory_t), intent(inout) :: trajectory
 
       if (self%ends) self%panel%force(self%panel%stages) = 0.0_wp
-      self%longest_growing = 0.0_wp
+      if (self%start%time + self%taken >= self%growing_until) self%longest_growing = 0.0_wp
       self%error_sum = self%error_sum + self%error
       call record(self%problem%collocator%rule, self%problem%impact, self%panel, trajectory)
       trajectory%last = trajectory%final
