@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
 from collections.abc import Mapping, Sequence
-from ctypes import Structure, c_char_p, c_double, c_int, c_void_p
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -19,20 +17,6 @@ from ._library import InputError
 
 #: Poisson's ratio that says that there is none
 _NOT_GIVEN = 1.0
-
-
-class _Fit(Structure):
-    """`c_fit_t` of src/vcor/fit/c_api.f90."""
-
-    _fields_ = [
-        *[(name, c_char_p) for name in ("file", "model", "name")],
-        *[(name, c_int) for name in ("terms", "dynamic", "n", "fixed_count")],
-        *[(name, c_void_p) for name in ("at", "modulus", "loss")],
-        ("fixed_names", c_char_p),
-        ("fixed_values", c_void_p),
-        *[(name, c_double) for name in ("poisson_ratio", "density")],
-        ("json", c_void_p),
-    ]
 
 
 @dataclass(frozen=True)
@@ -125,64 +109,26 @@ def fit(
         The fit fails, or the data do not determine the parameters.
     """
     fix = fix or {}
-    fixed = np.array([float(value) for value in fix.values()])
-    wish = _Fit(
-        model=model.encode(),
-        terms=terms or 0,
-        fixed_count=len(fix),
-        fixed_names=" ".join(fix).encode(),
-        fixed_values=fixed.ctypes.data,
-        poisson_ratio=_NOT_GIVEN if poisson_ratio is None else poisson_ratio,
-        density=density or 0.0,
-    )
+    file, samples = None, np.empty((0, 0))
     if isinstance(data, (str, os.PathLike)):
-        wish.file = os.fsencode(data)
+        file = os.fsencode(data)
         name = name or Path(data).stem
-        arrays = np.empty((0, 0))
     else:
-        arrays = np.array([np.ravel(np.asarray(column, dtype=float)) for column in data])
-        if len(arrays) not in (2, 3) or not (np.isfinite(arrays) & (arrays > 0)).all():
+        samples = np.array([np.ravel(np.asarray(column, dtype=float)) for column in data])
+        if len(samples) not in (2, 3) or not (np.isfinite(samples) & (samples > 0)).all():
             raise InputError(
                 "expected two or three arrays of one length with numbers > 0: times and moduli, "
                 "or angular frequencies, storage and loss moduli"
             )
-        arrays = np.ascontiguousarray(arrays[:, np.argsort(arrays[0], kind="stable")])
-        wish.n, wish.dynamic = arrays.shape[1], len(arrays) == 3
-        wish.at, wish.modulus, wish.loss = (row.ctypes.data for row in (*arrays, arrays[-1])[:3])
-    wish.name = (name or "material").encode()
-    _library.call("vcor_fit_data", ctypes.addressof(wish))
-    found = json.loads(_library.take_text(c_void_p(wish.json)) or "")
+        samples = np.ascontiguousarray(samples[:, np.argsort(samples[0], kind="stable")])
+    given = len(fix), _library.texts(tuple(fix)), np.array([float(one) for one in fix.values()])
+    ratio = _NOT_GIVEN if poisson_ratio is None else poisson_ratio
+    wish = (model, name or "material", terms or 0, *given, ratio, density or 0.0)
+    document = _library.text_of("vcor_fit_data", file, *samples.shape[::-1], samples, *wish)
+    found = json.loads(document or "")
     parameters = tuple(
         Parameter(one["name"].partition("(")[0], *list(one.values())[1:])
         for one in found["parameters"]
     )
     covariance = np.array(found["covariance"], dtype=float)
     return Fit(parameters, found["group"], found["rms_misfit"], found["follows"], covariance, found)
-
-
-def read_moduli(
-    path: str | os.PathLike[str], poisson_ratio: float | None = None
-) -> dict[str, _library.Floats]:
-    """Read a data file of moduli as `vcor fit` does, units and kind by its header.
-
-    Parameters
-    ----------
-    path
-        The file: columns, or the export of an instrument.
-    poisson_ratio
-        Poisson's ratio, for a file of shear moduli.
-
-    Returns
-    -------
-    dict
-        `time` [s] and `relaxation_modulus` [Pa], or `frequency` [rad/s], `storage_modulus` and
-        `loss_modulus` [Pa], of shape (n,), rising.
-    """
-    n, dynamic, values = c_int(), c_int(), c_void_p()
-    ratio = _NOT_GIVEN if poisson_ratio is None else poisson_ratio
-    results = map(ctypes.byref, (n, dynamic, values))
-    _library.call("vcor_read_moduli", os.fsencode(path), ratio, *results)
-    names = ["frequency", "storage_modulus", "loss_modulus"]
-    names = names if dynamic else ["time", "relaxation_modulus"]
-    table = _library.take_numbers(values, len(names) * n.value).reshape(len(names), -1)
-    return dict(zip(names, table, strict=True))

@@ -15,8 +15,8 @@ import math
 import os
 import re
 import sys
-import tempfile
 from collections.abc import Sequence
+from ctypes import byref, c_int, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,11 +24,10 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
-from . import _command
+from . import _command, _library
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .card_formats import GAS
 from .data import ZERO_C
-from .fit import read_moduli
 
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
@@ -307,18 +306,20 @@ def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
 
 def _curve(path: str, lines: Sequence[str], temperature: float) -> Curve:
     """Curve of the lines of a file, read as `vcor fit` reads them."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / Path(path).name
-        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        try:
-            columns = list(read_moduli(file).items())
-        except Error as error:
-            text = str(error).replace(str(file), path)
-            at = "" if math.isnan(temperature) else f" (at {temperature:.2f} K)"
-            raise type(error)(text + at) from None
-    order = slice(None) if columns[0][0] == "frequency" else slice(None, None, -1)
-    moduli = np.array([column[order] for _, column in columns[1:]])
-    return Curve(temperature, columns[0][0] == "frequency", columns[0][1][order], moduli)
+    # a null would end the text: vcor refuses it as any control character
+    text = "\n".join(lines).replace("\0", "\1")
+    n, columns, values = c_int(), c_int(), c_void_p()
+    try:
+        results = map(byref, (n, columns, values))
+        _library.call("vcor_read_moduli", text, os.fsencode(path), *results)
+    except Error as error:
+        which = "" if math.isnan(temperature) else f" (at {temperature:.2f} K)"
+        raise type(error)(f"{error}{which}") from None
+    table = _library.take_numbers(values, columns.value * n.value).reshape(columns.value, -1)
+    dynamic = columns.value == 3
+    # frequencies rise; times fall, as their frequencies rise
+    at, *moduli = table if dynamic else table[:, ::-1]
+    return Curve(temperature, dynamic, at, np.array(moduli))
 
 
 def _kelvin(text: str, path: str) -> float:

@@ -22,7 +22,7 @@ module vcor_io_sample_file
    implicit none
    private
 
-   public :: read_samples, reading_t, standard_input
+   public :: read_samples, read_samples_text, reading_t, standard_input
 
    !> Name that means the standard input
    character(len=*), parameter :: standard_input = "-"
@@ -71,19 +71,41 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: expected = "a file of moduli over time or frequency"
-      type(plan_t) :: plan
       character(len=:), allocatable :: name, text
-      real(wp), allocatable :: points(:, :)
-      integer :: lines(2), n
 
       if (filename == standard_input) then
          name = "stdin"
          call read_text_file("/dev/stdin", text, error, kind=expected)
       else
-         name = printable(filename)
+         name = filename
          call read_text_file(filename, text, error, kind=expected)
       end if
-      if (allocated(error)) return
+      if (.not. allocated(error)) &
+         call read_samples_text(samples, text, name, reading, note, place, error)
+   end subroutine read_samples
+
+   !> Read samples from the text of a file
+   subroutine read_samples_text(samples, text, source, reading, note, place, error)
+      !> The samples, of tensile moduli in SI units
+      type(samples_t), intent(out) :: samples
+      character(len=*), intent(in) :: text
+      !> Name of the file, for messages
+      character(len=*), intent(in) :: source
+      !> What the user says about it
+      type(reading_t), intent(in) :: reading
+      !> How it was understood, in words
+      character(len=:), allocatable, intent(out) :: note
+      !> File and lines of the numbers
+      character(len=:), allocatable, intent(out) :: place
+      !> Error of code `error_input` or `error_usage` as that of `read_samples`
+      type(error_t), allocatable, intent(out) :: error
+
+      type(plan_t) :: plan
+      character(len=:), allocatable :: name
+      real(wp), allocatable :: points(:, :)
+      integer :: lines(2), n
+
+      name = printable(source)
       call read_points(text, name, reading, plan, points, n, lines, error)
       if (allocated(error)) return
       if (plan%shear .and. reading%poisson_ratio > 0.5_wp) then
@@ -108,7 +130,7 @@ contains
       note = described(plan, n)
       place = name//":"//integer_text(lines(1))//"-"//integer_text(lines(2))
       samples%keys = keys_in(text)
-   end subroutine read_samples
+   end subroutine read_samples_text
 
    !> Keys of a &material group that remarks of a file give, `# &material shift = 'wlf', ...`
    function keys_in(text) result(keys)
