@@ -93,7 +93,7 @@ module vcor_impact_trajectory
    contains
       procedure :: reserve
       procedure :: add_map
-      procedure :: has_died_out
+      procedure :: stop_at_rest
       procedure :: is_stuck
       procedure :: rests
       procedure :: misses_by_far
@@ -142,22 +142,23 @@ contains
       self%map(:, self%steps + 1) = map
    end subroutine add_map
 
-   !> Whether all motion has died out in contact at the last node, for good; the status is set then
-   function has_died_out(self, impact, is_last) result(has)
+   !> Set the status if all motion has died out in contact at the last node, for good
+   subroutine stop_at_rest(self, impact, is_last, stopped)
       class(trajectory_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
       !> Whether the computation ends there in any case
       logical, intent(in) :: is_last
-      logical :: has
+      !> Whether it has died out
+      logical, intent(out) :: stopped
 
       if (impact%gravity > 0.0_wp) then
-         has = self%rests(impact, is_last)
-         if (has) self%status = contact_resting
+         stopped = self%rests(impact, is_last)
+         if (stopped) self%status = contact_resting
       else
-         has = self%is_stuck(impact)
-         if (has) self%status = contact_sticking
+         stopped = self%is_stuck(impact)
+         if (stopped) self%status = contact_sticking
       end if
-   end function has_died_out
+   end subroutine stop_at_rest
 
    !> Whether all motion has died out in contact at the last node, for good: what energy is left
    !> cannot make a rebound that deserves the name. A contact with an equilibrium modulus is at rest

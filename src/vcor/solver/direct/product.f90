@@ -207,7 +207,7 @@ contains
       type(run_t) :: run
       real(wp) :: end_time, node(columns), alpha
       integer :: n, room, turn
-      logical :: ends
+      logical :: ends, stopped
 
       end_time = settings%end_time
       if (.not. end_time > 0.0_wp) end_time = impact%patience(impact%time_scale())
@@ -245,7 +245,8 @@ contains
          if (.not. run%receding%shrinks) turn = n
          if (run%receding%regrows) then
             ! what its weight pushes back does not come off any more
-            if (trajectory%has_died_out(impact, .true.)) exit
+            call trajectory%stop_at_rest(impact, .true., stopped)
+            if (stopped) exit
             call refuse_growth(impact, error)
             return
          end if
@@ -276,8 +277,9 @@ contains
             trajectory%state(:, n) = end_of_contact(impact, run%kernel%newest, &
                run%motion%recoil, trajectory, n)
          end if
-         if (trajectory%has_died_out(impact, n == most_steps(impact) &
-             .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp))) then
+         call trajectory%stop_at_rest(impact, n == most_steps(impact) &
+            .or. node(col_time) + dt > end_time*(1.0_wp + 1.0e-9_wp), stopped)
+         if (stopped) then
             exit
          else if (ends) then
             trajectory%status = contact_separated

@@ -61,9 +61,9 @@ module vcor_solver_ive_contact
       !> that it has felt [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
       !> What a rebound feels of the branch point of the force at first contact [-]
-      real(wp) :: branch = 0.0_wp
+      real(wp) :: branch_felt = 0.0_wp
       !> Whether the panel ends next to s = 0, and with it next to the branch point of u(s)
-      logical :: shallow = .false., branches = .false.
+      logical :: shallow = .false., ends_at_branch = .false.
       !> End of the contact that was refused [s], and panels to come before it is tried again
       real(wp) :: end_found = 0.0_wp
       integer :: ahead = 0
@@ -95,6 +95,7 @@ contains
       type(contact_t) :: contact
       type(approach_t), target :: approach
       integer :: trial
+      logical :: over
 
       contact%problem = new_panel_problem(collocator, impact, modes)
       contact%time_scale = time_scale
@@ -109,7 +110,8 @@ contains
       do trial = 1, most_panels
          ! a panel that has been cut to nothing: no other one does better
          if (.not. contact%step%duration() > epsilon(1.0_wp)**2*time_scale) then
-            if (trajectory%has_died_out(impact, .true.)) return
+            call trajectory%stop_at_rest(impact, .true., over)
+            if (over) return
             exit
          end if
          call solve_panel(contact, trajectory)
@@ -118,11 +120,15 @@ contains
             cycle
          end if
          call judge(contact, trajectory)
-         if (is_refused(contact)) cycle
+         if (is_refused(contact)) then
+            call shorten(contact)
+            cycle
+         end if
          call accept(contact, approach, trajectory)
          complete = .not. contact%panel%time(contact%panel%stages) > window
          if (.not. complete) return
-         if (is_over(contact, ghost_end, trajectory)) return
+         call stop_at_end(contact, ghost_end, trajectory, over)
+         if (over) return
          if (contact%turns) then
             call turn_round(contact, approach, trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
@@ -186,12 +192,12 @@ contains
 
       associate (law => self%problem%impact%law)
          power = 1.0_wp + law%exponent
-         self%branch = branch_error*abs(2.0_wp*power - anint(2.0_wp*power)) &
+         self%branch_felt = branch_error*abs(2.0_wp*power - anint(2.0_wp*power)) &
             *(self%step%reach**2/(0.5_wp*law%contact_time*self%time_scale))**power
          allowed = inner_allowed*self%accuracy
-         if (self%branch <= allowed) return
-         self%step%reach = self%step%reach*(allowed/self%branch)**(0.5_wp/power)
-         self%branch = allowed
+         if (self%branch_felt <= allowed) return
+         self%step%reach = self%step%reach*(allowed/self%branch_felt)**(0.5_wp/power)
+         self%branch_felt = allowed
       end associate
    end subroutine shorten_at_branch
 
@@ -213,8 +219,9 @@ contains
       type(trajectory_t), intent(in) :: trajectory
 
       associate (problem => self%problem, rule => self%problem%collocator%rule)
-         self%last = self%start%time + self%step%duration() >= self%end_time
-         if (self%last) self%step = step_to(self%start%time, self%end_time - self%start%time)
+         self%reaches_end_time = self%start%time + self%step%duration() >= self%end_time
+         if (self%reaches_end_time) self%step = step_to(self%start%time, &
+            self%end_time - self%start%time)
          call guess(problem, self%previous, self%step, self%start, self%panel)
          call solve(problem, rule, self%step, self%start, self%panel, self%inverse)
          self%turns = .false.
@@ -292,8 +299,8 @@ contains
             ! next to u(s) = 0 both solutions err in the same direction
             if (self%shallow) force_error = max(force_error, shallow_factor &
                *min(self%growth_of(panel%force, coarse%force), self%doubt))
-            self%branches = panel%indentation(n) < next_to_branch*panel%indentation(0)
-            if (self%branches) self%excess = usually_better*self%excess
+            self%ends_at_branch = panel%indentation(n) < next_to_branch*panel%indentation(0)
+            if (self%ends_at_branch) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
             ! the velocity of a layer's face rings: shorter panels do not reach its error
             if (.not. impact%plate%layered()) self%excess = max(self%excess, &
@@ -387,33 +394,46 @@ contains
       end function work
    end function work_error
 
-   !> Whether the panel is refused; it is shortened then
-   function is_refused(self)
-      type(contact_t), intent(inout) :: self
+   !> Whether the panel is refused
+   pure function is_refused(self)
+      type(contact_t), intent(in) :: self
       logical :: is_refused
 
       ! what a shorter panel did not reduce has been handed down by the panels before
       is_refused = .not. (self%excess <= 1.0_wp &
          .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
-      ! where the motion is known its end may not be, next to a branch point because of rounding
-      if (is_refused .and. self%ends .and. self%growth <= panel_share*self%accuracy &
-          .and. (self%excess <= tolerable .or. .not. (self%branches .or. self%shallow))) &
-         is_refused = .not. self%is_best_end()
-      if (.not. is_refused) then
-         self%refused = huge(1.0_wp)
-         return
-      end if
+      if (is_refused .and. misses_its_end_only(self)) is_refused = .not. self%is_best_end()
+   end function is_refused
+
+   !> Whether the panel is known but for its end: next to a branch point that is rounding
+   pure function misses_its_end_only(self) result(misses)
+      !> The contact, its panel beyond what it may be off by
+      type(contact_t), intent(in) :: self
+      logical :: misses
+
+      misses = self%ends .and. self%growth <= panel_share*self%accuracy &
+         .and. (self%excess <= tolerable .or. .not. (self%ends_at_branch .or. self%shallow))
+   end function misses_its_end_only
+
+   !> Shorten a panel that is refused
+   subroutine shorten(self)
+      type(contact_t), intent(inout) :: self
+
       self%refused = self%excess
+      if (misses_its_end_only(self)) then
+         self%refused_end = self%excess
+         self%refused_ends = self%refused_ends + 1
+      end if
       if (self%ends) then
          ! next to a branch point the error falls as s u(s) only: panels that lead to the end come
          ! first
          self%end_found = self%start%time + self%step%duration()
          self%ahead = 0
-         if (self%branches) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
+         if (self%ends_at_branch) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
             /((1.0_wp + self%problem%impact%law%exponent)*log(1.0_wp - cut_at_end)))) - 1
       end if
       call self%step%shorten(merge(cut_at_end, 0.5_wp, self%ends)*self%step%duration())
-   end function is_refused
+   end subroutine shorten
 
    !> Make the panel a part of the course
    subroutine accept(self, approach, trajectory)
@@ -426,6 +446,7 @@ contains
       integer :: n
 
       n = self%panel%stages
+      self%refused = huge(1.0_wp)
       associate (problem => self%problem, rule => self%problem%collocator%rule)
          recorded = self%panel
          self%largest_growth = max(self%largest_growth, self%growth)
@@ -457,28 +478,31 @@ contains
       end associate
    end subroutine accept
 
-   !> Whether the computation has come to its end with the panel
-   function is_over(self, ghost_end, trajectory)
+   !> Set the status of a contact that has come to its end with the panel, and how far to go on
+   subroutine stop_at_end(self, ghost_end, trajectory, over)
       type(contact_t), intent(inout) :: self
       !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
       real(wp), intent(in) :: ghost_end
       type(trajectory_t), intent(inout) :: trajectory
-      logical :: is_over
+      !> Whether the computation has come to its end, too
+      logical, intent(out) :: over
 
-      is_over = self%last
       if (trajectory%status == contact_separated) then
-         is_over = self%panel%time(self%panel%stages) >= self%end_time
-      else if (trajectory%has_died_out(self%problem%impact, self%last)) then
-         is_over = .true.
-      else if (self%ends) then
+         over = self%panel%time(self%panel%stages) >= self%end_time
+         return
+      end if
+      call trajectory%stop_at_rest(self%problem%impact, self%reaches_end_time, over)
+      if (over) return
+      over = self%reaches_end_time
+      if (self%ends) then
          trajectory%status = contact_separated
          self%ahead = 0
          self%end_time = ghost_end
          if (.not. abs(ghost_end) > 0.0_wp) &
             self%end_time = 2.0_wp*trajectory%state(col_time, trajectory%last)
-         is_over = self%panel%time(self%panel%stages) >= self%end_time
+         over = self%panel%time(self%panel%stages) >= self%end_time
       end if
-   end function is_over
+   end subroutine stop_at_end
 
    !> Go on to the next step: to an end that was refused not before the panels that lead to it
    subroutine go_on(self)
@@ -520,7 +544,7 @@ contains
       associate (n => self%panel%stages, panel => self%panel, coarse => self%coarse, &
                  impact => self%problem%impact)
          part = error_over_difference(self)
-         sphere_error = self%largest_inner + self%branch + impulse_error(self, part) &
+         sphere_error = self%largest_inner + self%branch_felt + impulse_error(self, part) &
             /(impact%mass*impact%velocity)
          cor_error = sphere_error + part*abs(panel%drift(n) - coarse%drift(n - 1))/impact%velocity &
             + plate_error(self, part)
@@ -567,7 +591,7 @@ contains
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          ! next to s = 0 both solutions have F' = 0, but not at the same time
-         if (.not. (self%branches .or. self%shallow)) cor_error = cor_error &
+         if (.not. (self%ends_at_branch .or. self%shallow)) cor_error = cor_error &
             + (part*abs(panel%recoil(n) - coarse%recoil(n - 1)) &
             + time*abs(slope_at_end(rule, panel, panel%recoil)))/impact%velocity
       end associate
@@ -603,7 +627,7 @@ contains
             - self%coarse%impulse(n - 1)), &
             min(part*self%largest_growth, harmless*self%accuracy)*impact%mass*self%speed)
          ! next to a branch point the panel before the end is no better
-         if (self%branches) error = max(error, self%growth*impact%mass*self%speed)
+         if (self%ends_at_branch) error = max(error, self%growth*impact%mass*self%speed)
       end associate
    end function impulse_error
 
@@ -617,7 +641,7 @@ contains
 
       associate (problem => self%problem)
          part = 1.0_wp/self%improvement()
-         if (self%branches .or. self%alpha_rate()*problem%impact%mass > 1.0_wp .or. &
+         if (self%ends_at_branch .or. self%alpha_rate()*problem%impact%mass > 1.0_wp .or. &
              problem%impact%plate%frozen() .and. problem%modes%contact%error > 0.0_wp) part = 1.0_wp
       end associate
    end function error_over_difference

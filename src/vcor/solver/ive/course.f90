@@ -35,11 +35,12 @@ module vcor_solver_ive_course
       real(wp) :: end_time = 0.0_wp
       !> Error of the panel over what it may be, and that of the one refused before
       real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp)
-      !> Excess of the last panel that was to end the contact and was refused, and how often one was
+      !> Excess of the last panel that was to end the contact and was refused for its end, and how
+      !> often one was
       real(wp) :: refused_end = huge(1.0_wp)
-      integer :: closings = 0
+      integer :: refused_ends = 0
       !> Whether the contact ends with the panel, and whether the computation does
-      logical :: ends = .false., last = .false.
+      logical :: ends = .false., reaches_end_time = .false.
    contains
       procedure :: motion_error
       procedure :: alpha_rate
@@ -102,15 +103,13 @@ contains
 
    !> Whether an end does not become better: rounding in the force of stiff internal variables, or
    !> what is handed down, keeps its time from being known better
-   function is_best_end(self) result(best)
+   pure function is_best_end(self) result(best)
       !> The course, its panel judged
-      class(course_t), intent(inout) :: self
+      class(course_t), intent(in) :: self
       !> Whether it does not
       logical :: best
 
-      self%closings = self%closings + 1
-      best = self%excess > 0.5_wp*self%refused_end .or. self%closings >= enough_closings
-      self%refused_end = self%excess
+      best = self%excess > 0.5_wp*self%refused_end .or. self%refused_ends + 1 >= enough_closings
    end function is_best_end
 
    !> Factor by which the next panel can be longer than an accepted one

@@ -67,6 +67,7 @@ contains
 
       type(rebound_t) :: rebound
       integer :: trial
+      logical :: over
 
       rebound%course_t = course
       call start(rebound, approach)
@@ -81,21 +82,31 @@ contains
             cycle
          end if
          call judge(rebound)
-         if (is_refused(rebound)) cycle
+         if (is_refused(rebound)) then
+            call shorten(rebound)
+            cycle
+         end if
+         rebound%refused = huge(1.0_wp)
+         rebound%refused_length = huge(1.0_wp)
          if (is_growing(rebound)) then
-            if (is_crude(rebound)) cycle
+            if (is_crude(rebound)) then
+               call halve(rebound)
+               cycle
+            end if
             if (rebound%problem%modes%contact%error > rebound%accuracy) then
                call raise(error, error_numerical, 'the contact seems to grow again before it ' &
                   //'has ended, which may be the error of the sum of exponentials that stands ' &
                   //"for the material: use method = 'direct'")
-            ! what its weight pushes back does not come off any more
-            else if (.not. trajectory%has_died_out(rebound%problem%impact, .true.)) then
-               call refuse_growth(rebound%problem%impact, error)
+               return
             end if
+            ! what its weight pushes back does not come off any more
+            call trajectory%stop_at_rest(rebound%problem%impact, .true., over)
+            if (.not. over) call refuse_growth(rebound%problem%impact, error)
             return
          end if
          call accept(rebound, trajectory)
-         if (is_over(rebound, trajectory)) return
+         call stop_at_end(rebound, trajectory, over)
+         if (over) return
          call go_on(rebound)
       end do
       call raise(error, error_numerical, 'the internal-variable method does not get to the end ' &
@@ -153,8 +164,8 @@ contains
          end if
          self%taken = min(self%length, part*self%rest)
       end if
-      self%last = self%start%time + self%taken >= self%end_time
-      if (self%last) then
+      self%reaches_end_time = self%start%time + self%taken >= self%end_time
+      if (self%reaches_end_time) then
          self%ends = .false.
          self%taken = self%end_time - self%start%time
       end if
@@ -263,40 +274,48 @@ contains
       end associate
    end subroutine judge
 
-   !> Whether the panel is refused; its length is cut then
-   function is_refused(self)
-      type(rebound_t), intent(inout) :: self
+   !> Whether the panel is refused
+   pure function is_refused(self)
+      type(rebound_t), intent(in) :: self
       logical :: is_refused
-
-      real(wp) :: order, cut
-      logical :: halved
 
       ! what half the panel does not reduce by half is handed down by the panels before, or rounding
       ! in stiff internal variables
-      halved = self%taken <= 0.5_wp*self%refused_length
-      is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= tolerable .and. halved &
-         .and. self%excess > 0.5_wp*self%refused)
-      order = real(2*self%panel%stages - 2, wp)
-      if (self%ends) then
-         if (is_refused) is_refused = .not. self%is_best_end()
-         order = order_at_end
-      end if
-      if (.not. is_refused) then
-         self%refused = huge(1.0_wp)
-         self%refused_length = huge(1.0_wp)
-         return
-      end if
-      if (halved) then
+      is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= tolerable &
+         .and. is_half_of_refused(self) .and. self%excess > 0.5_wp*self%refused)
+      if (is_refused .and. self%ends) is_refused = .not. self%is_best_end()
+   end function is_refused
+
+   !> Whether the panel is half as long as the one refused before, or shorter
+   pure function is_half_of_refused(self) result(is_half)
+      type(rebound_t), intent(in) :: self
+      logical :: is_half
+
+      is_half = self%taken <= 0.5_wp*self%refused_length
+   end function is_half_of_refused
+
+   !> Shorten panels by one that is refused
+   subroutine shorten(self)
+      type(rebound_t), intent(inout) :: self
+
+      real(wp) :: order
+
+      if (is_half_of_refused(self)) then
          self%refused = self%excess
          self%refused_length = self%taken
       end if
-      cut = min(cut_least, (self%excess/aim)**(-1.0_wp/order))
-      if (self%ends) then
-         self%end_length = cut*self%taken
-      else
-         self%length = cut*self%taken
-      end if
-   end function is_refused
+      order = real(2*self%panel%stages - 2, wp)
+      if (self%ends) order = order_at_end
+      associate (length => self%taken*min(cut_least, (self%excess/aim)**(-1.0_wp/order)))
+         if (self%ends) then
+            self%refused_end = self%excess
+            self%refused_ends = self%refused_ends + 1
+            self%end_length = length
+         else
+            self%length = length
+         end if
+      end associate
+   end subroutine shorten
 
    !> Whether t1 rises somewhere in the panel. It does where its slope is positive in the solution
    !> and in its companion, by more than the two differ anywhere in the panel
@@ -328,23 +347,27 @@ contains
       end associate
    end function is_growing
 
-   !> Whether t1 may rise because the panel is crude: while it has not been cut for that. What rises
-   !> within a small part of it, does
-   function is_crude(self)
+   !> Whether t1 may rise because the panel is crude: while it has not been halved for that. What
+   !> rises within a small part of it, does
+   pure function is_crude(self)
       !> The rebound, t1 rising in its panel
-      type(rebound_t), intent(inout) :: self
-      !> Whether it may; the panel is cut then
+      type(rebound_t), intent(in) :: self
       logical :: is_crude
+
+      is_crude = self%taken > sure_growth*self%longest_growing
+   end function is_crude
+
+   !> Halve a panel in which t1 rises
+   subroutine halve(self)
+      type(rebound_t), intent(inout) :: self
 
       if (self%taken > self%longest_growing) then
          self%longest_growing = self%taken
          self%growing_until = self%start%time + self%taken
       end if
-      is_crude = self%taken > sure_growth*self%longest_growing
-      if (.not. is_crude) return
       self%length = 0.5_wp*self%taken
       self%end_length = min(self%end_length, self%length)
-   end function is_crude
+   end subroutine halve
 
    !> Make the panel a part of the course
    subroutine accept(self, trajectory)
@@ -358,23 +381,23 @@ contains
       trajectory%last = trajectory%final
    end subroutine accept
 
-   !> Whether the computation has come to its end with the panel
-   function is_over(self, trajectory)
+   !> Set the status of a contact that has come to its end with the panel
+   subroutine stop_at_end(self, trajectory, over)
       type(rebound_t), intent(in) :: self
       type(trajectory_t), intent(inout) :: trajectory
-      logical :: is_over
+      !> Whether it has, or the computation
+      logical, intent(out) :: over
 
-      is_over = self%last
-      if (trajectory%has_died_out(self%problem%impact, self%last)) then
-         is_over = .true.
-      else if (self%ends) then
+      call trajectory%stop_at_rest(self%problem%impact, self%reaches_end_time, over)
+      if (over) return
+      over = self%reaches_end_time .or. self%ends
+      if (self%ends) then
          trajectory%status = contact_separated
          trajectory%cor_error = self%error_sum(1) + 2*rounding_per_panel*real(trajectory%steps, wp)
          trajectory%cor_sphere_error = self%error_sum(2) &
             + 2*rounding_per_panel*real(trajectory%steps, wp)
-         is_over = .true.
       end if
-   end function is_over
+   end subroutine stop_at_end
 
    !> Go on to the next panel, with the end and t1 up to there by the parabolas that go on where
    !> this one ends. While the condition grows nothing tells when the contact ends
