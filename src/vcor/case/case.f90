@@ -5,8 +5,12 @@
 !> once has its entries from the start, a repeated group has them for each time it is there. An
 !> address is group, item, key and, in a list, element. A sweep sets the number at an address, and
 !> `vcor_case_problem` reads it there.
+!>
+!> The changes of a case are numbered, and an entry knows which one gave it its value. So whoever
+!> makes something from entries sees by `latest_change` of them whether it has to be made anew.
 module vcor_case_case
-   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan, ieee_quiet_nan, ieee_value
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
+      ieee_value
    use vcor_case_catalogue, only : catalogue, find_group, find_key, first_row, groups, &
       integer_key, last_row, logical_key, real_key, row_for_model, text_key
    use vcor_error, only : error_input, error_t, raise
@@ -45,6 +49,8 @@ module vcor_case_case
       character(len=:), allocatable :: text
       !> A list of numbers in the unit of the key, shape (n)
       real(wp), allocatable :: list(:)
+      !> Number of the change of the case that gave it its value, 0: it has had its default always
+      integer :: changed = 0
    end type entry_t
 
    !> One item of a group
@@ -55,8 +61,6 @@ module vcor_case_case
       integer :: line = 0
       !> File that it comes from when that is not the case file
       character(len=:), allocatable :: source
-      !> Number of its changes
-      integer :: revision = 0
       !> Entries, from the first row of the group to its last
       type(entry_t), allocatable :: entry(:)
    end type item_t
@@ -75,8 +79,10 @@ module vcor_case_case
       character(len=:), allocatable :: source
       !> Items by group
       type(items_t), allocatable, private :: group(:)
+      !> Number of its changes so far
+      integer, private :: changes = 0
    contains
-      procedure :: start, add, adopt, is_materials, source_of, revision, model, find_material
+      procedure :: start, add, adopt, is_materials, source_of, latest_change, model, find_material
       procedure :: material_of, address, path, row, number, given, unset, oust, refuse
       procedure :: count => count_items
       procedure :: line => line_of_item
@@ -208,6 +214,7 @@ contains
       call self%add(group, 0, own)
       self%group(group)%item(own) = other%group(group)%item(item)
       self%group(group)%item(own)%source = other%source
+      self%changes = max(self%changes, other%changes)
    end subroutine adopt
 
    !> Whether there is nothing but materials
@@ -261,18 +268,24 @@ contains
       line = self%group(group)%item(item)%line
    end function line_of_item
 
-   !> Counter of the changes of an item: as long as it stays the same, so does the item
-   pure function revision(self, group, item)
+   !> Number of the latest change of some values: as long as it stays the same, so do they
+   pure function latest_change(self, addresses) result(number)
       class(case_t), intent(in) :: self
-      !> Index of the group
-      integer, intent(in) :: group
-      !> Number of the item
-      integer, intent(in) :: item
-      !> The counter
-      integer :: revision
+      !> Where they stand; nowhere does not count
+      type(address_t), intent(in) :: addresses(:)
+      !> Number of the change, 0: there was none
+      integer :: number
 
-      revision = self%group(group)%item(item)%revision
-   end function revision
+      integer :: i
+
+      number = 0
+      do i = 1, size(addresses)
+         associate (at => addresses(i))
+            if (at%group > 0) &
+               number = max(number, self%group(at%group)%item(at%item)%entry(at%row)%changed)
+         end associate
+      end do
+   end function latest_change
 
    !> Value of the selector of an item, such as the model of a material
    pure function model(self, group, item) result(word)
@@ -506,8 +519,8 @@ contains
             list(address%element) = entry%number
             call move_alloc(list, item%entry(address%row)%list)
          end if
-         call note_change(item, address%row, entry%given)
       end associate
+      call note_change(self, address, entry%given)
       if (address == self%address('contact', 'mechanics')) call choose_mechanics(self, entry%text)
    end subroutine set_entry
 
@@ -531,7 +544,7 @@ contains
       end do
    end subroutine choose_mechanics
 
-   !> Set a number as it is: cheap, for a sweep
+   !> Set a number as it is: cheap, for a sweep. The same number as before is no change
    pure subroutine set_number(self, address, number)
       class(case_t), intent(inout) :: self
       !> Address of a real, integer or logical key, or of a number in a list
@@ -539,14 +552,23 @@ contains
       !> The number, in the unit of the key
       real(wp), intent(in) :: number
 
-      associate (item => self%group(address%group)%item(address%item))
-         if (address%element > 0) then
-            item%entry(address%row)%list(address%element) = number
-         else
-            item%entry(address%row)%number = number
+      real(wp) :: before
+
+      before = self%number(address)
+      if (ieee_is_finite(before) .and. ieee_is_finite(number)) then
+         if (.not. abs(number - before) > 0.0_wp) then
+            call mark(self, address, .true.)
+            return
          end if
-         call note_change(item, address%row, .true.)
+      end if
+      associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
+         if (address%element > 0) then
+            entry%list(address%element) = number
+         else
+            entry%number = number
+         end if
       end associate
+      call note_change(self, address, .true.)
    end subroutine set_number
 
    !> Set a text as it is
@@ -558,10 +580,8 @@ contains
       !> Whether it counts as given by the user
       logical, intent(in) :: given
 
-      associate (item => self%group(address%group)%item(address%item))
-         item%entry(address%row)%text = text
-         call note_change(item, address%row, given)
-      end associate
+      self%group(address%group)%item(address%item)%entry(address%row)%text = text
+      call note_change(self, address, given)
    end subroutine set_text
 
    !> Set a list as it is
@@ -574,35 +594,52 @@ contains
       !> Whether it counts as given by the user
       logical, intent(in) :: given
 
-      associate (item => self%group(address%group)%item(address%item))
-         item%entry(address%row)%list = list
-         call note_change(item, address%row, given)
-      end associate
+      self%group(address%group)%item(address%item)%entry(address%row)%list = list
+      call note_change(self, address, given)
    end subroutine set_list
 
-   !> Note that an entry has a new value; if it is given, the group counts as being in the case
-   pure subroutine note_change(item, row, given)
-      type(item_t), intent(inout) :: item
-      !> Row of the key
-      integer, intent(in) :: row
+   !> Note that an entry has a new value
+   pure subroutine note_change(self, address, given)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
       !> Whether the value was given by the user
       logical, intent(in) :: given
 
-      item%revision = item%revision + 1
-      item%entry(row)%present = .true.
-      item%entry(row)%given = given
-      if (given) item%present = .true.
+      call mark(self, address, given)
+      call number_change(self, address)
    end subroutine note_change
+
+   !> Give the entry at an address the number of a new change
+   pure subroutine number_change(self, address)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+
+      self%changes = self%changes + 1
+      self%group(address%group)%item(address%item)%entry(address%row)%changed = self%changes
+   end subroutine number_change
+
+   !> Note that an entry has a value; if it is given, the group counts as being in the case
+   pure subroutine mark(self, address, given)
+      class(case_t), intent(inout) :: self
+      type(address_t), intent(in) :: address
+      !> Whether the value was given by the user
+      logical, intent(in) :: given
+
+      associate (item => self%group(address%group)%item(address%item))
+         item%entry(address%row)%present = .true.
+         item%entry(address%row)%given = given
+         if (given) item%present = .true.
+      end associate
+   end subroutine mark
 
    !> Take a value back: the key has its default
    pure subroutine unset(self, address)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
 
-      associate (item => self%group(address%group)%item(address%item))
-         call set_default(item%entry(address%row), address%row)
-         item%revision = item%revision + 1
-      end associate
+      call set_default(self%group(address%group)%item(address%item)%entry(address%row), &
+         address%row)
+      call number_change(self, address)
    end subroutine unset
 
    !> Take back what is given in place of a key, as drop_height for velocity or the other way round

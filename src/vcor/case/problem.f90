@@ -1,8 +1,18 @@
 !> From a case to the impact that it describes and the solver that it asks for
 !>
 !> `update` follows the numbers of the case: whatever depends on a number that has changed is made
-!> anew, and nothing else. Threads of a sweep call it, so it calls no function that returns a text
-!> of deferred length, whose length gfortran 12 keeps in static storage.
+!> anew, and nothing else. The case numbers its changes; what is made here keeps the number of the
+!> latest change of what it was made from, `..._made_at`, and stands as long as that is the latest:
+!>
+!>  - the velocity changes: the motion is set, as it is at each point; materials, contact, solver
+!>    stand.
+!>  - the temperature changes: the constants of each material with a shift are set, its modulus
+!>    stands, so points of data are not fitted anew; the contact is made from it anew.
+!>  - the density of the plate changes: the same, for the plate alone.
+!>  - a modulus or a time of the sphere changes: its material is made anew, then the contact.
+!>
+!> Threads of a sweep call `update`, so it calls no function that returns a text of deferred
+!> length, whose length gfortran 12 keeps in static storage.
 !>
 !> What numbers may go together is the rule of who is built from them: material, contact, plate,
 !> impact, solver. Their errors name arguments, `error%about`; here these become keys and lines.
@@ -35,22 +45,27 @@ module vcor_case_problem
 
    public :: problem_t, problem_of_case, material_of_case, solve_case
 
+   !> Number of a change that no value ever has: not made, or in vain
+   integer, parameter :: never = -1
+
    !> A material of the case
    type :: body_t
       !> Group and item in the case
       type(address_t) :: address
       !> Where its temperature stands, nowhere for a material that has no shift
       type(address_t) :: temperature
-      !> Number of changes of the item when it was read last, -1: never
-      integer :: revision = -1
-      !> Rows of its numbers and lists in the catalogue, shape (n)
-      integer, allocatable :: rows(:)
+      !> Numbers and lists that its modulus is made from, shape (n)
+      type(address_t), allocatable :: modulus_from(:)
+      !> Its other numbers, which need no other modulus, shape (m)
+      type(address_t), allocatable :: constants_from(:)
       !> Its description
       type(material_data_t) :: data
       !> The material; allocated once it was built
       class(material_t), allocatable :: material
-      !> Whether the modulus of the material is that of its description
-      logical :: is_current = .false.
+      !> Latest change of what its modulus is made from, when it was made
+      integer :: modulus_made_at = never
+      !> Latest change of its other numbers and of the temperature, when they were set
+      integer :: constants_set_at = never
    end type body_t
 
    !> Addresses of the numbers that an impact is made from
@@ -78,8 +93,6 @@ module vcor_case_problem
       type(body_t), private :: plate
       !> Where the numbers stand
       type(numbers_t), private :: at
-      !> Half thickness of the plate that was built [m]; 0: not known
-      real(wp), private :: half_thickness = 0.0_wp
       !> Shape of the body that strikes, as the case names it
       character(len=6), private :: shape = 'sphere'
       !> One of the `waves_*` constants
@@ -88,10 +101,10 @@ module vcor_case_problem
       integer, private :: pair = pair_eq1
       !> Whether the Volterra series has its second term
       logical, private :: second_term = .false.
-      !> Whether modulus and plate of the impact are those of the materials
-      logical, private :: contact_is_current = .false.
-      !> Number of changes of &solver when the solver was built, -1: never
-      integer, private :: solver_revision = -1
+      !> Latest change of materials and half thickness, when modulus and plate were made from them
+      integer, private :: contact_made_at = never
+      !> Latest change of the numbers of the solver, when it was made
+      integer, private :: solver_made_at = never
       !> Number of the material that the last error is about, 0: none
       integer, private :: culprit = 0
    contains
@@ -183,10 +196,9 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(body_t) :: body
-      logical :: has_changed
 
       call describe(body, case, item)
-      call update_body(body, case, has_changed, error)
+      call update_body(body, case, error)
       if (allocated(error)) then
          call explain(case, item, error)
       else
@@ -299,6 +311,7 @@ contains
       integer, intent(in) :: item
 
       type(parameter_t), allocatable :: parameters(:)
+      type(address_t) :: address
       type(entry_t) :: entry
       real(wp), allocatable :: table(:)
       character(len=:), allocatable :: word
@@ -320,16 +333,24 @@ contains
          body%data%shift%logarithms = table(2::2)
       end if
       allocate (parameters, source=[density, shift_parameters, parameters_of(body%data%model)])
-      allocate (body%rows(0))
+      allocate (body%modulus_from(0), body%constants_from(0))
       do row = first_row(body%address%group), last_row(body%address%group)
          if (key_row(row) /= row) cycle
          ! lists are the terms of a Prony series, and the points of a table, which are no parameters
          counts = any(catalogue(row)%name == parameters%name)
+         address = address_t(body%address%group, item, row)
          if (catalogue(row)%value_kind == list_key) then
-            entry = case%entry(address_t(body%address%group, item, row))
+            entry = case%entry(address)
             counts = size(entry%list) > 0
          end if
-         if (counts) body%rows = [body%rows, row]
+         if (.not. counts) cycle
+         if (catalogue(row)%name == 'density' .or. any(shift_parameters%name &
+            == catalogue(row)%name) .or. (catalogue(row)%name == 'poisson_ratio' &
+            .and. .not. body%data%is_shear)) then
+            body%constants_from = [body%constants_from, address]
+         else
+            body%modulus_from = [body%modulus_from, address]
+         end if
       end do
    end subroutine describe
 
@@ -341,24 +362,23 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      real(wp) :: half_thickness
-      logical :: has_changed(2)
+      integer :: latest
 
       self%culprit = self%sphere%address%item
-      call update_body(self%sphere, case, has_changed(1), error)
+      call update_body(self%sphere, case, error)
       if (allocated(error)) return
       self%culprit = self%plate%address%item
-      call update_body(self%plate, case, has_changed(2), error)
+      call update_body(self%plate, case, error)
       if (allocated(error)) return
       self%culprit = 0
-      half_thickness = number_or_zero(case, self%at%half_thickness)
-      if (any(has_changed) .or. abs(half_thickness - self%half_thickness) > 0.0_wp) &
-         self%contact_is_current = .false.
-      self%half_thickness = half_thickness
-      if (.not. self%contact_is_current) then
-         call build_contact(self, error)
+      latest = max(self%sphere%modulus_made_at, self%sphere%constants_set_at, &
+         self%plate%modulus_made_at, self%plate%constants_set_at, &
+         case%latest_change([self%at%half_thickness]))
+      if (self%contact_made_at /= latest) then
+         self%contact_made_at = never
+         call build_contact(self, case, error)
          if (allocated(error)) return
-         self%contact_is_current = .true.
+         self%contact_made_at = latest
       end if
       call launch(self, case, error)
       if (allocated(error)) return
@@ -444,16 +464,17 @@ contains
    end subroutine look_around
 
    !> Build what the sphere meets: modulus and plate of the impact
-   subroutine build_contact(self, error)
+   subroutine build_contact(self, case, error)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
+      type(case_t), intent(in) :: case
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       call new_contact_modulus(self%impact%modulus, self%sphere%material, self%plate%material, &
          self%sphere%data%deforms_as(self%plate%data), error, self%pair)
       if (.not. allocated(error)) call new_plate(self%impact%plate, self%plate%material, &
-         self%half_thickness, self%waves, error)
+         number_or_zero(case, self%at%half_thickness), self%waves, error)
       if (.not. allocated(error)) return
       if (.not. allocated(error%about)) return
       if (error%about == 'density') self%culprit = self%plate%address%item
@@ -536,10 +557,11 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: revision
+      integer :: latest
 
-      revision = case%revision(self%at%accuracy%group, 1)
-      if (self%solver_revision /= revision) then
+      latest = case%latest_change([self%at%time_step, self%at%end_time, self%at%accuracy, &
+         self%at%second_coefficient])
+      if (self%solver_made_at /= latest) then
          self%settings%time_step = number_or_zero(case, self%at%time_step)
          self%settings%end_time = number_or_zero(case, self%at%end_time)
          self%settings%accuracy = number_or_zero(case, self%at%accuracy)
@@ -548,9 +570,9 @@ contains
             self%settings%second_coefficient = case%number(self%at%second_coefficient)
       end if
       call check_settings(self%settings, self%impact, error)
-      if (.not. allocated(error) .and. self%solver_revision /= revision) then
+      if (.not. allocated(error) .and. self%solver_made_at /= latest) then
          call new_solver(self%solver, self%settings, error)
-         if (.not. allocated(error)) self%solver_revision = revision
+         if (.not. allocated(error)) self%solver_made_at = latest
       end if
    end subroutine update_solver
 
@@ -565,66 +587,53 @@ contains
    end function number_or_zero
 
    !> Follow the numbers of a material: it is built anew if its modulus has changed
-   subroutine update_body(body, case, has_changed, error)
+   subroutine update_body(body, case, error)
       !> The material, described
       type(body_t), intent(inout) :: body
       type(case_t), intent(in) :: case
-      !> Whether the material is another one than before
-      logical, intent(out) :: has_changed
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      type(address_t) :: address
-      real(wp), allocatable :: list(:)
-      real(wp) :: number
-      integer :: i, revision
+      integer :: modulus, constants
 
-      address = body%address
-      revision = case%revision(address%group, address%item)
-      number = number_or_zero(case, body%temperature)
-      has_changed = body%revision /= revision .or. .not. body%is_current &
-         .or. abs(number - body%data%temperature) > 0.0_wp
-      if (.not. has_changed) return
-      body%data%temperature = number
-      do i = 1, size(body%rows)
-         associate (key => catalogue(body%rows(i)))
-            if (key%value_kind == list_key) then
-               call case%get('material', key%name, list, address%item)
-               if (is_same(list, body%data%list(key%name))) cycle
-               call body%data%set_list(key%name, list)
-            else
-               address%row = body%rows(i)
-               number = case%number(address)
-               if (ieee_is_nan(number)) cycle
-               if (body%revision >= 0 &
-                   .and. .not. abs(number - body%data%number(key%name)) > 0.0_wp) cycle
-               call body%data%set(key%name, number)
-               ! points of data need not be fitted anew for another density or shift
-               if (key%name == 'density' .or. any(shift_parameters%name == key%name)) cycle
-               if (key%name == 'poisson_ratio' .and. .not. body%data%is_shear) cycle
-            end if
-            body%is_current = .false.
-         end associate
-      end do
-      body%revision = revision
-      if (body%is_current) then
+      modulus = case%latest_change(body%modulus_from)
+      constants = max(case%latest_change(body%constants_from), &
+         case%latest_change([body%temperature]))
+      if (body%modulus_made_at == modulus .and. body%constants_set_at == constants) return
+      body%data%temperature = number_or_zero(case, body%temperature)
+      call copy_values(body%data, case, body%constants_from)
+      if (body%modulus_made_at == modulus) then
          call set_constants_of(body%material, body%data, error)
       else
+         call copy_values(body%data, case, body%modulus_from)
          call new_material(body%material, body%data, error)
       end if
-      body%is_current = .not. allocated(error)
+      body%modulus_made_at = merge(never, modulus, allocated(error))
+      body%constants_set_at = constants
    end subroutine update_body
 
-   !> Whether two lists are the same
-   pure function is_same(one, other) result(same)
-      !> One, shape (n)
-      real(wp), intent(in) :: one(:)
-      !> The other, shape (m)
-      real(wp), intent(in) :: other(:)
-      logical :: same
+   !> Copy the values of a material to its description
+   subroutine copy_values(data, case, addresses)
+      type(material_data_t), intent(inout) :: data
+      type(case_t), intent(in) :: case
+      !> Where they stand
+      type(address_t), intent(in) :: addresses(:)
 
-      same = size(one) == size(other)
-      if (same) same = .not. any(abs(one - other) > 0.0_wp)
-   end function is_same
+      real(wp), allocatable :: list(:)
+      real(wp) :: number
+      integer :: i
+
+      do i = 1, size(addresses)
+         associate (key => catalogue(addresses(i)%row))
+            if (key%value_kind == list_key) then
+               call case%get('material', key%name, list, addresses(i)%item)
+               call data%set_list(key%name, list)
+            else
+               number = case%number(addresses(i))
+               if (.not. ieee_is_nan(number)) call data%set(key%name, number)
+            end if
+         end associate
+      end do
+   end subroutine copy_values
 
 end module vcor_case_problem

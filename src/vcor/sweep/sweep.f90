@@ -51,9 +51,8 @@ module vcor_sweep_sweep
       type(trajectory_t) :: trajectory
       !> The case with the numbers of the impact
       type(case_t), private :: case
-      !> Which value of each parameter is set in it, 0: none; allocated once it is ready, shape
-      !> (axes)
-      integer, allocatable, private :: places(:)
+      !> Whether case and problem are those of the sweep, at one of its points
+      logical, private :: is_ready = .false.
    end type worker_t
 
 contains
@@ -150,21 +149,19 @@ contains
       real(wp) :: value
       integer :: i, place(size(self%grid%axes))
 
-      if (.not. allocated(worker%places)) then
+      if (.not. worker%is_ready) then
          worker%case = self%case
          worker%problem = self%problem
-         allocate (worker%places(size(place)), source=0)
+         worker%is_ready = .true.
       end if
       place = self%grid%places(point)
       do i = 1, size(place)
-         if (worker%places(i) == place(i)) cycle
          value = self%grid%axes(i)%values(place(i))
          if (.not. contains_number(self%ranges(i), value)) then
             call raise(error, error_input, self%objections(i)%message)
             return
          end if
          call worker%case%set(self%grid%axes(i)%address, value)
-         worker%places(i) = place(i)
       end do
       call worker%problem%update(worker%case, error)
    end subroutine build_point
