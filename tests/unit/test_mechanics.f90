@@ -1,6 +1,7 @@
 !> Exact hereditary mechanics: receding contact, hereditary plate, bodies in series
 program test_mechanics
    use vcor_error, only : error_numerical, error_t
+   use vcor_impact_layer_sum, only : layer_misfit_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_plate, only : new_plate, plate_t, waves_constant, waves_hereditary, waves_none, &
@@ -524,7 +525,8 @@ contains
       type(plate_t) :: plate
       type(exponential_sum_t) :: terms
       type(error_t), allocatable :: error
-      real(wp) :: time, expected, instant, misfit(3)
+      type(layer_misfit_t) :: misfit
+      real(wp) :: time, expected, instant
       integer :: i, j, k, m
 
       call new_sls(prony(1), 2.7e5_wp, 10.0_wp, 3300.0_wp, error)

@@ -23,12 +23,20 @@ module vcor_impact_layer_sum
    implicit none
    private
 
-   public :: layer_sum_t, new_layer_sum
+   public :: layer_misfit_t, layer_sum_t, new_layer_sum
 
    !> The band of footprints: from ladder**band to ladder**(band + 1) m, and radii in it at the
    !> zeros of a Chebyshev polynomial of the logarithm
    real(wp), parameter :: ladder = 2.0_wp
    integer, parameter :: radii = 13
+
+   !> What a sum misses of C [m/N]
+   type :: layer_misfit_t
+      !> Of echoes, as the motion feels it
+      real(wp) :: echo = 0.0_wp
+      !> As the velocity feels it at an end at which the force is smooth, and at one where it is not
+      real(wp) :: smooth_end = 0.0_wp, power_end = 0.0_wp
+   end type layer_misfit_t
 
    !> Sums of a layer for the footprints of a band
    type :: layer_sum_t
@@ -236,9 +244,7 @@ contains
       !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k; the
       !> error is the misfit of C as the motion feels it [m/N]
       type(exponential_sum_t), intent(out) :: terms
-      !> Misfits of C [m/N]: that of echoes as the motion feels it, and what the velocity feels at
-      !> an end at which the force is smooth, and at one at which it is not
-      real(wp), intent(out) :: misfit(3)
+      type(layer_misfit_t), intent(out) :: misfit
 
       real(wp) :: weight(radii), distance(radii), c(terms_of_fit)
       integer :: i
@@ -254,7 +260,8 @@ contains
       c = matmul(self%coefficient, weight/(sum(weight)*footprint))
       i = minloc(abs(distance), 1)
       terms%error = self%misfit(i)/footprint
-      misfit = [self%echo(i), self%echo_of_rate(i), self%misfit_of_rate(i)]/footprint
+      misfit = layer_misfit_t(self%echo(i)/footprint, self%echo_of_rate(i)/footprint, &
+         self%misfit_of_rate(i)/footprint)
       terms%rates = rate/self%window
       terms%pair_rates = pair_rate/self%window
       terms%moduli = c(:slow)

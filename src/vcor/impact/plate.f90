@@ -2,7 +2,7 @@
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_layer, only : layer_t, new_layer
-   use vcor_impact_layer_sum, only : layer_sum_t, new_layer_sum
+   use vcor_impact_layer_sum, only : layer_misfit_t, layer_sum_t, new_layer_sum
    use vcor_impact_memory, only : memory_t, new_memory
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -296,15 +296,13 @@ contains
       type(exponential_sum_t), intent(out) :: terms
       !> Deflection that follows the force at once [m/N], <= 0; not 0 for a layer only
       real(wp), intent(out) :: instant
-      !> Errors of a layer's deflection per force [m/N], else 0: by echoes, and as its velocity
-      !> feels them at an end at which the force is smooth, and at one at which it is not
-      real(wp), intent(out) :: misfit(3)
+      !> What the sum misses of a layer's deflection per force, else 0
+      type(layer_misfit_t), intent(out) :: misfit
 
       type(layer_sum_t) :: sum
       integer :: i
 
       instant = 0.0_wp
-      misfit = 0.0_wp
       if (allocated(self%layer)) then
          instant = self%layer%instant(self%footprint)
          i = 0

@@ -8,6 +8,7 @@
 !> `vcor_solver_ive_rebound`.
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
+   use vcor_impact_layer_sum, only : layer_misfit_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_impulse, col_indentation, col_time, contact_separated, &
       trajectory_t
@@ -61,7 +62,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(modes_t) :: modes
-      real(wp) :: end_time, ghost_end, window, growth, time_scale, error_of_sums
+      type(layer_misfit_t) :: misfit
+      real(wp) :: end_time, ghost_end, window, growth, time_scale, error_of_sums, stiffness
       logical :: complete
 
       time_scale = impact%time_scale()
@@ -70,6 +72,8 @@ contains
       ghost_end = merge(self%settings%end_time, -1.0_wp, self%settings%ghost)
       window = window_margin*impact%law%contact_time*time_scale
       growth = window_growth
+      ! what the deflection per force of a layer is measured by
+      stiffness = 0.0_wp
       if (impact%plate%layered()) then
          window = impact%plate%window(impact%law%contact_time*time_scale)
          growth = layer_growth
@@ -83,10 +87,10 @@ contains
          end if
          if (impact%plate%hereditary()) then
             call impact%plate%response(window, plate_share*self%accuracy, modes%plate, &
-               modes%instant, modes%misfit)
+               modes%instant, misfit)
             if (impact%plate%layered()) then
-               modes%plate%error = modes%plate%error*impact%mass/window**2
-               modes%misfit = modes%misfit*impact%mass/window**2
+               stiffness = impact%mass/window**2
+               modes%plate%error = modes%plate%error*stiffness
             end if
             if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
@@ -113,9 +117,10 @@ contains
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel &
             *(error_felt(impact, modes%contact, trajectory) + modes%plate%error) &
-            + error_of_echo*modes%misfit(1)
+            + error_of_echo*misfit%echo*stiffness
          trajectory%cor_error = trajectory%cor_error + error_of_sums &
-            + error_of_layer*modes%misfit(merge(3, 2, ends_as_power(impact, trajectory)))
+            + error_of_layer*merge(misfit%power_end, misfit%smooth_end, &
+            ends_as_power(impact, trajectory))*stiffness
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
       trajectory%accuracy = self%settings%accuracy

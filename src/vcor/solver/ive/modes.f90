@@ -24,8 +24,6 @@ module vcor_solver_ive_modes
       type(exponential_sum_t) :: plate
       !> Deflection of the plate that follows the force at once [m/N]
       real(wp) :: instant = 0.0_wp
-      !> Misfits of the sum of a layer as `response` of the plate has them [m/N], over window^2/mass
-      real(wp) :: misfit(3) = 0.0_wp
    end type modes_t
 
 contains
