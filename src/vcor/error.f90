@@ -40,6 +40,8 @@ module vcor_error
       !> Names of the arguments that it is about, separated by blanks: the one that is missing, or
       !> those that contradict each other; unallocated where nobody can say
       character(len=:), allocatable :: about
+      !> Which of several things has these arguments: the number of a material; 0: none of them
+      integer :: item = 0
    end type error_t
 
 contains

@@ -5,14 +5,31 @@ module vcor_words
    implicit none
    private
 
-   public :: contains_word, spelled, join_words, nearest_name, edit_distance, suggestion
+   public :: contains_word, list_of_words, spelled, join_words, nearest_name, edit_distance, &
+      suggestion, longest_name
 
-   !> Longest name that is compared [bytes]
-   integer, parameter :: longest = 64
+   !> Longest name that is compared, or taken from a list [bytes]
+   integer, parameter :: longest_name = 64
    !> Shortest name that is taken for the beginning of a known one [bytes]
    integer, parameter :: shortest_beginning = 3
 
 contains
+
+   !> The words of a list one by one
+   pure function list_of_words(words) result(list)
+      !> Words separated by single blanks, each of at most `longest_name` bytes
+      character(len=*), intent(in) :: words
+      character(len=longest_name), allocatable :: list(:)
+      integer :: first, last
+
+      allocate (list(0))
+      first = 1
+      do while (first <= len_trim(words))
+         last = first + index(words(first:)//" ", " ") - 2
+         list = [list, [character(len=longest_name) :: words(first:last)]]
+         first = last + 2
+      end do
+   end function list_of_words
 
    !> Whether a list of words holds a word
    pure function contains_word(words, word) result(yes)
@@ -93,7 +110,7 @@ contains
       integer :: first, last, distance, least, most
 
       word = ""
-      if (len_trim(name) == 0 .or. len_trim(name) > longest) return
+      if (len_trim(name) == 0 .or. len_trim(name) > longest_name) return
       ! One slip in a short name, one in three letters of a long one
       most = max(1, (len_trim(name) + 1)/3)
       least = most + 1

@@ -15,7 +15,8 @@
 !> length, whose length gfortran 12 keeps in static storage.
 !>
 !> What numbers may go together is the rule of who is built from them: material, contact, plate,
-!> impact, solver. Their errors name arguments, `error%about`; here these become keys and lines.
+!> impact, solver. Their errors name arguments, `error%about`; `explain` makes keys and lines of
+!> them, `has_part` says whether a swept key is among them.
 module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : address_t, case_t, entry_t
@@ -40,10 +41,11 @@ module vcor_case_problem
    use vcor_material_shifted, only : shift_parameters
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_text, only : integer_text, quoted, shortened
+   use vcor_words, only : list_of_words, longest_name
    implicit none
    private
 
-   public :: problem_t, problem_of_case, material_of_case, solve_case
+   public :: problem_t, problem_of_case, material_of_case, solve_case, has_part
 
    !> Number of a change that no value ever has: not made, or in vain
    integer, parameter :: never = -1
@@ -105,8 +107,6 @@ module vcor_case_problem
       integer, private :: contact_made_at = never
       !> Latest change of the numbers of the solver, when it was made
       integer, private :: solver_made_at = never
-      !> Number of the material that the last error is about, 0: none
-      integer, private :: culprit = 0
    contains
       procedure :: update, solve
    end type problem_t
@@ -118,8 +118,7 @@ contains
       type(problem_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Error of code `error_input` that says where its cause stands, and is `about` the paths of
-      !> what has a part in it; unallocated on success
+      !> Error of code `error_input` that says where its cause stands, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
@@ -182,7 +181,7 @@ contains
          case%address('material', 'yield_strength', self%sphere%address%item), &
          case%address('material', 'yield_strength', self%plate%address%item)]
       call self%update(case, error)
-      if (allocated(error)) call explain(case, self%culprit, error)
+      if (allocated(error)) call explain(case, error)
    end subroutine problem_of_case
 
    !> A material of a case
@@ -200,7 +199,7 @@ contains
       call describe(body, case, item)
       call update_body(body, case, error)
       if (allocated(error)) then
-         call explain(case, item, error)
+         call explain(case, error)
       else
          call move_alloc(body%material, material)
       end if
@@ -221,39 +220,33 @@ contains
    end subroutine solve_case
 
    !> Say in terms of the case what is wrong: where it stands and what was found there
-   subroutine explain(case, item, error)
+   !>
+   !> Whoever builds a material raises 'a standard linear solid needs 0 <= alpha <= beta', about
+   !> 'alpha beta'; `update_body` adds that it is item 2. If that is pmma, with both keys in line
+   !> 8, this becomes
+   !>
+   !>     case.nml:8: found alpha = 130.0 and beta = 120.0 in &material 'pmma': a standard linear
+   !>     solid needs 0 <= alpha <= beta
+   !>
+   !> The line is that of the first key that was given. A key that has no value is not found; where
+   !> none has one it says "key 'alpha' is missing in &material 'pmma'".
+   subroutine explain(case, error)
       type(case_t), intent(in) :: case
-      !> Number of the material that the error is about, 0: none
-      integer, intent(in) :: item
-      !> Error, about names of arguments that are called like their keys; on return about paths
+      !> Error, about names of arguments that are called like their keys
       type(error_t), intent(inout) :: error
 
       type(address_t) :: address, cause
       type(entry_t) :: entry
-      character(len=:), allocatable :: names, paths, place, found, name
-      integer :: first, last
+      character(len=longest_name), allocatable :: names(:)
+      character(len=:), allocatable :: place, found, name
+      integer :: i
       logical :: is_given
 
-      place = ''
-      if (item > 0) then
-         call case%get('material', 'name', name, item)
-         place = ' in &material '//quoted(shortened(name))
-      end if
-      names = ''
-      ! who builds a material and says nothing may mean all of it
-      if (item > 0) names = keys_of(find_group('material'))
-      if (allocated(error%about)) names = error%about
-      paths = ''
+      allocate (names, source=names_about(error))
       found = ''
       is_given = .false.
-      first = 1
-      do while (first <= len(names))
-         last = first + index(names(first:)//' ', ' ') - 2
-         address = address_of(case, names(first:last), item)
-         ! what belongs to a material, of whichever body, keeps its name
-         if (address%group == 0) paths = paths//' '//names(first:last)
-         if (address%group > 0) paths = paths//' '//case%path(address)
-         first = last + 2
+      do i = 1, size(names)
+         address = address_of(case, trim(names(i)), error%item)
          if (address%group == 0) cycle
          entry = case%entry(address)
          ! the first that was given, else the first
@@ -268,17 +261,62 @@ contains
             end if
          end associate
       end do
+      place = ''
+      if (error%item > 0) then
+         call case%get('material', 'name', name, error%item)
+         place = ' in &material '//quoted(shortened(name))
+      end if
       if (.not. allocated(error%about)) then
          found = ''
       else if (found /= '') then
          found = 'found'//found(len(' and') + 1:)//place//': '
       else if (cause%group > 0) then
-         if (item == 0) place = ' in &'//trim(groups(cause%group)%name)
+         if (error%item == 0) place = ' in &'//trim(groups(cause%group)%name)
          found = "key '"//trim(catalogue(cause%row)%name)//"' is missing"//place//': '
       end if
       error%message = case%location(cause)//': '//found//error%message
-      if (names /= '') error%about = paths
    end subroutine explain
+
+   !> Whether the value at an address has a part in an error, as far as anybody can say
+   pure function has_part(case, address, error) result(yes)
+      type(case_t), intent(in) :: case
+      !> Address, its element does not count
+      type(address_t), intent(in) :: address
+      !> Error of `problem_of_case`
+      type(error_t), intent(in) :: error
+      logical :: yes
+
+      type(address_t) :: other
+      character(len=longest_name), allocatable :: names(:)
+      integer :: i
+
+      allocate (names, source=names_about(error))
+      yes = size(names) == 0
+      do i = 1, size(names)
+         other = address_of(case, trim(names(i)), error%item)
+         if (other%group > 0) then
+            yes = yes .or. (other%row == address%row .and. other%item == address%item)
+         else
+            ! a key of a material, of whichever body
+            yes = yes .or. catalogue(address%row)%name == names(i)
+         end if
+      end do
+   end function has_part
+
+   !> Names of the arguments that an error is about
+   pure function names_about(error) result(names)
+      type(error_t), intent(in) :: error
+      character(len=longest_name), allocatable :: names(:)
+
+      if (allocated(error%about)) then
+         names = list_of_words(error%about)
+      else if (error%item > 0) then
+         ! who builds a material and says nothing may mean all of it
+         names = list_of_words(keys_of(find_group('material')))
+      else
+         allocate (names(0))
+      end if
+   end function names_about
 
    !> Address of an argument that is called like its key
    pure function address_of(case, name, item) result(address)
@@ -364,13 +402,10 @@ contains
 
       integer :: latest
 
-      self%culprit = self%sphere%address%item
       call update_body(self%sphere, case, error)
       if (allocated(error)) return
-      self%culprit = self%plate%address%item
       call update_body(self%plate, case, error)
       if (allocated(error)) return
-      self%culprit = 0
       latest = max(self%sphere%modulus_made_at, self%sphere%constants_set_at, &
          self%plate%modulus_made_at, self%plate%constants_set_at, &
          case%latest_change([self%at%half_thickness]))
@@ -477,7 +512,7 @@ contains
          number_or_zero(case, self%at%half_thickness), self%waves, error)
       if (.not. allocated(error)) return
       if (.not. allocated(error%about)) return
-      if (error%about == 'density') self%culprit = self%plate%address%item
+      if (error%about == 'density') error%item = self%plate%address%item
    end subroutine build_contact
 
    !> Set the impact's motion
@@ -501,7 +536,7 @@ contains
          if (.not. self%sphere%material%density() > 0.0_wp) then
             call raise(error, error_input, 'the mass of the sphere follows from it; or give ' &
                //'mass in &sphere', about='density')
-            self%culprit = self%sphere%address%item
+            error%item = self%sphere%address%item
             return
          end if
       end if
@@ -610,6 +645,7 @@ contains
       end if
       body%modulus_made_at = merge(never, modulus, allocated(error))
       body%constants_set_at = constants
+      if (allocated(error)) error%item = body%address%item
    end subroutine update_body
 
    !> Copy the values of a material to its description

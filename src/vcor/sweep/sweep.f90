@@ -16,12 +16,11 @@ module vcor_sweep_sweep
       contact_sticking, trajectory_t
    use vcor_kinds, only : wp
    use vcor_case_case, only : case_t
-   use vcor_case_grid, only : axis_t, grid_t, new_grid
+   use vcor_case_grid, only : grid_t, new_grid
    use vcor_material_parameter, only : contains_number, interval_t
    use vcor_case_catalogue, only : catalogue, wanted
-   use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_problem, only : has_part, problem_of_case, problem_t
    use vcor_sweep_quantity, only : point_failed, point_invalid
-   use vcor_words, only : contains_word
    implicit none
    private
 
@@ -97,23 +96,10 @@ contains
       if (.not. allocated(error)) return
       ! what varies may be sound at other points
       do i = 1, n
-         if (.not. has_part(self%grid%axes(i))) cycle
+         if (.not. has_part(self%case, self%grid%axes(i)%address, error)) cycle
          deallocate (error)
          return
       end do
-
-   contains
-
-      !> Whether a parameter has a part in the error: by its path, or by its name in any material
-      pure function has_part(axis)
-         type(axis_t), intent(in) :: axis
-         logical :: has_part
-
-         has_part = .not. allocated(error%about)
-         if (.not. has_part) has_part = &
-            contains_word(error%about, axis%name(:index(axis%name//'(', '(') - 1)) &
-            .or. contains_word(error%about, catalogue(axis%address%row)%name)
-      end function has_part
    end subroutine new_sweep
 
    !> Solve one point
