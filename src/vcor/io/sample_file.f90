@@ -1,11 +1,20 @@
 !> Data files that materials are identified from: relaxation moduli over time, or storage and loss
 !> moduli (or the storage or complex modulus and the loss tangent) over frequency
 !>
-!> With a header of names, and units in it or in a second line, or without. Instruments write other
-!> lines before it (TRIOS), or the header behind `##` (NETZSCH). Where nothing tells, two columns
-!> are time and relaxation modulus, three are angular frequency, storage and loss modulus, and units
-!> are those of the SI; what the user says comes before what the header says. What is read becomes
-!> tensile moduli in SI units, in rising order.
+!> Before the first line of numbers stands a head. It may be
+!>
+!>  - nothing: two columns are time and relaxation modulus, three are angular frequency, storage and
+!>    loss modulus, in units of the SI;
+!>  - a line of names, with units or without: `t [s], E [MPa]`;
+!>  - a line of names and one of units: `t;E`, `s;MPa`;
+!>  - remarks that tell the units, as vcor writes them, and a line of names: `# time [s] ...`,
+!>    `# E [Pa] ...`, `time,E`;
+!>  - names behind `##`, as NETZSCH writes them: `##Temp./C;f/Hz;E'/MPa;E"/MPa`;
+!>  - other lines, and then names and units, as TRIOS writes them: `[step]`, `Frequency sweep`,
+!>    `Angular frequency<tab>Storage modulus<tab>Loss modulus`, `rad/s<tab>Pa<tab>Pa`.
+!>
+!> What the user says comes before what the head says. What is read becomes tensile moduli in SI
+!> units, in rising order.
 module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t, lines_in, most_columns, not_a_text, read_value, &
@@ -186,92 +195,166 @@ contains
 
       type(header_t) :: header
       type(row_t) :: row
-      character(len=:), allocatable :: message, temperature
-      integer :: i, names_line
-      !> Column of the temperature, 0: none
-      integer :: warm
-      logical :: falls
+      character(len=:), allocatable :: found
 
-      allocate (points(3, lines_in(text)))
-      names_line = line_of_names(text)
-      falls = .false.
-      warm = 0
-      temperature = ""
-      lines = 0
       n = 0
+      call read_head(text, name, row, header, error)
+      if (.not. allocated(error)) &
+         call read_numbers(text, name, header, reading, row, plan, points, n, lines, error)
+      if (allocated(error) .or. n >= 2) return
+      found = "found no numbers"
+      if (n == 1) found = "found one row of numbers"
+      call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": "//found &
+         //", expected two rows at least, of time and modulus or of frequency, storage and loss " &
+         //"modulus")
+   end subroutine read_points
+
+   !> Read the head, all that stands before the first line of numbers
+   subroutine read_head(text, name, row, header, error)
+      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: name
+      !> The first line of numbers, if there is one
+      type(row_t), intent(out) :: row
+      type(header_t), intent(out) :: header
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: names_line, i
+
+      names_line = line_of_names(text)
       do
          call row%take(text)
-         if (.not. row%is_there) exit
-         if (n == 0 .and. header%lines == 0) call note_comment(header, row%comment)
+         if (.not. row%is_there) return
          if (has_control(row%content)) then
             call raise(error, error_input, name//":"//integer_text(row%line)//": "//not_a_text)
             return
          end if
+         if (header%lines == 0) call note_comment(header, row%comment)
          if (row%line == names_line) &
             call read_names(header, names_in(row%content, row%comment), row%line)
          if (row%line <= names_line .or. row%columns == 0) cycle
-         if (n == 0 .and. header%lines < 2 .and. row%columns <= most_columns) then
-            if (.not. any(row%is_numeric([(i, i=1, row%columns)]))) then
-               if (header%lines == 0) then
-                  call read_names(header, row%content, row%line)
-               else
-                  call read_units(header, row%content, row%line)
-               end if
-               cycle
-            end if
-         end if
-         call row%check(message)
-         if (n == 0 .and. .not. allocated(message)) &
-            call make_plan(header, row%columns, reading, name, row%line, plan, error)
-         if (allocated(error)) return
-         if (allocated(message)) then
-            continue
-         else if (row%columns /= plan%columns) then
-            message = "found "//columns_text(row%columns)//", expected " &
-               //integer_text(plan%columns)//" as before"
+         if (header%lines == 2 .or. row%columns > most_columns) return
+         if (any(row%is_numeric([(i, i=1, row%columns)]))) return
+         if (header%lines == 0) then
+            ! no name is a known one
+            call read_names(header, row%content, row%line)
          else
-            points(:, n + 1) = 0.0_wp
-            do i = 1, size(plan%places)
-               if (allocated(message)) exit
-               call read_value(row%cell(plan%places(i)), name_of(plan%roles(i), plan%units(i)), &
-                  unit_size(trim(plan%units(i))), points(i, n + 1), message)
-            end do
+            call read_units(header, row%content, row%line)
+         end if
+      end do
+   end subroutine read_head
+
+   !> Read the numbers, in rising order
+   subroutine read_numbers(text, name, header, reading, row, plan, points, n, lines, error)
+      character(len=*), intent(in) :: text
+      character(len=*), intent(in) :: name
+      !> What stands before them
+      type(header_t), intent(in) :: header
+      !> What the user says about it
+      type(reading_t), intent(in) :: reading
+      !> The first line of numbers; on return the end of the text
+      type(row_t), intent(inout) :: row
+      type(plan_t), intent(out) :: plan
+      !> Points, shape (2 or 3, >= n)
+      real(wp), allocatable, intent(out) :: points(:, :)
+      !> Their number
+      integer, intent(out) :: n
+      !> Lines of the first and the last of them
+      integer, intent(out) :: lines(2)
+      !> Error of code `error_input` or `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: message, temperature
+      !> Column of the temperature, 0: none
+      integer :: temperature_column
+      !> Whether the frequencies fall
+      logical :: is_descending
+      integer :: i
+
+      allocate (points(3, lines_in(text)))
+      is_descending = .false.
+      temperature_column = 0
+      temperature = ""
+      lines = 0
+      n = 0
+      do while (row%is_there)
+         if (row%columns > 0) then
+            call row%check(message)
+            if (n == 0 .and. .not. allocated(message)) then
+               call make_plan(header, row%columns, reading, name, row%line, plan, error)
+               if (allocated(error)) return
+               lines(1) = row%line
+               temperature_column = findloc([(all(plan%places /= i) .and. &
+                  contains_word(temperature_names, header%columns(i)%name), &
+                  i=1, header%count)], .true., dim=1)
+            end if
+            if (.not. allocated(message)) call read_point(row, plan, points(:, n + 1), message)
             if (.not. allocated(message) .and. n > 0) then
                ! instruments sweep frequencies in either direction
-               if (n == 1) falls = plan%roles(1) == role_frequency &
-                  .and. points(1, n + 1) < points(1, n)
-               if (.not. merge(points(1, n + 1) < points(1, n), points(1, n + 1) > points(1, n), &
-                  falls)) message = "found "//name_of(plan%roles(1), "")//" " &
-                  //real_text(points(1, n + 1))//" after "//real_text(points(1, n))//" in line " &
-                  //integer_text(lines(2))//", expected them to " &
-                  //trim(merge("decrease as before", "increase          ", falls))
-               if (allocated(message) .and. warm > 0) then
-                  if (row%cell(warm) /= temperature) message = "found several temperatures, " &
-                     //temperature//" and "//row%cell(warm)//", expected one; vcor master makes " &
-                     //"one curve of them"
+               if (n == 1) is_descending = plan%roles(1) == role_frequency &
+                  .and. points(1, 2) < points(1, 1)
+               call check_order(plan, points(1, n:n + 1), lines(2), is_descending, message)
+               if (allocated(message) .and. temperature_column > 0) then
+                  if (row%cell(temperature_column) /= temperature) message = "found several " &
+                     //"temperatures, "//temperature//" and "//row%cell(temperature_column) &
+                     //", expected one; vcor master makes one curve of them"
                end if
             end if
+            if (allocated(message)) then
+               call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
+               return
+            end if
+            n = n + 1
+            lines(2) = row%line
+            if (temperature_column > 0) temperature = row%cell(temperature_column)
          end if
-         if (allocated(message)) then
-            call raise(error, error_input, name//":"//integer_text(row%line)//": "//message)
-            return
-         end if
-         n = n + 1
-         if (n == 1) lines(1) = row%line
-         lines(2) = row%line
-         if (n == 1) warm = findloc([(contains_word(temperature_names, header%columns(i)%name) &
-            .and. all(plan%places /= i), i=1, header%count)], .true., dim=1)
-         if (warm > 0) temperature = row%cell(warm)
+         call row%take(text)
       end do
       plan%decimals = row%so_far
-      if (falls) points(:, :n) = points(:, n:1:-1)
-      if (n >= 2) return
-      message = "found no numbers"
-      if (n == 1) message = "found one row of numbers"
-      call raise(error, error_input, name//":"//integer_text(max(1, row%line))//": "//message &
-         //", expected two rows at least, of time and modulus or of frequency, storage and loss " &
-         //"modulus")
-   end subroutine read_points
+      if (is_descending) points(:, :n) = points(:, n:1:-1)
+   end subroutine read_numbers
+
+   !> Read the numbers of a line
+   subroutine read_point(row, plan, point, message)
+      type(row_t), intent(in) :: row
+      type(plan_t), intent(in) :: plan
+      !> The numbers, 0 behind them, shape (3)
+      real(wp), intent(out) :: point(:)
+      !> What is wrong, unallocated on success
+      character(len=:), allocatable, intent(out) :: message
+
+      integer :: i
+
+      point = 0.0_wp
+      if (row%columns /= plan%columns) then
+         message = "found "//columns_text(row%columns)//", expected " &
+            //integer_text(plan%columns)//" as before"
+         return
+      end if
+      do i = 1, size(plan%places)
+         call read_value(row%cell(plan%places(i)), name_of(plan%roles(i), plan%units(i)), &
+            unit_size(trim(plan%units(i))), point(i), message)
+         if (allocated(message)) return
+      end do
+   end subroutine read_point
+
+   !> Check that times rise, and frequencies rise or fall
+   subroutine check_order(plan, pair, line, is_descending, message)
+      type(plan_t), intent(in) :: plan
+      !> Times or frequencies of a line and of the next one
+      real(wp), intent(in) :: pair(2)
+      !> The former of them
+      integer, intent(in) :: line
+      !> Whether they are to fall
+      logical, intent(in) :: is_descending
+      !> What is wrong, unallocated where they do
+      character(len=:), allocatable, intent(out) :: message
+
+      if (merge(pair(2) < pair(1), pair(2) > pair(1), is_descending)) return
+      message = "found "//name_of(plan%roles(1), "")//" "//real_text(pair(2))//" after " &
+         //real_text(pair(1))//" in line "//integer_text(line)//", expected them to " &
+         //trim(merge("decrease as before", "increase          ", is_descending))
+   end subroutine check_order
 
    !> Line that names the columns: the last one before the numbers that has a known name
    function line_of_names(text) result(found)
