@@ -16,7 +16,7 @@ module vcor_app_files
    private
 
    public :: write_files, write_numbers
-   public :: previous_t, look_back, heed, replaced, remark
+   public :: previous_t, find_previous, check_finished, replacement_note, remark
 
    !> Results that are there
    type :: previous_t
@@ -74,7 +74,7 @@ contains
    end subroutine write_numbers
 
    !> Look for results
-   subroutine look_back(job, expected, previous)
+   subroutine find_previous(job, expected, previous)
       type(job_t), intent(in) :: job
       !> What they should be about
       type(identity_t), intent(in) :: expected
@@ -106,10 +106,10 @@ contains
          if (allocated(damage)) previous%objection%message = previous%objection%message//' (' &
             //damage%message//')'
       end if
-   end subroutine look_back
+   end subroutine find_previous
 
    !> Whether there is nothing to do: with --resume, where the results are there
-   subroutine heed(request, job, previous, is_finished, error)
+   subroutine check_finished(request, job, previous, is_finished, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
       type(previous_t), intent(in) :: previous
@@ -133,7 +133,7 @@ contains
       else if (.not. request%quiet) then
          call write_stdout(text//new_line('a'), error)
       end if
-   end subroutine heed
+   end subroutine check_finished
 
    !> Whether all files are there, and the CSV files have all of their rows
    function is_whole(job, previous)
@@ -185,14 +185,14 @@ contains
    end function rows_in
 
    !> Nobody's results are replaced in silence
-   function replaced(previous) result(text)
+   function replacement_note(previous) result(text)
       type(previous_t), intent(in) :: previous
       !> What there is to say: nothing if there was nothing else
       character(len=:), allocatable :: text
 
       text = ''
       if (allocated(previous%objection)) text = 'replaced: '//previous%objection%message
-   end function replaced
+   end function replacement_note
 
    !> One line on stderr that is no error
    subroutine remark(text)

@@ -12,7 +12,7 @@ module vcor_app_job
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated
-   use vcor_io_case_reader, only : complete, override, read_case
+   use vcor_io_case_reader, only : add_materials, override, read_case
    use vcor_io_data_file, only : data_file, read_data
    use vcor_io_path, only : directory_exists, folder_of, join_path, same_file
    use vcor_kinds, only : wp
@@ -183,7 +183,7 @@ contains
       do i = 1, size(cases)
          if (completes(i)) then
             do j = 1, count(.not. completes(:i))
-               call complete(jobs(j)%case, cases(i))
+               call add_materials(jobs(j)%case, cases(i))
             end do
          else
             jobs(count(.not. completes(:i)))%case = cases(i)

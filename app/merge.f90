@@ -1,7 +1,7 @@
 !> Merging the shards of a sweep: the files of a run that has solved it in one piece
 module vcor_app_merge
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : look_back, previous_t, remark, replaced, write_files
+   use vcor_app_files, only : find_previous, previous_t, remark, replacement_note, write_files
    use vcor_app_job, only : job_t, name_files
    use vcor_app_validity, only : points_report
    use vcor_case_checks, only : validate
@@ -214,13 +214,13 @@ contains
             //' would be replaced by what it is merged into: give another --output')
          return
       end do
-      call look_back(job, identity, previous)
+      call find_previous(job, identity, previous)
       validity = points_report(job%sweep%grid, summary)
       if (len(validity) > 0) validity = validity//new_line('a')
       call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
       call write_files(job, tables, files, error, identity%data)
       if (allocated(error)) return
-      call remark(replaced(previous))
+      call remark(replacement_note(previous))
       if (.not. request%quiet) call write_stdout(integer_text(size(request%files))//' shards, ' &
          //integer_text(job%sweep%grid%count())//' impacts'//new_line('a')//new_line('a') &
          //validity//files, error)

@@ -1,8 +1,8 @@
 !> Running a case of one impact; a sweep is in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
-      write_numbers
+   use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
+      replacement_note, write_files, write_numbers
    use vcor_app_job, only : job_t
    use vcor_app_screen, only : report, short, significant
    use vcor_app_validity, only : about_numbers, beyond_data, joined, measures_remark, &
@@ -46,8 +46,8 @@ contains
       logical :: is_finished
 
       identity = identity_of(job%case, job%part)
-      call look_back(job, identity, previous)
-      call heed(request, job, previous, is_finished, error)
+      call find_previous(job, identity, previous)
+      call check_finished(request, job, previous, is_finished, error)
       if (allocated(error) .or. is_finished) return
 
       call new_summary(summary, 1, error)
@@ -82,7 +82,7 @@ contains
       if (allocated(trouble)) then
          call move_alloc(trouble, error)
       else if (request%quiet .or. size(request%names) > 0) then
-         call remark(replaced(previous))
+         call remark(replacement_note(previous))
       end if
 
    contains
@@ -114,7 +114,7 @@ contains
             if (course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, identity%title, method, outcome, &
                exact%outcome, course%state(1, course%last), lines &
-               //remarks_on(job, outcome)//files//as_line(replaced(previous))), trouble)
+               //remarks_on(job, outcome)//files//as_line(replacement_note(previous))), trouble)
          end associate
       end subroutine write_screen
    end subroutine run_impact

@@ -5,8 +5,8 @@ module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : heed, look_back, previous_t, remark, replaced, write_files, &
-      write_numbers
+   use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
+      replacement_note, write_files, write_numbers
    use vcor_app_job, only : directory_of, job_t, shard_text
    use vcor_app_screen, only : heading, padded, right, shown, significant
    use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
@@ -24,7 +24,7 @@ module vcor_app_sweep
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : place_in_table, table_t
    use vcor_kinds, only : wp
-   use vcor_sweep_mpi, only : differs, largest, share_error, this_rank
+   use vcor_sweep_mpi, only : differs, largest_of_ranks, share_error, this_rank
    use vcor_sweep_points, only : clock, default_threads, failures_t, monitor_t, solve_points
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
       quantities, quantity_place, quantity_t, summary_t
@@ -93,7 +93,7 @@ contains
       is_finished = .false.
       if (this_rank() == 0) call begin(request, job, watch, previous, summary, is_finished, error)
       call share_error(error)
-      is_finished = any(largest([merge(1, 0, is_finished)]) == 1)
+      is_finished = any(largest_of_ranks([merge(1, 0, is_finished)]) == 1)
       if (is_finished .or. allocated(error)) return
       if (differs(number_of(watch%identity))) then
          call raise(error, error_input, job%case%source//': not all ranks read the same case, or ' &
@@ -131,14 +131,14 @@ contains
       is_finished = .false.
       is_unfinished = .false.
       if (watch%keeps) is_unfinished = anything_at(watch%path)
-      call look_back(job, watch%identity, previous)
+      call find_previous(job, watch%identity, previous)
       call need_memory(job, threads_of(request), error)
       if (.not. allocated(error)) call new_summary(summary, job%part%count(), error)
       if (.not. (allocated(error) .or. is_unfinished)) then
          if (request%resume .and. request%shards > 0) &
             call look_into_shard(previous, watch, summary, is_unfinished, error)
          if (.not. (is_unfinished .or. allocated(error))) &
-            call heed(request, job, previous, is_finished, error)
+            call check_finished(request, job, previous, is_finished, error)
       end if
       if (allocated(error) .or. is_finished) return
       if (is_unfinished) then
@@ -245,7 +245,7 @@ contains
       if (allocated(trouble)) then
          call move_alloc(trouble, error)
       else
-         call remark(replaced(previous))
+         call remark(replacement_note(previous))
       end if
    end subroutine finish
 

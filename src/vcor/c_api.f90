@@ -36,7 +36,7 @@ module vcor_c_api
    implicit none
    private
 
-   public :: c_error_t, c_column_t, c_text, c_numbers, told
+   public :: c_error_t, c_column_t, c_text, c_numbers, report_error
    public :: vcor_library_version, vcor_read, vcor_free, vcor_set, vcor_get, vcor_describe, &
       vcor_case_text, vcor_column_of, vcor_axis, vcor_solve, vcor_history, &
       vcor_relaxation, vcor_complex_modulus, vcor_time_factor, vcor_verify
@@ -135,7 +135,7 @@ contains
          self = c_loc(handle)
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_read
 
    !> Release a case
@@ -170,7 +170,7 @@ contains
          end if
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_set
 
    !> Value at an address
@@ -199,7 +199,7 @@ contains
          end if
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_get
 
    !> Path, unit and meaning of an address
@@ -223,7 +223,7 @@ contains
          end associate
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_describe
 
    !> The case as namelists
@@ -243,7 +243,7 @@ contains
       if (.not. allocated(trouble)) call validate(handle%case, trouble)
       if (.not. allocated(trouble)) text = c_text(case_text(handle%case, complete=complete /= 0))
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_case_text
 
    !> A column of a table
@@ -311,7 +311,7 @@ contains
          end if
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_axis
 
    !> Solve points
@@ -384,13 +384,13 @@ contains
             summary%status(1) == point_invalid), handle%case%source//': ' &
             //failures%reason(1)%message)
       else if (failures%count > 0) then
-         call tell(error, 0_c_int, integer_text(failures%count)//' of '//integer_text(int(n)) &
+         call put_error(error, 0_c_int, integer_text(failures%count)//' of '//integer_text(int(n)) &
             //' points have no result, the first is point ' &
             //integer_text(failures%reason(1)%first)//': '//failures%reason(1)%message)
       end if
 !$omp end critical (vcor_c_api)
       code = 0
-      if (allocated(trouble) .or. failures%count == 0) code = told(trouble, error)
+      if (allocated(trouble) .or. failures%count == 0) code = report_error(trouble, error)
    end function vcor_solve
 
    !> History of a single impact
@@ -429,7 +429,7 @@ contains
             values = c_numbers(reshape(state, [size(state)]))
          end if
       end if
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_history
 
    !> Relaxation modulus of a material
@@ -448,7 +448,7 @@ contains
       if (.not. allocated(trouble) .and. any(times < 0.0_wp)) &
          call raise(trouble, error_input, 'found a negative time, expected times >= 0 [s]')
       if (.not. allocated(trouble)) moduli = body%relaxation(times)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_relaxation
 
    !> Storage and loss modulus of a material
@@ -474,7 +474,7 @@ contains
          storage = real(modulus, wp)
          loss = aimag(modulus)
       end if
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_complex_modulus
 
    !> What the temperature of the impact multiplies all times of a material by
@@ -489,7 +489,7 @@ contains
 
       call find_body(self, material, body, trouble)
       if (.not. allocated(trouble)) factor = time_factor_of(body)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_time_factor
 
    !> The case by all methods
@@ -532,7 +532,7 @@ contains
             handle%case%source//': '//comparison%objection)
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_verify
 
    !> The place of an address in a case
@@ -668,7 +668,7 @@ contains
    end subroutine open_case
 
    !> Code of an error, which goes to the caller with its message
-   function told(trouble, error) result(code)
+   function report_error(trouble, error) result(code)
       !> The error, unallocated for success
       type(error_t), allocatable, intent(in) :: trouble
       !> `vcor_error`, or null
@@ -679,14 +679,14 @@ contains
       code = 0
       if (allocated(trouble)) then
          code = int(trouble%code, c_int)
-         call tell(error, code, trouble%message)
+         call put_error(error, code, trouble%message)
       else
-         call tell(error, code, '')
+         call put_error(error, code, '')
       end if
-   end function told
+   end function report_error
 
    !> Tell the caller a code and a line
-   subroutine tell(error, code, message)
+   subroutine put_error(error, code, message)
       !> `vcor_error`, or null
       type(c_ptr), intent(in) :: error
       integer(c_int), intent(in) :: code
@@ -699,7 +699,7 @@ contains
       call c_f_pointer(error, to)
       to%code = code
       call put_text(message, to%message)
-   end subroutine tell
+   end subroutine put_error
 
    !> Name, unit and meaning of a column
    pure subroutine put_column(column, name, unit, meaning)

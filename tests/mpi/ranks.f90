@@ -2,8 +2,8 @@
 program ranks
    use vcor_error, only : error_file, error_t, error_usage, raise
    use vcor_kinds, only : wp
-   use vcor_sweep_mpi, only : differs, gathered, join_ranks, largest, leave_ranks, of_first, &
-      rank_count, share_error, this_rank
+   use vcor_sweep_mpi, only : differs, from_first_rank, gathered, join_ranks, largest_of_ranks, &
+      leave_ranks, rank_count, share_error, this_rank
    use vcor_test, only : check, check_text, finish, suite
    implicit none
 
@@ -15,10 +15,10 @@ program ranks
    call suite("ranks")
    last = rank_count() - 1
    call check(last > 0, "there are several ranks")
-   associate (those => of_first([(i + this_rank(), i=1, 5*(1 - this_rank()))]))
+   associate (those => from_first_rank([(i + this_rank(), i=1, 5*(1 - this_rank()))]))
       call check(size(those) == 5 .and. all(those == [1, 2, 3, 4, 5]), "numbers of the first")
    end associate
-   call check(all(largest([this_rank(), -this_rank()]) == [last, 0]), "the largest")
+   call check(all(largest_of_ranks([this_rank(), -this_rank()]) == [last, 0]), "the largest")
    ! each rank has one more than the one before, the first none
    allocate (numbers, source=gathered([(real(10*this_rank() + i, wp), i=1, this_rank())]))
    if (this_rank() == 0) then

@@ -415,7 +415,7 @@ contains
          if (allocated(error)) return
          self%contact_made_at = latest
       end if
-      call launch(self, case, error)
+      call set_motion(self, case, error)
       if (allocated(error)) return
       call look_around(self, case)
       call update_solver(self, case, error)
@@ -516,7 +516,7 @@ contains
    end subroutine build_contact
 
    !> Set the impact's motion
-   subroutine launch(self, case, error)
+   subroutine set_motion(self, case, error)
       !> The problem, its contact built
       type(problem_t), intent(inout) :: self
       type(case_t), intent(in) :: case
@@ -543,7 +543,7 @@ contains
       call set_shape(self, case, factor, error)
       if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
          number_or_zero(case, self%at%footprint))
-   end subroutine launch
+   end subroutine set_motion
 
    !> Set the law that goes with the shape of the body that strikes
    subroutine set_shape(self, case, factor, error)

@@ -2,7 +2,7 @@
 module vcor_fit_c_api
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_int, c_null_ptr, &
       c_ptr
-   use vcor_c_api, only : c_numbers, c_text, told
+   use vcor_c_api, only : c_numbers, c_text, report_error
    use vcor_case_identified, only : material_text
    use vcor_error, only : error_t, error_usage, raise
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
@@ -87,7 +87,7 @@ contains
             min(0.5_wp, poisson_ratio), samples%first_time(), samples%last_time(), samples%keys)))
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_fit_data
 
    !> Moduli of the text of a data file, read as `vcor fit` does, in SI units
@@ -120,7 +120,7 @@ contains
          values = c_numbers([samples%at, samples%modulus, samples%loss])
       end if
 !$omp end critical (vcor_c_api)
-      code = told(trouble, error)
+      code = report_error(trouble, error)
    end function vcor_read_moduli
 
 end module vcor_fit_c_api

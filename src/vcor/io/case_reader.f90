@@ -15,7 +15,7 @@ module vcor_io_case_reader
    implicit none
    private
 
-   public :: read_case, read_case_text, complete, override
+   public :: read_case, read_case_text, add_materials, override
 
    !> Most items of a repeated group
    integer, parameter :: most_items = 1000
@@ -67,8 +67,8 @@ contains
             //": the file is empty, expected groups such as &impact velocity = 5.0 /")
    end subroutine read_case_text
 
-   !> Complete a case by the materials of another file; their data files are in its folder
-   subroutine complete(case, materials)
+   !> Add the materials of another file to a case; their data files are in its folder
+   subroutine add_materials(case, materials)
       type(case_t), intent(inout) :: case
       !> A case of nothing but materials
       type(case_t), intent(in) :: materials
@@ -87,7 +87,7 @@ contains
                folder_of(materials%source), file), given=.true.)
          end do
       end do
-   end subroutine complete
+   end subroutine add_materials
 
    !> Read one group
    subroutine read_group(case, namelist, name, line, error)

@@ -21,7 +21,7 @@ module vcor_io_checkpoint
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_t, raise
-   use vcor_io_file, only : complete, create_file, discard, move_file, output_file_t, remove_file
+   use vcor_io_file, only : close_file, create_file, discard, move_file, output_file_t, remove_file
    use vcor_io_hdf5, only : fill_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, &
       read_column, reader_t
@@ -84,7 +84,7 @@ contains
       if (allocated(error)) return
       call lay_out(tables(1), identity, grid, summary%quantities)
       call fill_hdf5(file, tables, error, identity%data, identity%part)
-      if (.not. allocated(error)) call complete(file, error)
+      if (.not. allocated(error)) call close_file(file, error)
       if (.not. allocated(error)) call attach(self, file%temporary, summary%quantities, error)
       if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
       if (.not. allocated(error)) call name_file(file%temporary, path, error)

@@ -33,7 +33,7 @@ module vcor_io_file
    private
 
    public :: read_text_file
-   public :: output_file_t, create_file, put, reserve, complete, commit, discard, write_file
+   public :: output_file_t, create_file, put, reserve, close_file, commit, discard, write_file
    public :: move_file, remove_file, remove_scratch
    public :: write_stdout, write_terminal, stderr_is_terminal
 
@@ -171,7 +171,7 @@ contains
    end subroutine reserve
 
    !> Close a file that is complete; its real name is left to the caller, who discards it then
-   subroutine complete(file, error)
+   subroutine close_file(file, error)
       !> Open file; closed afterwards
       type(output_file_t), intent(inout) :: file
       !> Set if the file is not complete; then it is discarded
@@ -185,7 +185,7 @@ contains
       reason = last_errno()
       file%stream = c_null_ptr
       if (status /= 0) call fail(file, reason, error)
-   end subroutine complete
+   end subroutine close_file
 
    !> End a file: close it and give it its real name
    subroutine commit(file, error)
@@ -194,7 +194,7 @@ contains
       !> Set if the file is not complete; then it is discarded
       type(error_t), allocatable, intent(out) :: error
 
-      call complete(file, error)
+      call close_file(file, error)
       if (.not. allocated(error)) call move_file(file%temporary, file%path, error)
       call discard(file)
    end subroutine commit

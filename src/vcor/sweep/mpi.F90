@@ -14,7 +14,7 @@ module vcor_sweep_mpi
    private
 
    public :: join_ranks, leave_ranks, this_rank, rank_count
-   public :: of_first, largest, gathered, differs, share_error, numbers_of, text_of
+   public :: from_first_rank, largest_of_ranks, gathered, differs, share_error, numbers_of, text_of
 
    !> Number of this rank, from 0
    integer :: rank = 0
@@ -57,7 +57,7 @@ contains
    end function rank_count
 
    !> Numbers of the first rank
-   function of_first(numbers) result(those)
+   function from_first_rank(numbers) result(those)
       !> Numbers of this rank, of any shape and value on all but the first one
       integer, intent(in) :: numbers(:)
       !> Those of the first rank
@@ -73,10 +73,10 @@ contains
 #else
       those = numbers
 #endif
-   end function of_first
+   end function from_first_rank
 
    !> The largest numbers of all ranks, one by one
-   function largest(numbers) result(most)
+   function largest_of_ranks(numbers) result(most)
       !> Numbers of this rank, as many as on the others
       integer, intent(in) :: numbers(:)
       !> The largest ones
@@ -87,7 +87,7 @@ contains
 #else
       most = numbers
 #endif
-   end function largest
+   end function largest_of_ranks
 
    !> Numbers of all ranks, in the order of the ranks
    function gathered(numbers) result(those)
@@ -119,7 +119,7 @@ contains
       integer :: ends(2)
 
       ! the largest of the numbers and of their complements
-      ends = largest([number, not(number)])
+      ends = largest_of_ranks([number, not(number)])
       differs = ends(1) /= not(ends(2))
    end function differs
 
@@ -138,7 +138,7 @@ contains
       if (ranks == 1) return
       found = -huge(found)
       if (allocated(error)) found = -(codes*rank + error%code)
-      found = largest(found)
+      found = largest_of_ranks(found)
       if (found(1) == -huge(found)) return
       message = ''
       if (-found(1)/codes == rank) then

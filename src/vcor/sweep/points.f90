@@ -12,8 +12,8 @@ module vcor_sweep_points
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking
    use vcor_kinds, only : wp
-   use vcor_sweep_mpi, only : gathered, largest, numbers_of, of_first, rank_count, text_of, &
-      this_rank
+   use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, numbers_of, rank_count, &
+      text_of, this_rank
    use vcor_sweep_part, only : most_threads, new_part, part_t
    use vcor_sweep_quantity, only : new_summary, point_pending, summary_t, values_of
    use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
@@ -154,7 +154,7 @@ contains
                call failures%note(part%point(i), lacking(summary%status(i)))
          end do
       end if
-      pending = of_first(pending)
+      pending = from_first_rank(pending)
       allocate (workers(threads))
       done = 0
       length = fewest*threads*rank_count()
@@ -162,7 +162,7 @@ contains
          ! the first rank's length, and any rank's wish to stop
          agreed = [merge(length, 0, this_rank() == 0), stop_code(monitor), &
             merge(1, 0, allocated(error))]
-         agreed = largest(agreed)
+         agreed = largest_of_ranks(agreed)
          if (done == size(pending) .or. any(agreed(2:) /= 0)) exit
          start = clock()
          length = min(agreed(1), size(pending) - done)
