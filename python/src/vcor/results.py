@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import mmap
 import os
-import struct
-import zlib
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from ._library import FileError, InputError
+from ._library import FileError, InputError, is_altered
 
-#: How files of HDF5 begin, and how those of the program end
-_HDF5, _SEAL = b"\x89HDF\r\n\x1a\n", b"vcorseal"
+#: How files of HDF5 begin
+_HDF5 = b"\x89HDF\r\n\x1a\n"
 
 
 def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  # noqa: A001
@@ -60,38 +57,18 @@ def open(path: str | os.PathLike[str], group: str = "summary") -> xr.Dataset:  #
 
 
 def _check(path: str) -> None:
-    """Refuse what is no HDF5 file, or damaged: some damage lets HDF5 crash.
-
-    A file of the program ends with parts that its check sum leaves out, their number, the sum
-    (CRC-32 of all bytes before the sum but those parts) and a mark. Who changes it through HDF5
-    takes the mark off.
-    """
+    """Refuse what is no HDF5 file, or damaged: some damage lets HDF5 crash."""
     try:
         if Path(path).exists() and not Path(path).is_file():
             raise FileError(f"{path}: found a folder or a device, expected a file of results")
         with Path(path).open("rb") as file:
             if file.read(len(_HDF5)) != _HDF5:
                 raise InputError(f"{path}: this is no HDF5 file")
-            with mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-                if data[-8:] == _SEAL and not _is_sealed(data):
-                    raise FileError(f"{path}: this file is damaged: its check sum is wrong")
+        if is_altered(path):
+            raise FileError(f"{path}: this file is damaged: its check sum is wrong")
     except FileNotFoundError:
         raise FileError(f"{path}: there is no such file") from None
     except OSError as error:
         if isinstance(error, FileError):
             raise
         raise FileError(f"{path}: {error.strerror}") from None
-
-
-def _is_sealed(data: mmap.mmap) -> bool:
-    """Whether the check sum at the end of a file is that of its bytes."""
-    count, expected = struct.unpack("<2q", data[-24:-8])
-    end = len(data) - 24 - 16 * count
-    if not 0 <= end <= len(data) - 24:
-        return False
-    number, at = 0, 0
-    for first, length in struct.iter_unpack("<2q", data[end:-24]):
-        number = zlib.crc32(data[at:first], number)
-        at = first + length
-    number = zlib.crc32(data[at:end], number)
-    return bool(zlib.crc32(data[end:-16], number) == expected)

@@ -1,4 +1,5 @@
-!> Fits for the Python package; they need MINPACK, so they are not in libvcor.so
+!> What the Python package alone needs: fits, which take MINPACK, so they are not in libvcor.so, and
+!> whether a file of results is damaged
 module vcor_fit_c_api
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_int, c_null_ptr, &
       c_ptr
@@ -8,6 +9,7 @@ module vcor_fit_c_api
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
    use vcor_fit_json, only : fit_json
    use vcor_io_posix, only : fortran => fortran_text
+   use vcor_io_seal, only : is_altered
    use vcor_io_sample_file, only : read_samples, read_samples_text, reading_t
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models
@@ -16,7 +18,7 @@ module vcor_fit_c_api
    implicit none
    private
 
-   public :: vcor_fit_data, vcor_read_moduli
+   public :: vcor_fit_data, vcor_read_moduli, vcor_is_altered
 
 contains
 
@@ -122,5 +124,17 @@ contains
 !$omp end critical (vcor_c_api)
       code = report_error(trouble, error)
    end function vcor_read_moduli
+
+   !> Whether a file has a seal that is not its own: HDF5 may crash if it reads that
+   function vcor_is_altered(file) bind(c) result(yes)
+      !> Name of the file
+      type(c_ptr), value :: file
+      !> 1 or 0
+      integer(c_int) :: yes
+
+!$omp critical (vcor_c_api)
+      yes = merge(1_c_int, 0_c_int, is_altered(fortran(file), cut_counts=.false.))
+!$omp end critical (vcor_c_api)
+   end function vcor_is_altered
 
 end module vcor_fit_c_api

@@ -21,7 +21,7 @@ module vcor_io_seal
    implicit none
    private
 
-   public :: seal_of, check_seal
+   public :: seal_of, check_seal, is_altered
 
    !> How a seal ends
    character(len=8), parameter :: mark = 'vcorseal'
@@ -68,27 +68,37 @@ contains
       !> Error of code `error_file` if the file is damaged, unallocated otherwise
       type(error_t), allocatable, intent(out) :: error
 
+      if (is_altered(path, .true.)) call raise(error, error_file, printable(path)//': this file ' &
+         //'is damaged: its check sum is wrong; remove it, and run what has made it once more')
+   end subroutine check_seal
+
+   !> Whether a file has a seal that is not its own
+   function is_altered(path, cut_counts) result(yes)
+      !> Path of the file
+      character(len=*), intent(in) :: path
+      !> Whether one without a seal counts, too, that does not end where HDF5 says
+      logical, intent(in) :: cut_counts
+      !> False of a file that cannot be opened: HDF5 says why
+      logical :: yes
+
       character(len=len(mark)) :: found
       integer(int64) :: bytes
       integer :: status, unit
-      logical :: is_sound
 
+      yes = .false.
       open (newunit=unit, file=trim(path), access='stream', form='unformatted', status='old', &
          action='read', iostat=status)
-      ! HDF5 says why
       if (status /= 0) return
       inquire (unit=unit, size=bytes)
       found = ''
       if (bytes >= fixed) read (unit, pos=bytes - len(mark) + 1, iostat=status) found
       if (status == 0 .and. found == mark) then
-         is_sound = is_sealed(unit, bytes)
-      else
-         is_sound = ends_well(unit, bytes)
+         yes = .not. is_sealed(unit, bytes)
+      else if (cut_counts) then
+         yes = .not. ends_well(unit, bytes)
       end if
       close (unit)
-      if (.not. is_sound) call raise(error, error_file, printable(path)//': this file is ' &
-         //'damaged: its check sum is wrong; remove it, and run what has made it once more')
-   end subroutine check_seal
+   end function is_altered
 
    !> Whether a seal is that of the file
    function is_sealed(unit, bytes) result(is_sound)
