@@ -223,6 +223,36 @@ def test_a_parameter_that_the_data_bound_on_one_side_only():
     assert 0.09 < slow.interval_95[0] < slow.interval_95[1] < 0.11
 
 
+def test_a_parameter_at_its_bound_leaves_the_others_their_intervals():
+    case = vcor.read(ROOT / "examples" / "identification" / "rubber.nml")
+    free = ["rubber.poisson_ratio", "rubber.alpha", "rubber.beta"]
+    drops = ROOT / "examples" / "identification" / "drops.csv"
+    found = vcor.identify(case, drops, free, fix={"rubber.glassy_modulus": 1.4e7})
+    ratio, *rates = found.estimates
+    assert ratio.value == pytest.approx(0.5, rel=1e-5) and math.isnan(ratio.standard_error)
+    for one in rates:
+        (low, high), (lowest, highest) = one.interval_68, one.interval_95
+        assert lowest < 0.99 * low < 0.98 * one.value and 1.02 * one.value < 1.01 * high < highest
+
+
+def test_a_parameter_that_comes_out_at_zero_has_no_standard_error(sls):
+    data = {"velocity": [1, 2, 3, 5], "cor": [0.4754, 0.55, 0.57, 0.59],
+            "contact_time": [2.2e-3, 2e-3, 1.84e-3, 1.66e-3]}  # fmt: skip
+    found = vcor.identify(sls, data, [f"rubber.{key}" for key in TRUTH["sls"]])
+    modulus, alpha, beta = found.estimates
+    assert alpha.interval_68[0] == 0 and 150 < alpha.interval_68[1] < 250
+    assert "rubber.alpha is at its bound, 0 is as good" in str(found) and "921" not in str(found)
+    # with more of alpha goes more of beta
+    assert beta.interval_68[1] > 600 and beta.interval_95[1] > 1200
+    written = json.loads(json.dumps(found.as_dict()))
+    assert written["parameters"][1]["standard_error"] is None
+    assert written["covariance"][1] == [None] * 3 and written["covariance"][0][0] > 0
+    assert written["fisher"]["combinations"][-1]["relative_error"] is None
+    assert modulus.standard_error > 0
+    with pytest.raises(vcor.InputError, match="rubber.alpha is at its bound"):
+        vcor.propagate(found.case, covariance=written)
+
+
 def test_drops_and_bounces():
     case = guess("sls")
     case["rubber.alpha"], case["rubber.beta"] = 300.0, 1200.0

@@ -52,6 +52,8 @@ STARTS, REFINED = 64, 4
 #: Logarithms of the factors from the first guess beyond which an interval is open, and the others
 #: are not followed
 OPEN, FARTHEST = math.log(1e4), math.log(1e12)
+#: Distance from the end of a range, in the logarithm, within which a parameter is at its bound
+BESIDE = 1e-4
 #: Longest first step of a profile, in the logarithm
 LONGEST = 0.7
 #: Rise, in widths of the interval, from which on no straight line leads to its end
@@ -85,7 +87,7 @@ class Estimate:
     address: str
     unit: str
     value: float
-    #: Standard error
+    #: Standard error; nan at a bound: the interval tells what is known
     standard_error: float
     #: Profile intervals that hold the value with 68 and 95 %; an open end is 0 or inf
     interval_68: tuple[float, float]
@@ -132,14 +134,16 @@ class Identification:
     def as_dict(self) -> dict[str, Any]:
         """All results as they are written to JSON."""
         values = np.array([one.value for one in self.estimates])
-        deviations = np.sqrt(np.diag(self.covariance))
+        known = [math.nan if math.isnan(one.standard_error) else 1.0 for one in self.estimates]
+        covariance = self.covariance * np.outer(known, known)
+        deviations = np.sqrt(np.diag(covariance))
         rows = [dataclasses.asdict(one) for one in self.estimates]
         keys = ("combination", "relative_error")
         return _command.document(
             model=self.model,
             parameters=[{"name": row.pop("address"), **row} for row in rows],
-            covariance=self.covariance * np.outer(values, values),
-            correlation=self.covariance / np.outer(deviations, deviations),
+            covariance=covariance * np.outer(values, values),
+            correlation=covariance / np.outer(deviations, deviations),
             fisher={
                 "eigenvalues": self.eigenvalues,
                 "combinations": [dict(zip(keys, one, strict=True)) for one in self.combinations],
@@ -246,7 +250,12 @@ class _Problem:
                 f"{address}: found {case[address]}, expected a number > 0 as first guess"
             )
         guess = np.log(values)
-        self.guess, self.low, self.high = guess, guess - FARTHEST, guess + FARTHEST
+        self.guess = guess
+        # steps against an end of a range that is not known would hold up all parameters
+        self.low, self.high = (
+            np.array([_farthest(case, *one, reach) for one in zip(free, guess, strict=True)])
+            for reach in (-FARTHEST, FARTHEST)
+        )
         if not (self.sigma > 0).all():
             raise InputError("found a standard error or a datum that is not > 0")
         self._last = np.empty(0), np.empty(0)
@@ -370,6 +379,20 @@ class _Problem:
         return x
 
 
+def _farthest(case: Case, address: str, inside: float, reach: float) -> float:
+    """How far the logarithm of a parameter may go from a value: its reach, or the range ends."""
+    case, end = case.copy(), inside + reach
+    far = end
+    while abs(end - inside) > 1e-9:
+        try:
+            case[address] = math.exp(far)
+            inside = far
+        except Error:
+            end = far
+        far = (inside + end) / 2
+    return inside
+
+
 def identify(
     case: Case | str | os.PathLike[str],
     data: Source | Sequence[Source],
@@ -448,6 +471,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     slopes = problem.derivatives(x) / problem.sigma[:, None]
     scale = math.sqrt(chi2 / dof) if problem.estimated else 1.0
     eigenvalues, vectors = np.linalg.eigh(slopes.T @ slopes / scale**2)
+    unseen = eigenvalues < 1 / OPEN**2
     eigenvalues = eigenvalues.clip(1 / OPEN**2)
     covariance = (vectors / eigenvalues) @ vectors.T
     limits = [_intervals(problem, x, chi2, scale, covariance, i) for i in every]
@@ -462,12 +486,16 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     for address, value in zip(free, np.exp(x), strict=True):
         case[address] = float(value)
     deviations = np.sqrt(np.diag(covariance))
+    ends = [*zip(x - problem.low, problem.high - x, strict=True)]
+    at_bound = [
+        min(ends[i]) < BESIDE or limits[i][0][0] == 0 or limits[i][0][1] == math.inf for i in every
+    ]
     estimates = tuple(
         Estimate(
             address,
             case._describe(address).unit,
             float(np.exp(x[i])),
-            float(np.exp(x[i]) * deviations[i]),
+            math.nan if at_bound[i] else float(np.exp(x[i]) * deviations[i]),
             *limits[i],
         )
         for i, address in enumerate(free)
@@ -494,7 +522,8 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
         dof=dof,
         relative_error=scale if problem.estimated else None,
         combinations=tuple(
-            (_product(free, vectors[:, j]), float(1 / np.sqrt(eigenvalues[j]))) for j in order
+            (_product(free, vectors[:, j]), math.inf if unseen[j] else eigenvalues[j] ** -0.5)
+            for j in order
         ),
         eigenvalues=eigenvalues[order],
         aic=likelihood + 2 * k,
@@ -598,9 +627,13 @@ def _ends(
             else:
                 step = (width - z) / rate
                 trial = min(reach, inside + min(step, 2 * inside + LONGEST))
-            start = point + (trial - inside) * side * slope_of_others
-            start[i] = x[i] + side * trial
-            found_at, found = problem.minimize(start, others, 30, 1e-5)
+            straight = (trial - inside) * side * slope_of_others
+            # where the line leads to points without a result, the others start where they are
+            for start in (point + straight, point.copy()):
+                start[i] = x[i] + side * trial
+                found_at, found = problem.minimize(start, others, 30, 1e-5)
+                if math.isfinite(found):
+                    break
             rise = math.sqrt(max(found - chi2, 0.0)) / max(scale, 1e-300)
             if rise < width:
                 if trial > inside and rise > z:
@@ -726,6 +759,8 @@ def _product(names: Sequence[str], direction: Floats) -> str:
 
 
 def _percent(error: float) -> str:
+    if not math.isfinite(error):
+        return "at bound" if math.isnan(error) else "unknown"
     return f"{100 * error:.2g} %" if error < 1 else f"{100 * error:.0f} %"
 
 
@@ -743,6 +778,10 @@ def _report(found: Identification) -> str:
         error = _percent(one.standard_error / one.value)
         name = f"{one.address} [{one.unit}]" if one.unit not in ("", "1") else one.address
         lines.append(f"{name:32s}{one.value:13.6g}{error:>9s}  {ends}".rstrip())
+    for one in found.estimates:
+        if math.isnan(one.standard_error):
+            wide = [f", {end:g} is as good" for end in one.interval_68 if end in (0, math.inf)]
+            lines.append(f"{one.address} is at its bound{''.join(wide)}: no standard error")
     if found.relative_error is None:
         lines += ["", f"chi2/dof {found.chi2 / max(found.dof, 1):.3g} ({found.dof} dof)"]
     else:

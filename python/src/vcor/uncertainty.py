@@ -105,6 +105,11 @@ class Spread:
             covariance = np.array(source["covariance"], dtype=float)
         except (KeyError, TypeError, ValueError):
             raise InputError("--covariance: found no JSON of vcor fit or identify") from None
+        for row, address in zip(rows, addresses, strict=True):
+            if row.get("standard_error", 0) is None:
+                raise InputError(f"--covariance: {address} is at its bound, without a standard "
+                                 "error: identify the others with --fix and take its interval "
+                                 f"with --vary {address}=LOW:HIGH")  # fmt: skip
         # what a fit has brought to 0 stays there: it has no logarithm
         kept = np.flatnonzero((np.diag(covariance) > 0) & (values > 0))
         if not kept.size:
