@@ -6,6 +6,7 @@ import csv
 import math
 import os
 import re
+from collections.abc import Callable
 
 import numpy as np
 
@@ -15,14 +16,17 @@ from ._library import Floats, InputError
 PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 #: Units that take a prefix
 SCALED = ("m", "s", "m/s", "N", "Pa", "J", "W", "Hz", "rad/s", "g")
-#: Sizes of units that are not those of the columns of vcor
-_SIZES = {
-    "Hz": 2 * math.pi, "g": 1e-3, "%": 0.01, "min": 60.0, "h": 3600.0, "N/mm2": 1e6, "cm": 0.01,
-    "cm/s": 0.01,
+#: Units that are not those of the columns of vcor: how much of which
+_OTHERS = {
+    "Hz": (2 * math.pi, "rad/s"), "g": (1e-3, "kg"), "%": (0.01, "1"), "-": (1.0, "1"),
+    "min": (60.0, "s"), "h": (3600.0, "s"), "N/m2": (1.0, "Pa"), "N/mm2": (1e6, "Pa"),
+    "cm": (0.01, "m"), "cm/s": (0.01, "m/s"),
 }  # fmt: skip
 #: 0 C [K]
 ZERO_C = 273.15
-_PLAIN = ("", "1", "-", "1/s", "kg", "kg/m3", "K", "N s", "N/m2")
+#: Temperature below which one without a unit is none in kelvin
+_COLDEST = 150.0
+_PLAIN = ("", "1", "1/s", "kg", "kg/m3", "K", "N s")
 #: Names that others give to columns, and what these are
 NAMES = {
     "T": "temperature", "t": "time", "omega": "frequency", "w": "frequency",
@@ -55,9 +59,13 @@ class Data:
     ----------
     path
         The file.
+    unit_of
+        SI unit that a column of some name has; empty: any.
     """
 
-    def __init__(self, path: str | os.PathLike[str]) -> None:
+    def __init__(
+        self, path: str | os.PathLike[str], unit_of: Callable[[str], str] = lambda _: ""
+    ) -> None:
         self.path = os.fspath(path)
         try:
             text = read_text(path, "strict")
@@ -89,22 +97,37 @@ class Data:
             name, unit = plain_name(found[1]), found[2] or found[3]
             if name in _ASIDE:
                 continue
+            if name in self.columns:
+                raise InputError(f"{self.path}: found two columns '{name}', expected one")
             if units and i < len(units):
                 unit = units[i].strip("[]()")
             if unit is None and found[1] in ("f", "freq"):
                 unit = "Hz"
+            values: list[float] = []
             try:
-                cells = [row[i] if mark == "," else row[i].replace(",", ".") for row in rows]
-                values = [float(cell) if cell else math.nan for cell in cells]
+                for row in rows:
+                    cell = row[i] if mark == "," else row[i].replace(",", ".")
+                    values.append(float(cell) if cell else math.nan)
             except (ValueError, IndexError):
-                raise InputError(f"{self.path}: column '{name}' holds more than numbers") from None
+                cell = f"'{row[i]}'" if i < len(row) else "no cell"
+                raise InputError(f"{self.path}: column '{name}' holds more than numbers: found "
+                                 f"{cell} in row {rows.index(row) + 1}") from None  # fmt: skip
+            expected = unit_of(name.removesuffix("_sigma"))
             zero = ZERO_C if _is_celsius(unit or "") else 0.0
-            size = 1.0 if zero else _size(unit or "")
-            if math.isnan(size):
-                raise InputError(f"{self.path}: column '{name}': unknown unit '{unit}', expected "
-                                 "such as cm, ms, MPa, rad/s")  # fmt: skip
+            size, si = (1.0, "K") if zero else _size(unit or "", expected)
+            known = not math.isnan(size)
+            if not known or (unit and expected not in ("", si)):
+                what = f"found '{unit}' as unit" if known else f"unknown unit '{unit}'"
+                ours = {"": "such as cm, ms, MPa, rad/s", "K": "K or C"}.get(
+                    expected, f"{expected} or a multiple of it"
+                )
+                raise InputError(f"{self.path}: column '{name}': {what}, expected {ours}")
             shift = 0.0 if name.endswith("_sigma") else zero
             self.columns[name] = np.array(values) * size + shift
+            warmest = np.nanmax(values, initial=0.0)
+            if expected == "K" and not unit and is_temperature(name) and warmest < _COLDEST:
+                raise InputError(f"{self.path}: column '{name}': found at most {warmest:g} K, "
+                                 f"expected {name} [C] for degrees Celsius, or [K]")  # fmt: skip
 
     def find(self, name: str) -> tuple[Floats | None, Floats | None]:
         """Values, temperatures in C, and standard errors of a quantity or an address, else None."""
@@ -115,15 +138,17 @@ class Data:
         return None, None
 
 
-def _size(unit: str) -> float:
-    """A unit in SI units, nan if it is none."""
+def _size(unit: str, own: str = "1") -> tuple[float, str]:
+    """A unit as so much, nan if it is none, of which SI unit, its own one among them."""
     unit = unit.replace("μ", "µ").replace("us", "µs").replace("^", "")
-    if unit in _PLAIN:
-        return 1.0
+    if unit in (own, *_PLAIN):
+        return 1.0, unit
     for power, prefix in PREFIXES.items():
-        if unit.startswith(prefix) and unit.removeprefix(prefix) in SCALED:
-            return float(10.0**power) * _SIZES.get(unit.removeprefix(prefix), 1.0)
-    return _SIZES.get(unit, math.nan)
+        base = unit.removeprefix(prefix)
+        if unit.startswith(prefix) and base in SCALED:
+            size, si = _OTHERS.get(base, (1.0, base))
+            return 10.0**power * size, si
+    return _OTHERS.get(unit, (math.nan, ""))
 
 
 def _is_celsius(unit: str) -> bool:
@@ -132,7 +157,7 @@ def _is_celsius(unit: str) -> bool:
 
 def _is_unit(cell: str) -> bool:
     unit = cell.strip("[]()")
-    return _is_celsius(unit) or not math.isnan(_size(unit))
+    return _is_celsius(unit) or not math.isnan(_size(unit)[0])
 
 
 def is_temperature(name: str) -> bool:

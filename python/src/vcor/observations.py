@@ -31,6 +31,11 @@ SETTINGS = {
     "radius": "sphere.radius",
     "mass": "sphere.mass",
 }
+#: Units of columns of a data file that are neither settings nor results [SI]
+UNITS = {
+    "drop_height": "m", "bounce_time": "s", "frequency": "rad/s", "relaxation_modulus": "Pa",
+    "storage_modulus": "Pa", "loss_modulus": "Pa",
+}  # fmt: skip
 #: Quantities that are at most 1, and say nothing about the scale of times
 COEFFICIENTS = ("cor", "cor_sphere", "resilience")
 #: Difference of temperatures that is none [K]
@@ -69,8 +74,10 @@ class Impacts:
                 parts.append((name, rows, column[rows], _sigma(columns, name)[rows]))
         if not parts:
             raise InputError(f"{source}: there is no measured quantity, such as cor, in this file")
-        if any(np.isnan(column).any() for column in self.settings.values()):
-            raise InputError(f"{source}: a row has no value of {' or '.join(self.settings)}")
+        for address, column in self.settings.items():
+            if np.isnan(column).any():
+                row = int(np.argmax(np.isnan(column))) + 1
+                raise InputError(f"{source}: row {row}: found no number of {address}")
         self.names = [name for name, *_ in parts]
         self.quantity = [name for name, rows, *_ in parts for _ in rows]
         self._rows, self.value, self.sigma = (
@@ -296,7 +303,13 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
             raise InputError("found columns of different lengths")
     else:
         name = os.fspath(source)
-        columns = read_columns(source)
+        columns = read_columns(source, case)
+    for key, column in columns.items():
+        wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise InputError(f"{name}: row {row + 1}: found a {key} of {column[row]:.6g}, expected "
+                             f"a finite one{' > 0' * key.endswith('_sigma')}")  # fmt: skip
     if "force" in columns and "time" in columns:
         return Record(name, columns, case)
     if any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
@@ -308,8 +321,17 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     return Impacts(name, columns, case)
 
 
-def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
+def read_columns(path: str | os.PathLike[str], case: Case) -> dict[str, Floats]:
     """Columns of a data file of impacts or of a record; moduli as `vcor master` reads them."""
+
+    def unit_of(name: str) -> str:
+        """SI unit of a column, empty where the column is not known."""
+        known = {**_library.columns(1), **_library.columns(0)}
+        with contextlib.suppress(Error):
+            if "." in name or name in SETTINGS:
+                return case._describe(SETTINGS.get(name, name)).unit
+        return known[name].unit if name in known else UNITS.get(name, "")
+
     impacts = {"velocity", "drop_height", "bounce_time", "force", *_library.columns(0)}
     impacts -= {"loss_tangent", "steps"}
     lines = read_text(path).splitlines()
@@ -317,7 +339,7 @@ def read_columns(path: str | os.PathLike[str]) -> dict[str, Floats]:
     cells |= {word for line in lines[:40] for word in line.split()}
     words = {plain_name(cell) for cell in cells if cell}
     if impacts & words or any(word.endswith("_sigma") for word in words):
-        return Data(path).columns
+        return Data(path, unit_of).columns
     curves = read_curves(path)
     names = ["frequency", "storage_modulus", "loss_modulus"]
     if not curves[0].dynamic:
