@@ -301,9 +301,77 @@ LAB = {
 def test_tables_as_a_laboratory_writes_them(tmp_path, name):
     path = tmp_path / "drops.csv"
     path.write_text(LAB[name], encoding="utf-8")
-    found = read_columns(path)
+    found = read_columns(path, guess("sls"))
     assert np.allclose(found["drop_height"], [0.4, 0.8])
     assert np.allclose(found["rebound_height"], [0.2, 0.39]) and len(found) == 2
+
+
+HEADS = "velocity [m/s],cor,contact_time [ms]\n"
+ROWS = "1,0.5,2.2\n2,0.52,2\n3,0.55,1.9\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("velocity,cor,contact_time [kg]\n" + ROWS, "found 'kg' as unit, expected s"),
+        ("velocity,cor,contact_time [mm]\n" + ROWS, "found 'mm' as unit, expected s"),
+        ("velocity,cor,max_force [ms]\n" + ROWS, "'max_force': found 'ms' as unit, expected N"),
+        ("velocity [s],cor,contact_time\n" + ROWS, "'velocity': found 's' as unit, expected m/s"),
+        ("velocity [MPa],cor,contact_time\n" + ROWS, "'velocity': found 'MPa' as unit"),
+        ("drop_height [g],cor,contact_time\n" + ROWS, "found 'g' as unit, expected m"),
+        ("velocity,cor,rubber.density [m]\n" + ROWS, "found 'm' as unit, expected kg/m3"),
+        ("velocity,cor [s],contact_time\n" + ROWS, "'cor': found 's' as unit, expected 1"),
+        ("velocity,cor,contact_time [lb]\n" + ROWS, "unknown unit 'lb', expected s"),
+        ("velocity,cor,cor_sigma [s]\n" + ROWS, "'cor_sigma': found 's' as unit"),
+        ("velocity,cor,temperature\n1,0.5,23\n", "found at most 23 K, expected temperature [C]"),
+        ("velocity,cor,temperature [°F]\n1,0.5,23\n", "unknown unit '°F', expected K"),
+        ("velocity,cor,cor\n" + ROWS, "two columns 'cor'"),
+        (HEADS + "1,abc,2.2\n2,0.52,2\n3,0.55,1.9\n", "found 'abc' in row 1"),
+        (HEADS + "1,0.5,inf\n" + ROWS, "row 1: found a contact_time of inf"),
+        (HEADS + "nan,0.5,2.2\n" + ROWS, "row 1: found no number of impact.velocity"),
+        ("velocity,cor,cor_sigma\n1,0.5,-0.01\n", "row 1: found a cor_sigma of -0.01"),
+        ("velocity,cor,cor_sigma\n1,0.5,0.01\n2,0.52,0\n", "row 2: found a cor_sigma of 0"),
+        ("velocity,cor,cor_sigma\n1,0.5,0.01\n2,0.52,nan\n", "cor at 2 has none"),
+        (HEADS + 4 * "1,0.5,2.2\n", "found 2 distinct data for 3 parameters"),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_said_with_its_column(tmp_path, text, said):
+    path = tmp_path / "drops.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(vcor.InputError) as caught:
+        vcor.identify(guess("sls"), path, [f"rubber.{key}" for key in TRUTH["sls"]])
+    assert said in str(caught.value) and str(path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--free", "rubber.beta", "--seed", "-1"], "--seed: found -1"),
+        (["--free", "rubber.beta", "--error", "cor=-1%"], "--error cor: found -0.01"),
+        (["--free", "rubber.beta", "--error", "cor=nan"], "--error cor: found nan"),
+        (["--free", "rubber.beta", "--fix", "rubber.beta=3"], "that --fix does not give"),
+        (["--free", "rubber.alpha,impact.drop_height"], "the case does not give it"),
+        (["--fre", "rubber.beta"], "did you mean '--free'"),
+        ([], "expected --free"),
+    ],
+)
+def test_options_that_are_wrong(tmp_path, capsys, words, said):
+    (tmp_path / "rubber.nml").write_text(guess("sls").text())
+    with pytest.raises(SystemExit) as ended:
+        files = [tmp_path / "rubber.nml", DATA / "impacts_of_sls.csv"]
+        identification.main([*map(str, files), *words])
+    assert ended.value.code == 2 and said in capsys.readouterr().err
+
+
+def test_data_that_the_model_does_not_describe_are_noted():
+    data = columns()
+    data["cor"] = data["cor"] * (1 + 0.1 * (-1) ** np.arange(10))
+    errors = {"cor": 0.01, "contact_time": 0.01}
+    found = vcor.identify(guess("sls"), data, ["rubber.alpha"], errors=errors)
+    assert not found.follows and "the model (waves, law, material)" in str(found)
+    assert not found.as_dict()["follows"]
+    found = vcor.identify(guess("sls"), data, ["rubber.alpha"])
+    assert found.follows and "does not describe" not in str(found)
 
 
 def test_models_are_compared():

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.special import ndtri, stdtrit
+from scipy.special import chdtri, ndtri, stdtrit
 
 from . import _command, _library
 from ._command import number
@@ -52,6 +52,8 @@ STARTS, REFINED = 64, 4
 #: Logarithms of the factors from the first guess beyond which an interval is open, and the others
 #: are not followed
 OPEN, FARTHEST = math.log(1e4), math.log(1e12)
+#: Probability of a larger misfit below which the model does not follow the data
+FOLLOWS = 1e-3
 #: Distance from the end of a range, in the logarithm, within which a parameter is at its bound
 BESIDE = 1e-4
 #: Longest first step of a profile, in the logarithm
@@ -115,6 +117,8 @@ class Identification:
     eigenvalues: Floats
     aic: float
     bic: float
+    #: Whether the model follows the data: they scatter as their errors say, or these are estimated
+    follows: bool
     #: DATUM of each datum
     data: tuple[dict[str, Any], ...]
     #: Times that the data see [s], of a material with a shift at its reference temperature
@@ -151,6 +155,7 @@ class Identification:
             chi2=self.chi2,
             degrees_of_freedom=self.dof,
             relative_error=self.relative_error,
+            follows=self.follows,
             aic=self.aic,
             bic=self.bic,
             window=self.window,
@@ -230,25 +235,30 @@ class _Problem:
         self.value = np.concatenate([block.value for block in blocks])
         scale = np.concatenate([getattr(b, "scale", np.abs(b.value)) for b in blocks])
         sigma = np.concatenate([block.sigma for block in blocks])
-        for name in errors:
+        for name, error in errors.items():
+            if not 0 < error < math.inf:
+                raise UsageError(f"--error {name}: found {error:g}, expected a number > 0")
             if name not in self.quantity:
                 known = ", ".join(dict.fromkeys(self.quantity))
                 raise UsageError(f"--error {name}: the data have no such column, they are {known}")
         given = np.array([errors.get(name, np.nan) for name in self.quantity])
         sigma = np.where(np.isnan(sigma), given * scale, sigma)
         missing = np.isnan(sigma)
+        sources = [block.source for block in blocks for _ in block.quantity]
         if missing.any() and not missing.all():
-            name = self.quantity[int(np.argmax(missing))]
-            raise InputError(f"some data have a standard error and {name} has none: give a column "
-                             f"{name}_sigma, or --error {name}=2%")  # fmt: skip
+            i = int(np.argmax(missing))
+            name, at = self.quantity[i], np.concatenate([block.at for block in blocks])[i]
+            raise InputError(f"{sources[i]}: some data have a standard error, {name} at {at:.6g} "
+                             f"has none: give a column {name}_sigma with a number there, or "
+                             f"--error {name}=2%")  # fmt: skip
         self.estimated = bool(missing.all())
         self.sigma = scale if self.estimated else sigma
         values = np.array([number(case, address) for address in free])
         if not (values > 0).all():
             address = free[int(np.argmin(values > 0))]
-            raise UsageError(
-                f"{address}: found {case[address]}, expected a number > 0 as first guess"
-            )
+            what = f"found {case[address]}"
+            what = "the case does not give it" if case[address] is None else what
+            raise UsageError(f"{address}: {what}, expected a number > 0 as first guess")
         guess = np.log(values)
         self.guess = guess
         # steps against an end of a range that is not known would hold up all parameters
@@ -257,12 +267,19 @@ class _Problem:
             for reach in (-FARTHEST, FARTHEST)
         )
         if not (self.sigma > 0).all():
-            raise InputError("found a standard error or a datum that is not > 0")
+            i = int(np.argmin(self.sigma > 0))
+            raise InputError(f"{sources[i]}: found a {self.quantity[i]} of {self.value[i]:.6g}, "
+                             "expected one > 0, or with a standard error")  # fmt: skip
         self._last = np.empty(0), np.empty(0)
         self.dof = len(self.value) - len(self.free) - sum(isinstance(b, Record) for b in blocks)
         if self.dof < (1 if self.estimated else 0):
-            raise InputError(f"found {len(self.value)} data for {len(self.free)} parameters, "
-                             "expected more")  # fmt: skip
+            raise InputError(self.too_few(len(self.value)))
+
+    def too_few(self, data: int) -> str:
+        """Message about so many distinct data."""
+        files = ", ".join(dict.fromkeys(block.source for block in self.blocks))
+        return (f"{files}: found {data} distinct data for {len(self.free)} parameters, expected "
+                "more")  # fmt: skip
 
     def predict(self, x: Floats) -> Floats:
         """Data for each row of x, shape (rows, data)."""
@@ -452,7 +469,10 @@ def identify(
     if model:
         case, free = _with_model(case, free, model, fix or {}, sources)
     if not free:
-        raise UsageError("expected at least one free parameter")
+        also = f" that --fix does not give, found {', '.join(fix)}" if fix else ""
+        raise UsageError(f"expected at least one free parameter{also}")
+    if seed < 0:
+        raise UsageError(f"--seed: found {seed}, expected 0 or more")
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
@@ -467,6 +487,12 @@ def identify(
 def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identification:
     """What the fit says; refused if a combination is not determined."""
     case, free, dof = problem.case, problem.free, problem.dof
+    found = problem.predict(x[None])[0]
+    places = len({*zip(problem.quantity, found, strict=True)})
+    distinct = len({*zip(problem.quantity, found, problem.value, strict=True)})
+    # copies of a datum neither determine more nor tell how much data scatter
+    if places < len(x) or (problem.estimated and distinct <= len(x)):
+        raise InputError(problem.too_few(min(places, distinct)))
     every = range(len(x))
     slopes = problem.derivatives(x) / problem.sigma[:, None]
     scale = math.sqrt(chi2 / dof) if problem.estimated else 1.0
@@ -502,7 +528,6 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
     )
     n, k = len(problem.value), len(x) + int(problem.estimated)
     likelihood = n * math.log(max(chi2, 1e-300) / n) if problem.estimated else chi2
-    found = problem.predict(x[None])[0]
     materials = materials_of(free)
     sigma = scale * problem.sigma
     residual = (found - problem.value) / np.fmax(sigma, 1e-300)
@@ -520,6 +545,7 @@ def _judged(problem: _Problem, x: Floats, chi2: float, model: str) -> Identifica
         covariance=covariance,
         chi2=chi2,
         dof=dof,
+        follows=problem.estimated or chi2 <= float(chdtri(max(dof, 1), FOLLOWS)),
         relative_error=scale if problem.estimated else None,
         combinations=tuple(
             (_product(free, vectors[:, j]), math.inf if unseen[j] else eigenvalues[j] ** -0.5)
@@ -769,7 +795,7 @@ def _report(found: Identification) -> str:
     lines = [
         f"{len(found.data)} data of {', '.join(dict.fromkeys(r['source'] for r in found.data))}"
     ]
-    head = f"{'':32s}{'value':>13s}{'error':>9s}  {'68 % interval':26s}{'95 % interval':26s}"
+    head = f"{'':32s} {'value':>12s} {'error':>9s}  {'68 % interval':26s}{'95 % interval':26s}"
     lines += ["", head.rstrip()]
     for one in found.estimates:
         ends = "".join(
@@ -777,7 +803,7 @@ def _report(found: Identification) -> str:
         )
         error = _percent(one.standard_error / one.value)
         name = f"{one.address} [{one.unit}]" if one.unit not in ("", "1") else one.address
-        lines.append(f"{name:32s}{one.value:13.6g}{error:>9s}  {ends}".rstrip())
+        lines.append(f"{name:32s} {one.value:12.6g} {error:>9s}  {ends}".rstrip())
     for one in found.estimates:
         if math.isnan(one.standard_error):
             wide = [f", {end:g} is as good" for end in one.interval_68 if end in (0, math.inf)]
@@ -788,6 +814,9 @@ def _report(found: Identification) -> str:
         lines += ["", f"error of each datum {_percent(found.relative_error)}, from the misfit "
                   f"({found.dof} degrees of freedom)"]  # fmt: skip
     lines[-1] += f", AIC {found.aic:.1f}, BIC {found.bic:.1f}"
+    if not found.follows:
+        lines.append("the data scatter more than their errors: the model (waves, law, material) "
+                     "does not describe them")  # fmt: skip
     lines += ["", "what the data determine, from best to worst (eigenvalue of the Fisher matrix):"]
     lines += [
         f"  {_percent(error):>8s}  {text}  ({value:.3g})"
@@ -840,7 +869,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add("case", metavar="CASE.nml", help="case; its values are the first guess")
     data = "data files with a header, and files of materials (.nml) that the case needs"
     add("data", nargs="+", metavar="DATA", help=data)
-    add("--free", metavar="ADDRESS,ADDRESS", required=True, help="parameters to be identified")
+    add("--free", metavar="ADDRESS,ADDRESS", help="parameters to be identified")
     add("--fix", metavar="ADDRESS=VALUE", action="append", default=[], help="a value that is given")
     error = "relative error of a column that has none, such as cor=1%%"
     add("--error", metavar="NAME=VALUE", action="append", default=[], help=error)
@@ -852,6 +881,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _work(options: argparse.Namespace) -> None:
+    if options.free is None:
+        raise UsageError("expected --free ADDRESS,ADDRESS, the parameters to be identified")
     free = [word.strip() for word in options.free.split(",") if word.strip()]
     fix, errors = _pairs(options.fix, "--fix"), _pairs(options.error, "--error")
     found: list[Identification] = []
