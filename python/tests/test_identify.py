@@ -176,11 +176,20 @@ def test_moduli_at_temperatures_and_impacts_together(tmp_path):
     again = {"storage_modulus": 0.02, "loss_modulus": 0.05, **errors}
     found = vcor.identify(shifted_case(), [impacts, file], free, errors=again)
     assert found["rubber.wlf_c2"] == pytest.approx(80, rel=1e-5)
+    # shear moduli become tensile ones by Poisson's ratio of the material, 0.45
+    shear = "".join(
+        ",".join([*row[:2], *(f"{float(x) / 2.9:.12g}" for x in row[2:4])]) + "\n"
+        for row in (line.split(",") for line in body.splitlines())
+    )
+    file.write_text("T,f,G_stor,G_loss\nC,Hz,MPa,MPa\n" + shear)
+    found = vcor.identify(shifted_case(), [impacts, file], free, errors=again)
+    assert found["rubber.glassy_modulus"] == pytest.approx(1.5e7, rel=1e-5)
     # a material without a shift takes one temperature, but not three
     one = {"frequency": frequency[:8], "storage_modulus": storage[8:16], "loss_modulus": loss[8:16],
            "temperature": kelvin[8:16]}  # fmt: skip
     found = vcor.identify(guess("sls"), one, free[:3])
     assert found["rubber.beta"] == pytest.approx(1200, rel=1e-5)
+    file.write_text("T,f,E_stor,E_loss\nC,Hz,MPa,MPa\n" + plain)
     with pytest.raises(vcor.InputError, match="needs a shift"):
         vcor.identify(guess("sls"), file, free[:3])
 

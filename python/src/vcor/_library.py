@@ -147,7 +147,7 @@ _ARGUMENTS: dict[str, list[Any]] = {
         c_double, c_double, POINTER(c_void_p),
     ],
     "vcor_read_moduli": [
-        c_char_p, c_char_p, POINTER(c_int), POINTER(c_int), POINTER(c_void_p),
+        c_char_p, c_char_p, c_double, POINTER(c_int), POINTER(c_int), POINTER(c_void_p),
     ],
 }  # fmt: skip
 for _name, _types in _ARGUMENTS.items():

@@ -16,7 +16,7 @@ from . import _library
 from ._library import InputError
 
 #: Poisson's ratio that says that there is none
-_NOT_GIVEN = 1.0
+NOT_GIVEN = 1.0
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def fit(
             )
         samples = np.ascontiguousarray(samples[:, np.argsort(samples[0], kind="stable")])
     given = len(fix), _library.texts(tuple(fix)), np.array([float(one) for one in fix.values()])
-    ratio = _NOT_GIVEN if poisson_ratio is None else poisson_ratio
+    ratio = NOT_GIVEN if poisson_ratio is None else poisson_ratio
     wish = (model, name or "material", terms or 0, *given, ratio, density or 0.0)
     document = _library.text_of("vcor_fit_data", file, *samples.shape[::-1], samples, *wish)
     found = json.loads(document or "")

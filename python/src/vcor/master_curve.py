@@ -28,6 +28,7 @@ from . import _command, _library
 from ._library import Error, Floats, InputError, NumericalError, UsageError
 from .card_formats import GAS
 from .data import ZERO_C
+from .fit import NOT_GIVEN
 
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
@@ -253,22 +254,23 @@ def master(
     )
 
 
-def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
+def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) -> list[Curve]:
     """Curves of a file: one per temperature, or per set where it has a column of that name.
 
-    A file without temperatures is one curve at nan.
+    A file without temperatures is one curve at nan. Shear moduli become tensile ones by Poisson's
+    ratio.
     """
     path, _, given = os.fspath(name).partition("@")
     lines = _command.read_text(path).splitlines()
     if given:
-        return [_curve(path, lines, _kelvin(given, path))]
+        return [_curve(path, lines, _kelvin(given, path), poisson_ratio)]
     told = [line for line in lines[:40] if not line.lstrip().startswith("#")]
     mark = next((mark for mark in ";\t," if any(mark in line for line in told)), None)
     rows = [line.split(mark) for line in lines]
     head = next((i for i, row in enumerate(rows) if len(row) > 2 and any(
         _TEMPERATURE.fullmatch(cell.strip()) for cell in row)), None)  # fmt: skip
     if head is None:
-        return [_curve(path, lines, math.nan)]
+        return [_curve(path, lines, math.nan, poisson_ratio)]
     cells = [cell.strip() for cell in rows[head]]
     place = next(i for i, cell in enumerate(cells) if _TEMPERATURE.fullmatch(cell))
     found = _TEMPERATURE.fullmatch(cells[place])
@@ -300,18 +302,19 @@ def read_curves(name: str | os.PathLike[str]) -> list[Curve]:
     for part in np.split(kept, np.flatnonzero(jumps) + 1):
         order = part[np.argsort(times[part], kind="stable")]
         told = [*lines[: kept[0]], *(lines[i] for i in order)]
-        curves.append(_curve(path, told, float(np.mean(temperature[part])) + zero))
+        kelvin = float(np.mean(temperature[part])) + zero
+        curves.append(_curve(path, told, kelvin, poisson_ratio))
     return curves
 
 
-def _curve(path: str, lines: Sequence[str], temperature: float) -> Curve:
+def _curve(path: str, lines: Sequence[str], temperature: float, poisson_ratio: float) -> Curve:
     """Curve of the lines of a file, read as `vcor fit` reads them."""
     # a null would end the text: vcor refuses it as any control character
     text = "\n".join(lines).replace("\0", "\1")
     n, columns, values = c_int(), c_int(), c_void_p()
     try:
         results = map(byref, (n, columns, values))
-        _library.call("vcor_read_moduli", text, os.fsencode(path), *results)
+        _library.call("vcor_read_moduli", text, os.fsencode(path), poisson_ratio, *results)
     except Error as error:
         which = "" if math.isnan(temperature) else f" (at {temperature:.2f} K)"
         raise type(error)(f"{error}{which}") from None

@@ -18,6 +18,7 @@ from ._command import near, number, read_text
 from ._library import Error, Floats, InputError, NoResultWarning
 from .case import Case, arrays
 from .data import Data, plain_name
+from .fit import NOT_GIVEN
 from .master_curve import read_curves
 
 Source = str | os.PathLike[str] | Mapping[str, ArrayLike]
@@ -296,6 +297,7 @@ def _as_velocities(source: str, columns: dict[str, Floats], case: Case) -> dict[
 
 def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     """Data of a file or of columns, by what they are."""
+    materials = materials_of(free)
     if isinstance(source, Mapping):
         name = "data"
         columns = arrays(source)
@@ -303,7 +305,7 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
             raise InputError("found columns of different lengths")
     else:
         name = os.fspath(source)
-        columns = read_columns(source, case)
+        columns = read_columns(source, case, materials)
     for key, column in columns.items():
         wrong = np.isinf(column) | (key.endswith("_sigma") & (column <= 0))
         if wrong.any():
@@ -313,7 +315,6 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     if "force" in columns and "time" in columns:
         return Record(name, columns, case)
     if any(key in columns for key in ("relaxation_modulus", "storage_modulus")):
-        materials = materials_of(free)
         if len(materials) != 1:
             raise InputError(f"{name}: moduli belong to the material of the free parameters, "
                              f"found {len(materials)} materials")  # fmt: skip
@@ -321,8 +322,10 @@ def observations(case: Case, source: Source, free: Sequence[str]) -> Block:
     return Impacts(name, columns, case)
 
 
-def read_columns(path: str | os.PathLike[str], case: Case) -> dict[str, Floats]:
-    """Columns of a data file of impacts or of a record; moduli as `vcor master` reads them."""
+def read_columns(
+    path: str | os.PathLike[str], case: Case, materials: Sequence[str] = ()
+) -> dict[str, Floats]:
+    """Columns of impacts or of a record; moduli of the first material as `vcor master` has them."""
 
     def unit_of(name: str) -> str:
         """SI unit of a column, empty where the column is not known."""
@@ -340,7 +343,8 @@ def read_columns(path: str | os.PathLike[str], case: Case) -> dict[str, Floats]:
     words = {plain_name(cell) for cell in cells if cell}
     if impacts & words or any(word.endswith("_sigma") for word in words):
         return Data(path, unit_of).columns
-    curves = read_curves(path)
+    ratios = [number(case, f"{name}.poisson_ratio", NOT_GIVEN) for name in materials]
+    curves = read_curves(path, *ratios[:1])
     names = ["frequency", "storage_modulus", "loss_modulus"]
     if not curves[0].dynamic:
         names = ["time", "relaxation_modulus"]

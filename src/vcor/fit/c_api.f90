@@ -93,9 +93,12 @@ contains
    end function vcor_fit_data
 
    !> Moduli of the text of a data file, read as `vcor fit` does, in SI units
-   function vcor_read_moduli(text, name, n, columns, values, error) bind(c) result(code)
+   function vcor_read_moduli(text, name, poisson_ratio, n, columns, values, error) bind(c) &
+      result(code)
       !> The text, and the name of the file for messages
       type(c_ptr), value :: text, name
+      !> Poisson's ratio [-] for shear moduli; beyond 0.5: not given
+      real(c_double), value :: poisson_ratio
       !> Number of samples, and 2 or 3 columns as `vcor_fit_data` has them
       integer(c_int), intent(out) :: n, columns
       !> The columns, one after the other; released by free()
@@ -115,6 +118,7 @@ contains
       values = c_null_ptr
 !$omp critical (vcor_c_api)
       allocate (reading%units(0))
+      reading%poisson_ratio = poisson_ratio
       call read_samples_text(samples, fortran(text), fortran(name), reading, note, place, trouble)
       if (.not. allocated(trouble)) then
          n = size(samples%at)
