@@ -9,6 +9,8 @@ import signal
 import subprocess
 import sys
 import threading
+from decimal import Decimal
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -251,6 +253,9 @@ def test_errors_of_files(tmp_path, program):
     assert str(caught.value) in program("check", tmp_path / "gone.nml", code=4)
     with pytest.raises(vcor.FileError):
         vcor.open(tmp_path / "gone.h5")
+    for place in ("/dev/full", tmp_path, "/proc/x.nml", tmp_path / "gone" / "x.nml"):
+        with pytest.raises(vcor.FileError):
+            vcor.read(PAPER / "sls.nml").save(place)
     (tmp_path / "bad.nml").write_text("&impact\n velocity = fast /\n")
     with pytest.raises(vcor.InputError, match=r"bad\.nml:2: velocity: found 'fast'"):
         vcor.read(tmp_path / "bad.nml")
@@ -265,18 +270,105 @@ def test_errors_of_files(tmp_path, program):
          "impact.velocity: found 2 values, and 3 of sphere.radius"),
         (lambda case: case.points({"plate.waves": ["none", "body"]}),
          "plate.waves: expected numbers"),
-        (lambda case: case.sweep({"impact.velocity": [[1, 2]]}), "each of one dimension"),
+        (lambda case: case.sweep({"impact.velocity": [[1, 2]]}),
+         "^impact.velocity: expected numbers in one dimension"),
+        (lambda case: case.solve({"impact.velocity": [1, 2]}),
+         "^impact.velocity: expected a number"),
+        (lambda case: case.sweep({"impact.velocity": [1, 2]}, [1]), "found 1, expected a text"),
+        (lambda case: case.sweep({"impact.velocity": [1, 2]}, 1), "found 1, expected a text"),
+        (lambda case: case.points({("impact", "velocity"): [1, 2]}), "expected a text"),
+        (lambda case: case.points(None), "at least one column of numbers"),
         (lambda case: case.points({"impact.velocity": 1.0}, threads=0), "threads: found 0"),
+        (lambda case: case.points({"impact.velocity": 1.0}, threads=1025),
+         "threads: found 1025, expected a whole number from 1 to 1024"),
+        (lambda case: case.sweep({"impact.velocity": range(1, 10002), "rubber.beta": range(10000)}),
+         "the grid has 100010000 points, expected at most 100000000"),
+        (lambda case: case.material(0), "found 0, expected a text"),
+        (lambda case: case.material("rubber").complex_modulus([1.0, np.inf]),
+         "found an infinite frequency"),
+        (lambda case: case.material("rubber").relaxation(None), "times: expected numbers"),
         (lambda case: case.material("rubber").relaxation(-1.0), "found a negative time"),
         (lambda case: case.material("rubber").complex_modulus([-1.0]),
          "found a negative frequency"),
         (lambda case: vcor.Case("sls.nml"), "vcor.read reads a file"),
         (lambda case: vcor.Case(PAPER / "sls.nml"), "vcor.read reads a file"),
+        (lambda case: vcor.Case(None), "found None, expected the text of a case or its groups"),
+        (lambda case: vcor.Case(case), "found <vcor.Case .*, expected the text of a case"),
+        (lambda case: vcor.Case([1]), "expected the text of a case"),
+        (lambda case: vcor.Case(b"&case /"), "expected the text of a case"),
+        (lambda case: vcor.Case(case.text() + "\0&solver\n nonsense = 1\n/\n"), "found byte 0"),
+        (lambda case: vcor.Case(case.text() + "! \ud800"), "is no character"),
+        (lambda case: vcor.Case(case.text(), name="a\0b"), "found byte 0"),
+        (lambda case: vcor.Case({"case": None}), "&case: found None, expected the keys"),
+        (lambda case: vcor.Case({"case": 3}), "&case: found 3, expected the keys"),
+        (lambda case: vcor.Case({"material": "x"}), "&material: found 'x', expected the keys"),
+        (lambda case: vcor.Case({"material": [1]}), "&material: found 1, expected the keys"),
+        (lambda case: vcor.Case({"impact": {"velocity": 1j}}), "^impact.velocity: expected"),
+        (lambda case: vcor.Case({"impact": {"velocity": None}}), "^impact.velocity: expected"),
+        (lambda case: vcor.Case({"material": {"moduli": [[1, 2], [3, 4]]}}),
+         "^material.moduli: expected .* in one dimension"),
+        (lambda case: vcor.Case({"impact": {"velocity=3 gravity": 1.0}}), "the name of a group or"),
+        (lambda case: vcor.Case({"case / &contact": {}}), "the name of a group or a key"),
+        (lambda case: vcor.Case({"impact": {3: 1.0}}), "found 3, expected the name"),
     ],
 )  # fmt: skip
 def test_what_a_call_does_not_take(sls, call, words):
     with pytest.raises(vcor.InputError, match=words):
         call(sls)
+
+
+@pytest.mark.parametrize("address", [3, None, ("impact", "velocity"), "impact.velocity\0x"])
+def test_what_is_no_address(sls, address):
+    with pytest.raises(vcor.InputError, match="expected a text"):
+        sls[address] = 1
+    with pytest.raises(vcor.InputError, match="expected a text"):
+        sls[address]
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        None, 1j, [1 + 2j], [None], b"3", ["3"], [True], {}, object(), [1.0, [2.0]], 10**400,
+        np.array(["2020-01-01"], "M8[s]"), np.array([1], "m8[s]"), np.zeros(2, [("a", float)]),
+        np.array([1.0, None]),
+    ],
+)  # fmt: skip
+def test_what_is_no_number(sls, value):
+    for solve in (sls.points, sls.sweep, sls.solve):
+        with pytest.raises(vcor.InputError, match=r"^impact\.velocity: expected"):
+            solve({"impact.velocity": value})
+    with pytest.raises(vcor.InputError, match=r"^impact\.velocity: "):
+        sls["impact.velocity"] = value
+
+
+def test_numbers_of_other_kinds(sls):
+    """Whatever is a real number is one; what is masked has no value."""
+    expected = sls.points({"impact.velocity": [1.0, 2.0]}, ["cor"]).cor.values
+    for one in (range(1, 3), np.array([1, 2], "u1"), np.array([Fraction(1), Decimal(2)]),
+                xr.DataArray([1.0, 2.0]), np.ma.array([1.0, 2.0], mask=False)):  # fmt: skip
+        assert (sls.points({"impact.velocity": one}, ["cor"]).cor.values == expected).all()
+    with pytest.warns(vcor.NoResultWarning, match="1 of 2 points"):
+        found = sls.sweep({"impact.velocity": np.ma.array([1, 7], mask=[False, True])}, ["cor"])
+    assert found.cor[0] == expected[0]
+    assert np.isnan([found.cor[1], found["impact.velocity"][1]]).all()
+    assert sls.solve({"impact.velocity": np.float32(2)})["cor"] == expected[1]
+
+
+def test_whether_an_address_exists(sls):
+    assert "impact.velocity" in sls
+    assert "solver.time_step" in sls
+    assert "impact.velocty" not in sls
+    assert 3 not in sls
+    with pytest.raises(TypeError, match="not iterable"):
+        list(sls)
+
+
+def test_other_bytes_than_utf_8_in_a_comment(tmp_path):
+    """They are read, copied and pickled."""
+    path = tmp_path / "latin.nml"
+    path.write_bytes((PAPER / "sls.nml").read_bytes() + b"! \xb5m\n")
+    case = vcor.read(path)
+    assert str(case) == str(case.copy()) == str(pickle.loads(pickle.dumps(case)))
 
 
 def test_points_without_a_result(sls):

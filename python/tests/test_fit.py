@@ -131,8 +131,12 @@ def test_no_file_that_was_read_is_replaced(program, tmp_path):
         (DATA, {"model": "sls", "fix": {"exponent": 1.0}}, vcor.InputError, "expected a parameter"),
         (([1.0, 2.0], [1.0, 2.0]), {}, vcor.InputError, "found 2 moduli"),
         (([1.0, 2.0], [1.0, -2.0]), {}, vcor.InputError, "numbers > 0"),
+        (None, {}, vcor.InputError, "expected two or three arrays of one length"),
+        (([1, 2, 3], [1, 2]), {}, vcor.InputError, "expected two or three arrays of one length"),
+        (([1, 2, 3], [3, 2, 1j]), {}, vcor.InputError, "data: expected numbers"),
+        (DATA, {"fix": {"exponent": None}}, vcor.InputError, "exponent: expected a number"),
+        (DATA, {"model": 3}, vcor.InputError, "found 3, expected a text"),
     ],
-    ids=["file", "model", "fix", "few", "negative"],
 )
 def test_errors(data, settings, error, line):
     with pytest.raises(error, match=line):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 import os
 from ctypes import POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
+from decimal import Decimal
+from numbers import Real
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -163,12 +166,42 @@ __version__: str = _library.vcor_library_version().decode()
 def call(name: str, *arguments: Any) -> str:
     """Call a function of the library; its remark, if it has one."""
     error = _ErrorStruct()
-    given = (one.encode() if isinstance(one, str) else one for one in arguments)
+    given = (
+        encoded(one) if kind is c_char_p and not isinstance(one, c_char_p) else one
+        for kind, one in zip(_ARGUMENTS[name], arguments, strict=True)
+    )
     code = getattr(_library, name)(*given, byref(error))
     message: str = error.message.decode(errors="replace")
     if code:
         raise _KINDS.get(code, Error)(message)
     return message
+
+
+def encoded(text: str | bytes) -> bytes:
+    """A text as the library takes it, which ends it at a byte 0."""
+    if not isinstance(text, (str, bytes)):
+        raise UsageError(f"found {text!r:.60}, expected a text: an address or a name")
+    try:
+        data = text if isinstance(text, bytes) else text.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError as error:
+        raise InputError(f"found {text[error.start]!r}, which is no character, in a text") from None
+    if b"\0" in data:
+        around = data[max(data.index(0) - 20, 0) :][:40].decode(errors="replace")
+        raise InputError(f"found byte 0, a control character, in {around!r}, expected a text")
+    return data
+
+
+def numbers(
+    given: Any, name: str, dimensions: float = 1, expected: str = "numbers in one dimension"
+) -> Floats:
+    """Real numbers, nan where they are masked; what is none is refused by its name."""
+    with contextlib.suppress(TypeError, ValueError, OverflowError):
+        found = given if isinstance(given, np.ma.MaskedArray) else np.asarray(given)
+        if found.dtype == object and all(isinstance(one, (Real, Decimal)) for one in found.flat):
+            found = found.astype(float)
+        if found.dtype.kind in "iuf" and found.ndim <= dimensions:
+            return np.ma.filled(found.astype(float), np.nan)
+    raise InputError(f"{name}: expected {expected}")
 
 
 def text_of(name: str, *arguments: Any) -> str | None:
@@ -198,7 +231,7 @@ def take_numbers(pointer: c_void_p, n: int) -> Floats:
 
 @functools.lru_cache(maxsize=64)
 def texts(texts: tuple[str, ...]) -> Any:
-    return (c_char_p * len(texts))(*[text.encode() for text in texts])
+    return (c_char_p * len(texts))(*map(encoded, texts))
 
 
 @functools.cache

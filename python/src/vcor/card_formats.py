@@ -134,7 +134,7 @@ class Card:
             "moduli": self.moduli, "times": self.times, **self.shift,
         }  # fmt: skip
         given = {key: _rounded(value) for key, value in keys.items() if value is not None}
-        rows = [f"   {key} = {_written(value)}" for key, value in given.items()]
+        rows = [f"   {key} = {_written(value, key)}" for key, value in given.items()]
         body = [line for row in rows for line in textwrap.wrap(row, 98, subsequent_indent=" " * 6)]
         head = [f"! {line}" for text in self.remarks for line in textwrap.wrap(text, 96)]
         return "\n".join([*head, "&material", *body, "/"]) + "\n"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import re
 import sys
@@ -10,7 +11,7 @@ import time
 import types
 import warnings
 from collections.abc import Mapping, Sequence
-from ctypes import byref, c_double, c_int, c_void_p
+from ctypes import byref, c_char_p, c_double, c_int, c_void_p
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
-from ._library import Error, FileError, Floats, InputError, NoResultWarning, NumericalError, call
+from ._command import read_text, write
+from ._library import Error, Floats, InputError, NoResultWarning, NumericalError, call, numbers
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -28,6 +30,8 @@ Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
 _CHUNK_TIME = 0.3
 #: Status of a point whose values make no impact
 _INVALID = 3
+#: Most threads and points, as the program has them
+_MOST_THREADS, _MOST_POINTS = 1024, 100_000_000
 #: Sweeps that take longer show a progress bar in a terminal [s]
 _BAR_DELAY = 1.0
 
@@ -54,16 +58,14 @@ def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Ca
     InputError
         It is no case.
     """
-    if not materials:
-        return Case(None, name=os.fspath(path))
-    texts = []
-    for one in map(Path, [path, *materials]):
-        try:
-            text = one.read_text(encoding="utf-8")
-        except OSError as error:
-            raise FileError(f"{one}: {error.strerror}") from None
-        texts.append(text if one == Path(path) else _with_folder(text, one.parent.absolute()))
-    return Case("\n".join(texts), name=os.fspath(path))
+    text = None
+    if materials:
+        text = read_text(path, "surrogateescape")
+        for one in map(Path, materials):
+            text += "\n" + _with_folder(read_text(one, "surrogateescape"), one.parent.absolute())
+    case = Case.__new__(Case)
+    case._read(text, os.fspath(path))
+    return case
 
 
 def _with_folder(text: str, folder: Path) -> str:
@@ -86,7 +88,7 @@ class Case:
     source
         The text of a case file, or its groups as a mapping, such as
         `{"impact": {"velocity": 10.0}, "material": [{"name": "steel", ...}, ...]}`.
-        A group of which there are several is a sequence. None: the file `name` is read.
+        A group of which there are several is a sequence.
     name
         Name for messages; data files are relative to its folder.
 
@@ -96,14 +98,19 @@ class Case:
         The text is no case: an unknown key, say. The message names the line.
     """
 
-    def __init__(self, source: str | Groups | None, *, name: str = "case.nml") -> None:
-        if isinstance(source, os.PathLike) or (isinstance(source, str) and "&" not in source):
-            raise InputError(f"{source}: expected the text of a case or its groups; vcor.read "
-                             "reads a file")  # fmt: skip
-        text = source if source is None or isinstance(source, str) else _namelists(source)
+    def __init__(self, source: str | Groups, *, name: str = "case.nml") -> None:
+        if isinstance(source, Mapping):
+            source = _namelists(source)
+        elif not isinstance(source, str) or "&" not in source:
+            raise InputError(f"found {source!r:.80}, expected the text of a case or its groups; "
+                             "vcor.read reads a file")  # fmt: skip
+        self._read(source, name)
+
+    def _read(self, text: str | None, name: str) -> None:
+        """Begin with a text, or with the file `name` if it is None."""
         self.name = name
         self._pointer = c_void_p()
-        call("vcor_read", text, os.fsencode(name), byref(self._pointer))
+        call("vcor_read", text or c_char_p(), os.fsencode(name), byref(self._pointer))
         if text is None:
             text = Path(name).read_text(encoding="utf-8", errors="surrogateescape")
         self._text = text
@@ -116,7 +123,7 @@ class Case:
 
     def __setitem__(self, address: str, value: Value) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
-        written = _written(value) if not isinstance(value, str) else value
+        written = _written(value, address) if not isinstance(value, str) else value
         call("vcor_set", self._pointer, address, written)
         self._settings[address] = written
         self._numbers.pop(address, None)
@@ -127,6 +134,17 @@ class Case:
         """Value at an address, given or by default; None if there is none."""
         text = _library.text_of("vcor_get", self._pointer, address)
         return None if text is None else _value(text)
+
+    def __contains__(self, address: str) -> bool:
+        """Whether there is such an address, with or without a value."""
+        try:
+            self[address]
+        except _library.UsageError:
+            return False
+        return True
+
+    # list(case) would ask for case[0], case[1] and so on
+    __iter__ = None
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle: the text and what was set; data files stay where they are."""
@@ -149,7 +167,7 @@ class Case:
 
     def save(self, path: str | os.PathLike[str], *, complete: bool = False) -> None:
         """Write the case to a file that the program reads."""
-        Path(path).write_text(self.text(complete=complete), encoding="utf-8")
+        write(Path(path), self.text(complete=complete).encode())
 
     def material(self, name: str) -> Material:
         """Material of the case by its name."""
@@ -222,7 +240,7 @@ class Case:
         point = self._numbers if values is None else values
         remark = ""
         if point:
-            row = np.array([[float(value) for value in point.values()]])
+            row = np.array([*arrays(point, 0, "a number").values()]).T
             try:
                 found, remark = self._solve(list(point), row, [*names, "status"], 1)
             except Error:
@@ -302,6 +320,9 @@ class Case:
             The columns over a dimension for each address, named by it. Otherwise as `points`.
         """
         axes = arrays(values)
+        if (count := math.prod(map(len, axes.values()))) > _MOST_POINTS:
+            raise InputError(f"{self.name}: the grid has {count} points, expected at most "
+                             f"{_MOST_POINTS}")  # fmt: skip
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
@@ -401,8 +422,9 @@ class Case:
         """Solve points in parts that take a moment each, for the bar and Ctrl-C."""
         if threads is None:
             threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
-        elif not isinstance(threads, (int, np.integer)) or threads < 1:
-            raise InputError(f"threads: found {threads!r}, expected a whole number > 0")
+        elif not isinstance(threads, (int, np.integer)) or not 1 <= threads <= _MOST_THREADS:
+            raise InputError(f"threads: found {threads!r}, expected a whole number from 1 to "
+                             f"{_MOST_THREADS}")  # fmt: skip
         threads = int(threads)
         results = np.empty((len(table), len(names)))
         remarks = []
@@ -482,14 +504,16 @@ class Material:
 
     def relaxation(self, times: ArrayLike) -> NDArray[np.float64]:
         """Relaxation modulus E(t) [Pa] at times >= 0 [s], in their shape."""
-        t = np.asarray(times, dtype=float)
+        t = numbers(times, "times", np.inf, "numbers")
         moduli = np.empty(t.size)
         call("vcor_relaxation", self._case._pointer, self.name, t.size, t.ravel(), moduli)
         return moduli.reshape(t.shape)
 
     def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
         """Complex modulus E' + i E'' [Pa] at angular frequencies >= 0 [rad/s], in their shape."""
-        w = np.asarray(frequencies, dtype=float)
+        w = numbers(frequencies, "frequencies", np.inf, "numbers")
+        if np.isposinf(w).any():
+            raise InputError("found an infinite frequency, expected them finite [rad/s]")
         storage, loss = np.empty(w.size), np.empty(w.size)
         given = self._case._pointer, self.name, w.size, w.ravel()
         call("vcor_complex_modulus", *given, storage, loss)
@@ -515,24 +539,36 @@ def _namelists(groups: Groups) -> str:
     """Text of a case from its groups."""
     lines: list[str] = []
     for group, items in groups.items():
-        for item in [items] if isinstance(items, Mapping) else items:
-            lines.append(f"&{group}")
-            lines += [f"   {key} = {_written(value)}" for key, value in item.items()]
+        one = isinstance(items, (str, Mapping)) or not np.iterable(items)
+        for item in [items] if one else items:
+            if not isinstance(item, Mapping):
+                raise InputError(f"&{group}: found {item!r:.60}, expected the keys of a group and "
+                                 "their values, or a list of such groups")  # fmt: skip
+            lines.append(f"&{_name(group)}")
+            lines += [f"   {_name(key)} = {_written(value, f'{group}.{key}')}"
+                      for key, value in item.items()]  # fmt: skip
             lines.append("/")
     return "\n".join(lines) + "\n"
 
 
-def _written(value: Any) -> str:
-    """A value as a namelist has it."""
+def _name(key: str) -> str:
+    """Name of a group or a key; nothing that would read as more than that."""
+    if not isinstance(key, str) or not re.fullmatch(r"\w+(\([\d:]*\))?", key, re.ASCII):
+        raise InputError(f"found {key!r:.60}, expected the name of a group or a key: letters, "
+                         "digits and underscores")  # fmt: skip
+    return key
+
+
+def _written(value: Any, name: str) -> str:
+    """A value as a namelist has it; `name` is what is given it."""
     if isinstance(value, str):
         return "'" + value.replace("'", "''") + "'"
     if isinstance(value, (bool, np.bool_)):
         return ".true." if value else ".false."
     if isinstance(value, (int, np.integer)):
         return str(int(value))
-    if np.ndim(value) == 0:
-        return repr(float(value))
-    return ", ".join(repr(float(number)) for number in np.ravel(value))
+    found = numbers(value, name, expected="a text, True, False, or numbers in one dimension")
+    return ", ".join(map(repr, np.atleast_1d(found).tolist()))
 
 
 def _value(text: str) -> Value:
@@ -547,17 +583,11 @@ def _value(text: str) -> Value:
     return int(text) if text.lstrip("+-").isdigit() else numbers[0]
 
 
-def arrays(values: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+def arrays(values: Mapping[str, ArrayLike], *expected: Any) -> dict[str, Floats]:
     """Columns of numbers, each as an array of one dimension."""
-    columns = {}
-    for address, given in values.items():
-        try:
-            columns[address] = np.atleast_1d(np.asarray(given, dtype=float))
-        except (TypeError, ValueError):
-            raise InputError(f"{address}: expected numbers") from None
-    if not columns or any(column.ndim > 1 for column in columns.values()):
-        raise InputError("expected at least one column of numbers, each of one dimension")
-    return columns
+    if not hasattr(values, "items") or not len(values):
+        raise InputError("expected at least one column of numbers, by its address or name")
+    return {name: np.atleast_1d(numbers(given, name, *expected)) for name, given in values.items()}
 
 
 def _names(quantities: Sequence[str] | None) -> list[str]:
@@ -567,7 +597,7 @@ def _names(quantities: Sequence[str] | None) -> list[str]:
 
 def listed(names: Sequence[str]) -> list[str]:
     """Names as a list; a text is one."""
-    return [names] if isinstance(names, str) else list(names)
+    return [names] if isinstance(names, str) or not np.iterable(names) else list(names)
 
 
 def _reason(remark: str) -> str:

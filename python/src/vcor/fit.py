@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping, Sequence
+from ctypes import c_char_p
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from ._library import InputError
+from ._library import InputError, numbers
 
 #: Poisson's ratio that says that there is none
 NOT_GIVEN = 1.0
@@ -109,19 +110,24 @@ def fit(
         The fit fails, or the data do not determine the parameters.
     """
     fix = fix or {}
-    file, samples = None, np.empty((0, 0))
+    file: bytes | c_char_p = c_char_p()
+    samples = np.empty((0, 0))
     if isinstance(data, (str, os.PathLike)):
         file = os.fsencode(data)
         name = name or Path(data).stem
     else:
-        samples = np.array([np.ravel(np.asarray(column, dtype=float)) for column in data])
+        parts = data if np.iterable(data) else []
+        columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
+        if len({len(column) for column in columns}) == 1:
+            samples = np.array(columns)
         if len(samples) not in (2, 3) or not (np.isfinite(samples) & (samples > 0)).all():
             raise InputError(
                 "expected two or three arrays of one length with numbers > 0: times and moduli, "
                 "or angular frequencies, storage and loss moduli"
             )
         samples = np.ascontiguousarray(samples[:, np.argsort(samples[0], kind="stable")])
-    given = len(fix), _library.texts(tuple(fix)), np.array([float(one) for one in fix.values()])
+    fixed = np.array([numbers(value, key, 0, "a number") for key, value in fix.items()])
+    given = len(fix), _library.texts(tuple(fix)), fixed
     ratio = NOT_GIVEN if poisson_ratio is None else poisson_ratio
     wish = (model, name or "material", terms or 0, *given, ratio, density or 0.0)
     document = _library.text_of("vcor_fit_data", file, *samples.shape[::-1], samples, *wish)
