@@ -154,6 +154,45 @@ def test_contacts_that_do_not_end(vcor, law, reason):
     assert done.code == NUMERICAL and reason in done.err
 
 
+RUBBER = """
+&impact velocity = 10.0 /
+&sphere radius = 0.01, material = 'steel' /
+&plate half_thickness = 0.02, material = 'rubber', waves = 'body' /
+&material name = 'steel', model = 'rigid', density = 7800.0 /
+&material name = 'rubber', model = 'sls', density = 1100.0, poisson_ratio = 0.5, glassy_modulus = 15.0e6,
+   alpha = 300.0, beta = 1200.0 /
+"""
+
+
+@pytest.mark.parametrize(("velocity", "half_thickness"), [(10.0, 0.02), (2.0, 0.01), (5.0, 0.01)])
+def test_errors_with_lines_beyond_the_end(vcor, velocity, half_thickness):
+    """The response of the plate is fitted for twice the time then: the stated errors follow."""
+    vcor.write(RUBBER)
+    words = ["--set", f"impact.velocity={velocity}", "--set", f"plate.half_thickness={half_thickness}"]
+    found = [
+        [float(word) for word in vcor.succeeds("run", "case.nml", "--print", "cor,cor_error", *words, *more).split()]
+        for more in ([], ["--set", "solver.continue_after_separation=.true."])
+    ]
+    assert abs(found[1][0] - found[0][0]) <= 2.0 * max(found[0][1], found[1][1])
+    assert found[1][1] >= 0.2 * found[0][1]
+
+
+@pytest.mark.parametrize("accuracy", ["1e-5", "1e-7", "1e-8", "1e-11"])
+def test_a_smaller_accuracy_is_no_reason_to_refuse(vcor, accuracy):
+    vcor.write(RUBBER)
+    out = vcor.succeeds("run", "case.nml", "--print", "cor,cor_sphere", "--set", f"solver.accuracy={accuracy}")
+    cor, sphere = map(float, out.split())
+    assert abs(cor - 0.48518) < 5e-5 and abs(sphere - 0.36976306) < 2e-8
+
+
+@pytest.mark.parametrize("footprint", ["1e-6", "1e-3", "5e-3"])
+def test_a_footprint_within_the_contact(vcor, footprint):
+    """Its disc takes off more dent than the contact has: no solution, and the message says why."""
+    vcor.write(RUBBER)
+    done = vcor("run", "case.nml", "--print", "cor", "--set", f"plate.footprint={footprint}")
+    assert done.code == NUMERICAL and "is smaller than the contact becomes" in done.err
+
+
 def test_growth_that_comes_slowly(vcor):
     """Where t1 comes to a rest and rises, a rebound that is cut short of that says so in the end."""
     vcor.write(

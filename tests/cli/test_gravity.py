@@ -47,6 +47,14 @@ def test_rests(vcor, method, velocity):
     assert math.isnan(values[1]) and math.isnan(values[2])
 
 
+def test_rest_is_no_doubt(vcor):
+    """In a sweep a sphere that rests is not counted among those with a large estimated error."""
+    vcor.write(CASE + "&sweep parameter = 'impact.velocity', values = 1e-6, 0.4 /\n")
+    done = vcor("run", "case.nml", "--print", "cor,status")
+    assert done.code == 0 and done.out.split()[1::2] == ["rests", "separated"]
+    assert "estimated error" not in done.err
+
+
 @pytest.mark.parametrize("law", ["boltzmann", "receding"])
 @pytest.mark.parametrize("waves", ["none", "relaxing", "hereditary"])
 def test_separates_or_rests(vcor, law, waves):

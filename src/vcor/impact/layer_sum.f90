@@ -32,8 +32,8 @@ module vcor_impact_layer_sum
 
    !> What a sum misses of C [m/N]
    type :: layer_misfit_t
-      !> Of echoes, as the motion feels it
-      real(wp) :: echo = 0.0_wp
+      !> As the motion feels it, in all and of echoes alone
+      real(wp) :: motion = 0.0_wp, echo = 0.0_wp
       !> As the velocity feels it at an end at which the force is smooth, and at one where it is not
       real(wp) :: smooth_end = 0.0_wp, power_end = 0.0_wp
    end type layer_misfit_t
@@ -241,8 +241,7 @@ contains
       class(layer_sum_t), intent(in) :: self
       !> Radius of the disc that is loaded [m], in the band
       real(wp), intent(in) :: footprint
-      !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k; the
-      !> error is the misfit of C as the motion feels it [m/N]
+      !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k
       type(exponential_sum_t), intent(out) :: terms
       type(layer_misfit_t), intent(out) :: misfit
 
@@ -259,9 +258,8 @@ contains
       end if
       c = matmul(self%coefficient, weight/(sum(weight)*footprint))
       i = minloc(abs(distance), 1)
-      terms%error = self%misfit(i)/footprint
-      misfit = layer_misfit_t(self%echo(i)/footprint, self%echo_of_rate(i)/footprint, &
-         self%misfit_of_rate(i)/footprint)
+      misfit = layer_misfit_t(self%misfit(i)/footprint, self%echo(i)/footprint, &
+         self%echo_of_rate(i)/footprint, self%misfit_of_rate(i)/footprint)
       terms%rates = rate/self%window
       terms%pair_rates = pair_rate/self%window
       terms%moduli = c(:slow)

@@ -292,7 +292,7 @@ contains
       !> Wanted relative accuracy, > 0; a layer takes what the fit gives
       real(wp), intent(in) :: accuracy
       !> psi in [m/(N s2)], alpha [m/(N s)] as its viscosity; the error is that of the velocity
-      !> under a constant force over that velocity, or of a layer's deflection per force [m/N]
+      !> under a constant force over that velocity, 0 of a layer
       type(exponential_sum_t), intent(out) :: terms
       !> Deflection that follows the force at once [m/N], <= 0; not 0 for a layer only
       real(wp), intent(out) :: instant

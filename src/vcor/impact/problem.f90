@@ -58,6 +58,7 @@ module vcor_impact_problem
       procedure :: outruns
       procedure :: first_force
       procedure :: contact_radius
+      procedure :: expected_radius
       procedure :: springs_back
       procedure :: inelasticity
       procedure :: lasting_inelasticity
@@ -113,8 +114,7 @@ contains
       !> Gravity [m/s2], >= 0; absent: none
       real(wp), intent(in), optional :: gravity
       !> Radius of the disc that loads a plate by elastodynamics [m]; absent or 0: one that is
-      !> larger than the contact, 1.6 sqrt(R 1.0936 v0 T), 1.0936 v0 T being the largest
-      !> indentation of an elastic impact of the time scale T
+      !> larger than the contact, 1.6 times the `expected_radius`
       real(wp), intent(in), optional :: footprint
 
       ! energies and their products stay far inside the range of the numbers
@@ -145,8 +145,8 @@ contains
       if (present(footprint)) self%plate%footprint = footprint
       ! a number that jumped with the rounding of T would make the results jump
       time_scale = self%time_scale(1.0e-14_wp)
-      if (.not. self%plate%footprint > 0.0_wp) self%plate%footprint = 1.6_wp &
-         *self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
+      if (.not. self%plate%footprint > 0.0_wp) &
+         self%plate%footprint = 1.6_wp*self%expected_radius(time_scale)
       if (self%plate%is_sheet()) then
          call raise(error, error_input, 'the plate is less than a hundredth of the disc that ' &
             //"loads it: use waves = 'hereditary'", about='half_thickness footprint')
@@ -156,6 +156,18 @@ contains
             //"model holds; waves = 'none' leaves them out", about='velocity footprint')
       end if
    end subroutine launch
+
+   !> Largest contact radius of an elastic impact of a time scale T, sqrt(R 1.0936 v0 T) for a
+   !> sphere, 1.0936 v0 T being its largest indentation
+   pure function expected_radius(self, time_scale) result(radius)
+      class(impact_t), intent(in) :: self
+      !> Time scale T [s]
+      real(wp), intent(in) :: time_scale
+      !> Radius [m]
+      real(wp) :: radius
+
+      radius = self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
+   end function expected_radius
 
    !> Way of the sphere without a contact force, v0 t + g t^2/2
    elemental function free_path(self, t) result(path)

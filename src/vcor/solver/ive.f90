@@ -63,7 +63,8 @@ contains
 
       type(modes_t) :: modes
       type(layer_misfit_t) :: misfit
-      real(wp) :: end_time, ghost_end, window, growth, time_scale, error_of_sums, stiffness
+      real(wp) :: end_time, ghost_end, window, first_window, growth, time_scale, error_of_sums
+      real(wp) :: stiffness
       logical :: complete
 
       time_scale = impact%time_scale()
@@ -72,12 +73,11 @@ contains
       ghost_end = merge(self%settings%end_time, -1.0_wp, self%settings%ghost)
       window = window_margin*impact%law%contact_time*time_scale
       growth = window_growth
-      ! what the deflection per force of a layer is measured by
-      stiffness = 0.0_wp
       if (impact%plate%layered()) then
          window = impact%plate%window(impact%law%contact_time*time_scale)
          growth = layer_growth
       end if
+      first_window = window
       do
          call impact%kernel_exponentials(window, kernel_share*self%accuracy, modes%contact)
          if (.not. modes%contact%error < 1.0_wp) then
@@ -88,10 +88,7 @@ contains
          if (impact%plate%hereditary()) then
             call impact%plate%response(window, plate_share*self%accuracy, modes%plate, &
                modes%instant, misfit)
-            if (impact%plate%layered()) then
-               stiffness = impact%mass/window**2
-               modes%plate%error = modes%plate%error*stiffness
-            end if
+            if (impact%plate%layered()) modes%plate%error = misfit%motion*impact%mass/window**2
             if (.not. modes%plate%error < 1.0_wp) then
                call raise(error, error_numerical, 'no sum of exponentials stands for what this ' &
                   //"plate remembers: use another plate.waves, or method = 'direct'")
@@ -114,19 +111,27 @@ contains
             return
          end if
       end if
+      trajectory%accuracy = self%settings%accuracy
+      if (impact%plate%layered()) trajectory%accuracy = max(trajectory%accuracy, layer_reach)
       if (trajectory%status == contact_separated) then
-         error_of_sums = error_of_kernel &
-            *(error_felt(impact, modes%contact, trajectory) + modes%plate%error) &
-            + error_of_echo*misfit%echo*stiffness
-         trajectory%cor_error = trajectory%cor_error + error_of_sums &
-            + error_of_layer*merge(misfit%power_end, misfit%smooth_end, &
-            ends_as_power(impact, trajectory))*stiffness
+         error_of_sums = error_of_kernel*error_felt(impact, modes%contact, trajectory)
+         if (impact%plate%layered()) then
+            ! for lines beyond its end the window became longer than the contact takes
+            window = first_window
+            do while (window < trajectory%state(col_time, trajectory%last))
+               window = growth*window
+            end do
+            stiffness = impact%mass/window**2
+            error_of_sums = error_of_sums &
+               + (error_of_kernel*misfit%motion + error_of_echo*misfit%echo)*stiffness
+            trajectory%cor_error = trajectory%cor_error + error_of_layer*stiffness &
+               *merge(misfit%power_end, misfit%smooth_end, ends_as_power(impact, trajectory))
+         else
+            error_of_sums = error_of_sums + error_of_kernel*modes%plate%error
+         end if
+         trajectory%cor_error = trajectory%cor_error + error_of_sums
          trajectory%cor_sphere_error = trajectory%cor_sphere_error + error_of_sums
       end if
-      trajectory%accuracy = self%settings%accuracy
-      ! the default is not for the velocity of the face of a layer
-      if (impact%plate%layered() .and. .not. abs(trajectory%accuracy - default_accuracy('ive')) &
-          > 0.0_wp) trajectory%accuracy = layer_reach
       associate (contact => modes%contact)
          if (contact%error > 0.0_wp) trajectory%kernel_terms = size(contact%rates)
          trajectory%kernel_error = contact%error

@@ -99,19 +99,31 @@ contains
       character(len=*), parameter :: advice(2) = [character(len=59) :: &
          "use method = 'direct' or give a larger solver.accuracy", &
          'give a larger solver.accuracy or a shorter solver.time_step']
+      character(len=*), parameter :: asked(2) = [character(len=19) :: &
+         "that a layer allows", 'asked for']
 
       call solver%solve(impact, trajectory, error)
-      if (allocated(error)) return
-      outcome = evaluate(impact, trajectory)
-      if (outcome%status /= contact_separated) return
-      if (.not. outcome%is_finite()) then
-         call raise(error, error_numerical, 'the numbers of this impact are beyond all that can ' &
-            //'be computed')
-      else if (trajectory%misses_by_far()) then
-         call raise(error, error_numerical, 'the estimated error of cor, ' &
-            //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
-            //', is more than a hundred times the accuracy asked for, '//as_text(outcome%accuracy) &
-            //': '//trim(advice(merge(1, 2, trajectory%stages > 0))))
+      if (.not. allocated(error)) then
+         outcome = evaluate(impact, trajectory)
+         if (outcome%status /= contact_separated) return
+         if (.not. outcome%is_finite()) then
+            call raise(error, error_numerical, 'the numbers of this impact are beyond all that ' &
+               //'can be computed')
+         else if (trajectory%misses_by_far()) then
+            call raise(error, error_numerical, 'the estimated error of cor, ' &
+               //as_text(max(outcome%cor_error, outcome%cor_sphere_error)) &
+               //', is more than a hundred times the accuracy '//trim(asked(merge(1, 2, &
+               impact%plate%layered())))//', '//as_text(outcome%accuracy) &
+               //': '//trim(advice(merge(1, 2, trajectory%stages > 0))))
+         end if
+      end if
+      if (.not. allocated(error)) return
+      if (error%code /= error_numerical .or. .not. impact%plate%layered()) return
+      ! a disc within the contact is stiffer than the contact: the equations have no solution
+      if (impact%plate%footprint < impact%expected_radius(impact%time_scale())) then
+         call raise(error, error_numerical, 'the footprint, ' &
+            //as_text(impact%plate%footprint)//' m, is smaller than the contact becomes, which ' &
+            //'has no solution: give a larger plate.footprint, or none')
       end if
    end subroutine solve_impact
 

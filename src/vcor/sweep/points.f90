@@ -10,7 +10,8 @@ module vcor_sweep_points
 !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
    use vcor_error, only : error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_trajectory, only : contact_lasting, contact_separated, contact_sticking
+   use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
+      contact_sticking
    use vcor_kinds, only : wp
    use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, numbers_of, rank_count, &
       text_of, this_rank
@@ -224,7 +225,8 @@ contains
                point = part%point(places(own%point(j)))
                call solve_point(sweep, point, workers(thread), outcome, trouble)
                rows(:, j) = values_of(outcome)
-               if (outcome%status == contact_separated .and. .not. outcome%misses()) cycle
+               if (any(outcome%status == [contact_separated, contact_resting]) &
+                   .and. .not. outcome%misses()) cycle
 !$omp critical (vcor_failures)
                if (allocated(trouble)) then
                   call failures%note(point, trouble%message)
