@@ -263,6 +263,7 @@ def test_programs_that_are_not_run_here():
     assert "takes half of the bead's radius" in texts["yade"]
     assert "twice the reduced mass" in texts["mercurydpm"]
     assert "UseMaterialProperties(False)" in texts["chrono"]
+    assert "SetDefaultEffectiveCurvatureRadius(0.005)" in texts["chrono"]
     assert "@" not in "".join(texts.values())
     # what is clipped takes less than e, what is not takes e, and YADE knows by itself
     entered = {
@@ -283,6 +284,12 @@ def test_programs_that_are_not_run_here():
     assert (kn * 0.005, gn * 0.005 * mass / 2) == pytest.approx(
         (twin.stiffness, twin.damping), rel=1e-6
     )
+
+
+def test_a_case_that_gives_all_mechanics():
+    case = vcor.pair([RUBBER, STEEL], (0.005,))
+    case["contact.law"], case["contact.pair"], case["plate.waves"] = "receding", "series", "none"
+    assert "contact law receding, waves none" in str(vcor.export(case, "table", VELOCITIES))
 
 
 def test_laws_that_are_not_there():
