@@ -26,7 +26,7 @@ contains
       first = 1
       do while (first <= len_trim(words))
          last = first + index(words(first:)//" ", " ") - 2
-         list = [list, [character(len=longest_name) :: words(first:last)]]
+         list = [character(len=longest_name) :: list, words(first:last)]
          first = last + 2
       end do
    end function list_of_words
