@@ -21,7 +21,6 @@ module vcor_app_validity
       levels, surroundings_t, thresholds
    use vcor_io_data_file, only : data_file
    use vcor_kinds, only : wp
-   use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
    use vcor_sweep_quantity, only : quantity_place, quantity_value, summary_t
    use vcor_text, only : integer_text, printable, real_text
@@ -398,7 +397,7 @@ contains
       call material_of_case(case, item, material, error)
       if (allocated(error)) return
       call case%get('material', 'times', times, item)
-      times = times*time_factor_of(material)
+      times = times*material%time_factor
       before = ''
       after = ''
       associate (first => times(1), last => times(size(times)), shortest => minval(contacts), &

@@ -21,7 +21,6 @@ module vcor_c_api
    use vcor_io_data_file, only : read_data
    use vcor_io_posix, only : fortran => fortran_text
    use vcor_kinds, only : wp
-   use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
    use vcor_sweep_part, only : most_threads, new_part
    use vcor_sweep_points, only : default_threads, failures_t, solve_points
@@ -488,7 +487,7 @@ contains
       type(error_t), allocatable :: trouble
 
       call find_body(self, material, body, trouble)
-      if (.not. allocated(trouble)) factor = time_factor_of(body)
+      if (.not. allocated(trouble)) factor = body%time_factor
       code = report_error(trouble, error)
    end function vcor_time_factor
 

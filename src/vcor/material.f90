@@ -6,18 +6,18 @@ module vcor_material
    use vcor_material_cerf, only : cerf_parameters, cerf_t, new_cerf
    use vcor_material_mittag_leffler, only : mittag_leffler_parameters, mittag_leffler_t, &
       new_mittag_leffler
-   use vcor_material_parameter, only : density, parameter_t
+   use vcor_material_parameter, only : density, parameter_t, power_of_time
    use vcor_material_power_law, only : new_power_law, power_law_parameters, power_law_t
    use vcor_material_prony, only : elastic_parameters, new_elastic, new_prony, new_rigid, new_sls, &
       prony_parameters, prony_t, rigid_parameters, sls_parameters
-   use vcor_material_shifted, only : new_shifted, shift_parameters, shift_t, shifted_t
+   use vcor_material_shift, only : shift_parameters, shift_t
    use vcor_material_table, only : new_tabulated, table_parameters, tabulated_t
    use vcor_material_type, only : material_t
    use vcor_words, only : join_words
    implicit none
    private
 
-   public :: material_t, material_data_t, new_material, set_constants_of
+   public :: material_t, material_data_t, new_material
    public :: models, identifiable_models, relaxing_models, model_parameter_t, model_parameters
    public :: parameters_of
 
@@ -81,9 +81,12 @@ module vcor_material
       integer, private :: n = 0
       !> The values
       type(value_t), private :: value(most_values)
+      !> The points of a table as a material, once they were fitted
+      type(tabulated_t), allocatable, private :: fitted
    contains
       procedure :: set
       procedure :: set_list
+      procedure :: fit_points
       procedure :: number
       procedure :: list
       procedure :: deforms_as
@@ -159,9 +162,39 @@ contains
 
       integer :: place
 
+      ! the fit of a table's points stands where they are the same again
+      if (allocated(self%fitted)) then
+         if (is_same(self%list(name), list)) return
+         deallocate (self%fitted)
+      end if
       call self%find(name, place)
       if (place > 0) self%value(place)%list = list
    end subroutine set_list
+
+   !> Whether two lists are the same
+   pure function is_same(one, other) result(same)
+      !> One, shape (n)
+      real(wp), intent(in) :: one(:)
+      !> The other, shape (m)
+      real(wp), intent(in) :: other(:)
+      logical :: same
+
+      same = size(one) == size(other)
+      if (same) same = .not. any(abs(one - other) > 0.0_wp)
+   end function is_same
+
+   !> Fit the points of a table once for all temperatures; without this `new_material` fits them
+   !> each time. Where they make no table it says why
+   pure subroutine fit_points(self)
+      class(material_data_t), intent(inout) :: self
+
+      type(error_t), allocatable :: error
+
+      if (self%model /= 'table' .or. allocated(self%fitted)) return
+      allocate (self%fitted)
+      call new_tabulated(self%fitted, self%list('times'), self%list('moduli'), error)
+      if (allocated(error)) deallocate (self%fitted)
+   end subroutine fit_points
 
    !> A number by the name of its parameter
    pure function number(self, name)
@@ -194,20 +227,18 @@ contains
    end function list
 
    !> Whether two descriptions are of one and the same modulus, whatever their names and densities
-   pure function deforms_as(self, other) result(is_same)
+   pure function deforms_as(self, other) result(yes)
       class(material_data_t), intent(in) :: self
       class(material_data_t), intent(in) :: other
-      logical :: is_same
+      logical :: yes
 
-      is_same = self%model == other%model .and. (self%is_shear .eqv. other%is_shear) &
+      yes = self%model == other%model .and. (self%is_shear .eqv. other%is_shear) &
          .and. self%shift%law == other%shift%law &
          .and. (self%shift%vertical .eqv. other%shift%vertical) &
          .and. has_all_of(self, other) .and. has_all_of(other, self)
-      if (is_same .and. allocated(self%shift%temperatures)) is_same = &
-         size(self%shift%temperatures) == size(other%shift%temperatures)
-      if (is_same .and. allocated(self%shift%temperatures)) is_same = .not. &
-         (any(abs(self%shift%temperatures - other%shift%temperatures) > 0.0_wp) &
-         .or. any(abs(self%shift%logarithms - other%shift%logarithms) > 0.0_wp))
+      if (yes .and. allocated(self%shift%temperatures)) yes = &
+         is_same(self%shift%temperatures, other%shift%temperatures) &
+         .and. is_same(self%shift%logarithms, other%shift%logarithms)
    end function deforms_as
 
    !> Whether a description has all values of another but its density
@@ -223,129 +254,81 @@ contains
          associate (value => other%value(i))
             if (value%name == density%name) cycle
             yes = yes .and. .not. abs(self%number(value%name) - value%number) > 0.0_wp
-            if (.not. (yes .and. allocated(value%list))) cycle
-            yes = size(self%list(value%name)) == size(value%list)
-            if (yes) yes = .not. any(abs(self%list(value%name) - value%list) > 0.0_wp)
+            if (yes .and. allocated(value%list)) yes = is_same(self%list(value%name), value%list)
          end associate
       end do
    end function has_all_of
 
-   !> Give a material the density and Poisson's ratio of a description, as far as it has them, and
-   !> its temperature
-   pure subroutine set_constants_of(material, data, error)
-      class(material_t), intent(inout) :: material
-      type(material_data_t), intent(in) :: data
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      real(wp) :: a, b
-      integer :: i
-
-      if (data%place_of('density') > 0) &
-         call material%set_constants(error, density=data%number('density'))
-      if (allocated(error)) return
-      if (data%place_of('poisson_ratio') > 0) &
-         call material%set_constants(error, poisson_ratio=data%number('poisson_ratio'))
-      if (allocated(error)) return
-      select type (material)
-      type is (shifted_t)
-         call data%shift%find_factors(data%temperature, &
-            [(data%number(shift_parameters(i)%name), i=1, size(shift_parameters))], a, b, error)
-         if (.not. allocated(error)) call material%take_factors(a, b)
-      end select
-   end subroutine set_constants_of
-
-   !> A description with tensile moduli in place of shear moduli
-   pure function tensile(data)
-      !> Of shear moduli
-      type(material_data_t), intent(in) :: data
-      type(material_data_t) :: tensile
-
-      character(len=*), parameter :: pascal = 'Pa'
-      type(parameter_t) :: parameter
-      real(wp) :: factor
-      integer :: i
-
-      tensile = data
-      tensile%is_shear = .false.
-      factor = 2.0_wp*(1.0_wp + data%number('poisson_ratio'))
-      do i = 1, data%n
-         associate (value => tensile%value(i))
-            if (all(model_parameters%parameter%name /= value%name)) cycle
-            parameter = model_parameters(findloc(model_parameters%parameter%name == value%name, &
-               .true., dim=1))%parameter
-            ! Pa, and Pa times a power of time
-            if (parameter%unit(:len(pascal)) /= pascal) cycle
-            value%number = factor*value%number
-            if (allocated(value%list)) value%list(:) = factor*value%list
-         end associate
-      end do
-   end function tensile
-
-   !> Build a material
-   recursive subroutine new_material(material, data, error)
+   !> Build a material of tensile moduli at its temperature
+   subroutine new_material(material, data, error)
       !> The material; not allocated on failure
       class(material_t), allocatable, intent(out) :: material
       type(material_data_t), intent(in) :: data
       type(error_t), allocatable, intent(out) :: error
 
-      type(shifted_t) :: shifted
       type(prony_t) :: prony
       type(power_law_t) :: power_law
       type(cerf_t) :: cerf
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: table
       real(wp), allocatable :: rates(:)
+      !> What times and moduli are multiplied by
+      real(wp) :: a, b
       real(wp) :: exponent, time
+      integer :: i
 
-      if (data%is_shear) then
-         call new_material(material, tensile(data), error)
-         return
-      end if
       if (allocated(data%unknown)) then
          call raise(error, error_input, "a material has no parameter '"//data%unknown//"'")
          return
       end if
+      call data%shift%find_factors(data%temperature, &
+         [(data%number(shift_parameters(i)%name), i=1, size(shift_parameters))], a, b, error)
+      if (allocated(error)) return
+      if (data%is_shear) b = 2.0_wp*(1.0_wp + data%number('poisson_ratio'))*b
       select case (data%model)
       case ('rigid')
          call new_rigid(prony)
          call accept(prony)
       case ('elastic')
-         call new_elastic(prony, data%number('modulus'), error)
+         call new_elastic(prony, value('modulus'), error)
          call accept(prony)
       case ('sls')
-         call new_sls(prony, data%number('glassy_modulus'), data%number('alpha'), &
-            data%number('beta'), error)
+         call new_sls(prony, value('glassy_modulus'), value('alpha'), value('beta'), error)
          call accept(prony)
       case ('prony')
-         rates = data%list('rates')
-         if (size(rates) == 0) rates = 1.0_wp/data%list('times')
-         call new_prony(prony, data%number('equilibrium_modulus'), data%list('moduli'), &
-            rates, data%number('viscosity'), error)
+         rates = values('rates')
+         if (size(rates) == 0) rates = 1.0_wp/values('times')
+         call new_prony(prony, value('equilibrium_modulus'), values('moduli'), rates, &
+            value('viscosity'), error)
          call accept(prony)
       case ('power_law')
-         call new_power_law(power_law, data%number('equilibrium_modulus'), &
-            data%number('coefficient'), data%number('exponent'), error)
+         call new_power_law(power_law, value('equilibrium_modulus'), value('coefficient'), &
+            value('exponent'), error)
          call accept(power_law)
       case ('cerf')
-         call new_cerf(cerf, data%number('equilibrium_modulus'), data%number('relaxing_modulus'), &
-            data%number('beta'), error)
+         call new_cerf(cerf, value('equilibrium_modulus'), value('relaxing_modulus'), &
+            value('beta'), error)
          call accept(cerf)
       case ('mittag_leffler')
-         exponent = data%number('exponent')
-         time = data%number('time')
+         exponent = value('exponent')
+         time = value('time')
          if (exponent < 1.0_wp .or. exponent > 1.0_wp .or. .not. time > tiny(time)) then
-            call new_mittag_leffler(mittag_leffler, data%number('equilibrium_modulus'), &
-               data%number('relaxing_modulus'), exponent, time, error)
+            call new_mittag_leffler(mittag_leffler, value('equilibrium_modulus'), &
+               value('relaxing_modulus'), exponent, time, error)
             call accept(mittag_leffler)
          else
             ! the standard linear solid, a sum of one exponential
-            call new_prony(prony, data%number('equilibrium_modulus'), &
-               [data%number('relaxing_modulus')], [1.0_wp/time], 0.0_wp, error)
+            call new_prony(prony, value('equilibrium_modulus'), &
+               [value('relaxing_modulus')], [1.0_wp/time], 0.0_wp, error)
             call accept(prony)
          end if
       case ('table')
-         call new_tabulated(table, data%list('times'), data%list('moduli'), error)
+         if (allocated(data%fitted)) then
+            table = data%fitted
+         else
+            call new_tabulated(table, data%list('times'), data%list('moduli'), error)
+         end if
+         if (.not. allocated(error)) call table%rescale(a, b)
          call accept(table)
       case default
          call raise(error, error_input, "unknown model '"//data%model//"'; known: " &
@@ -354,6 +337,51 @@ contains
 
    contains
 
+      !> A number at the temperature, a modulus as tensile modulus
+      pure function value(name)
+         !> A parameter of the model
+         character(len=*), intent(in) :: name
+         real(wp) :: value
+
+         value = factor(name)*data%number(name)
+      end function value
+
+      !> A list at the temperature, moduli as tensile moduli
+      pure function values(name)
+         !> A parameter of the model
+         character(len=*), intent(in) :: name
+         !> Its values, none where it was not set
+         real(wp), allocatable :: values(:)
+
+         values = factor(name)*data%list(name)
+      end function values
+
+      !> What shear and temperature multiply a parameter by, which follows from its unit
+      pure function factor(name)
+         character(len=*), intent(in) :: name
+         real(wp) :: factor
+
+         character(len=*), parameter :: pascal = 'Pa'
+         character(len=len(density%unit)) :: unit
+         integer :: place
+
+         do place = 1, size(model_parameters)
+            if (model_parameters(place)%parameter%name /= name) cycle
+            if (model_parameters(place)%model == data%model) exit
+         end do
+         unit = model_parameters(place)%parameter%unit
+         factor = 1.0_wp
+         if (unit(:len(pascal)) == pascal) then
+            factor = b
+            unit = adjustl(unit(len(pascal) + 1:))
+         end if
+         if (unit == 's^a') then
+            factor = factor*a**data%number('exponent')
+         else
+            factor = factor*a**power_of_time(unit)
+         end if
+      end function factor
+
       !> Take a finished material over
       subroutine accept(built)
          class(material_t), intent(in) :: built
@@ -361,12 +389,11 @@ contains
          if (allocated(error)) return
          allocate (material, source=built)
          material%name = data%name
-         if (data%shift%law /= '') then
-            call new_shifted(shifted, material)
-            deallocate (material)
-            allocate (material, source=shifted)
-         end if
-         call set_constants_of(material, data, error)
+         material%time_factor = a
+         if (data%place_of('density') > 0) &
+            call material%set_constants(error, density=data%number('density'))
+         if (.not. allocated(error) .and. data%place_of('poisson_ratio') > 0) &
+            call material%set_constants(error, poisson_ratio=data%number('poisson_ratio'))
          if (allocated(error)) deallocate (material)
       end subroutine accept
    end subroutine new_material

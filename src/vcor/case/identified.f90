@@ -19,7 +19,6 @@ module vcor_case_identified
    use vcor_material, only : material_data_t, parameters_of
    use vcor_material_moduli, only : sampled_times, time_range_t
    use vcor_material_parameter, only : parameter_t
-   use vcor_material_shifted, only : time_factor_of
    use vcor_material_type, only : material_t
    implicit none
    private
@@ -137,7 +136,7 @@ contains
       call case%get('material', 'valid_from', band(1), item)
       call case%get('material', 'valid_to', band(2), item)
       call material_of_case(case, item, material, error)
-      if (.not. allocated(error)) band = band*time_factor_of(material)
+      if (.not. allocated(error)) band = band*material%time_factor
    end subroutine find_band
 
    !> Find out how much an impact leans on a material beyond its data

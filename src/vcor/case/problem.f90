@@ -6,10 +6,9 @@
 !>
 !>  - the velocity changes: the motion is set, as it is at each point; materials, contact, solver
 !>    stand.
-!>  - the temperature changes: the constants of each material with a shift are set, its modulus
-!>    stands, so points of data are not fitted anew; the contact is made from it anew.
-!>  - the density of the plate changes: the same, for the plate alone.
-!>  - a modulus or a time of the sphere changes: its material is made anew, then the contact.
+!>  - the temperature changes: each material with a shift is made anew, but points of data are not
+!>    fitted anew; then the contact.
+!>  - a number of the sphere's material changes: the same, for the sphere alone.
 !>
 !> Threads of a sweep call `update`, so it calls no function that returns a text of deferred
 !> length, whose length gfortran 12 keeps in static storage.
@@ -35,10 +34,9 @@ module vcor_case_problem
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_impact_validity, only : assess, surroundings_t
    use vcor_kinds, only : wp
-   use vcor_material, only : material_data_t, material_t, new_material, parameters_of, &
-      set_constants_of
+   use vcor_material, only : material_data_t, material_t, new_material, parameters_of
    use vcor_material_parameter, only : density, parameter_t
-   use vcor_material_shifted, only : shift_parameters
+   use vcor_material_shift, only : shift_parameters
    use vcor_solver, only : check_settings, new_solver, solve_impact, solver_settings_t, solver_t
    use vcor_text, only : integer_text, quoted, shortened
    use vcor_words, only : list_of_words, longest_name
@@ -56,18 +54,14 @@ module vcor_case_problem
       type(address_t) :: address
       !> Where its temperature stands, nowhere for a material that has no shift
       type(address_t) :: temperature
-      !> Numbers and lists that its modulus is made from, shape (n)
-      type(address_t), allocatable :: modulus_from(:)
-      !> Its other numbers, which need no other modulus, shape (m)
-      type(address_t), allocatable :: constants_from(:)
+      !> Numbers and lists that it is made from beside, shape (n)
+      type(address_t), allocatable :: made_from(:)
       !> Its description
       type(material_data_t) :: data
       !> The material; allocated once it was built
       class(material_t), allocatable :: material
-      !> Latest change of what its modulus is made from, when it was made
-      integer :: modulus_made_at = never
-      !> Latest change of its other numbers and of the temperature, when they were set
-      integer :: constants_set_at = never
+      !> Latest change of all these, when it was made
+      integer :: made_at = never
    end type body_t
 
    !> Addresses of the numbers that an impact is made from
@@ -371,7 +365,7 @@ contains
          body%data%shift%logarithms = table(2::2)
       end if
       allocate (parameters, source=[density, shift_parameters, parameters_of(body%data%model)])
-      allocate (body%modulus_from(0), body%constants_from(0))
+      allocate (body%made_from(0))
       do row = first_row(body%address%group), last_row(body%address%group)
          if (key_row(row) /= row) cycle
          ! lists are the terms of a Prony series, and the points of a table, which are no parameters
@@ -381,14 +375,7 @@ contains
             entry = case%entry(address)
             counts = size(entry%list) > 0
          end if
-         if (.not. counts) cycle
-         if (catalogue(row)%name == 'density' .or. any(shift_parameters%name &
-            == catalogue(row)%name) .or. (catalogue(row)%name == 'poisson_ratio' &
-            .and. .not. body%data%is_shear)) then
-            body%constants_from = [body%constants_from, address]
-         else
-            body%modulus_from = [body%modulus_from, address]
-         end if
+         if (counts) body%made_from = [body%made_from, address]
       end do
    end subroutine describe
 
@@ -406,8 +393,7 @@ contains
       if (allocated(error)) return
       call update_body(self%plate, case, error)
       if (allocated(error)) return
-      latest = max(self%sphere%modulus_made_at, self%sphere%constants_set_at, &
-         self%plate%modulus_made_at, self%plate%constants_set_at, &
+      latest = max(self%sphere%made_at, self%plate%made_at, &
          case%latest_change([self%at%half_thickness]))
       if (self%contact_made_at /= latest) then
          self%contact_made_at = never
@@ -621,7 +607,7 @@ contains
       if (ieee_is_nan(number)) number = 0.0_wp
    end function number_or_zero
 
-   !> Follow the numbers of a material: it is built anew if its modulus has changed
+   !> Follow the numbers of a material
    subroutine update_body(body, case, error)
       !> The material, described
       type(body_t), intent(inout) :: body
@@ -629,47 +615,32 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      integer :: modulus, constants
-
-      modulus = case%latest_change(body%modulus_from)
-      constants = max(case%latest_change(body%constants_from), &
-         case%latest_change([body%temperature]))
-      if (body%modulus_made_at == modulus .and. body%constants_set_at == constants) return
-      body%data%temperature = number_or_zero(case, body%temperature)
-      call copy_values(body%data, case, body%constants_from)
-      if (body%modulus_made_at == modulus) then
-         call set_constants_of(body%material, body%data, error)
-      else
-         call copy_values(body%data, case, body%modulus_from)
-         call new_material(body%material, body%data, error)
-      end if
-      body%modulus_made_at = merge(never, modulus, allocated(error))
-      body%constants_set_at = constants
-      if (allocated(error)) error%item = body%address%item
-   end subroutine update_body
-
-   !> Copy the values of a material to its description
-   subroutine copy_values(data, case, addresses)
-      type(material_data_t), intent(inout) :: data
-      type(case_t), intent(in) :: case
-      !> Where they stand
-      type(address_t), intent(in) :: addresses(:)
-
       real(wp), allocatable :: list(:)
       real(wp) :: number
-      integer :: i
+      integer :: i, latest
 
-      do i = 1, size(addresses)
-         associate (key => catalogue(addresses(i)%row))
+      latest = max(case%latest_change(body%made_from), case%latest_change([body%temperature]))
+      if (body%made_at == latest) return
+      body%made_at = never
+      body%data%temperature = number_or_zero(case, body%temperature)
+      do i = 1, size(body%made_from)
+         associate (address => body%made_from(i), key => catalogue(body%made_from(i)%row))
             if (key%value_kind == list_key) then
-               call case%get('material', key%name, list, addresses(i)%item)
-               call data%set_list(key%name, list)
+               call case%get('material', key%name, list, address%item)
+               call body%data%set_list(key%name, list)
             else
-               number = case%number(addresses(i))
-               if (.not. ieee_is_nan(number)) call data%set(key%name, number)
+               number = case%number(address)
+               if (.not. ieee_is_nan(number)) call body%data%set(key%name, number)
             end if
          end associate
       end do
-   end subroutine copy_values
+      call body%data%fit_points()
+      call new_material(body%material, body%data, error)
+      if (allocated(error)) then
+         error%item = body%address%item
+      else
+         body%made_at = latest
+      end if
+   end subroutine update_body
 
 end module vcor_case_problem

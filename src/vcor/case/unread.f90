@@ -9,7 +9,7 @@ module vcor_case_unread
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, entry_t, operator(==)
    use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, last_row
-   use vcor_material_shifted, only : key_laws, shift_keys
+   use vcor_material_shift, only : key_laws, shift_keys
    use vcor_words, only : contains_word, join_words
    implicit none
    private

@@ -11,7 +11,7 @@ module vcor_fit_law_problem
    use vcor_material, only : material_data_t, material_t, new_material, parameters_of
    use vcor_fit_result, only : estimate_t, state_bound, state_fixed, state_free
    use vcor_fit_samples, only : moduli_of, samples_t
-   use vcor_material_parameter, only : linear, parameter_t
+   use vcor_material_parameter, only : linear, parameter_t, power_of_time
    use vcor_numeric_least_squares, only : least_squares_t
    use vcor_numeric_nnls, only : solve_nnls
    implicit none
@@ -144,16 +144,6 @@ contains
          end associate
       end do
    end subroutine set_free
-
-   !> Power of the time that a time, a rate or the root of a rate is, by its unit; 0 for others
-   elemental function power_of_time(unit) result(power)
-      character(len=*), intent(in) :: unit
-      real(wp) :: power
-
-      power = merge(1.0_wp, 0.0_wp, unit == 's')
-      if (unit == '1/s') power = -1.0_wp
-      if (unit == 's^-1/2') power = -0.5_wp
-   end function power_of_time
 
    !> Make what has come to its bound free again, and the bounds wider
    subroutine release(problem)

@@ -10,7 +10,7 @@ module vcor_material_parameter
    private
 
    public :: interval_t, contains_number, is_within, is_computable, interval_text, largest, smallest
-   public :: spaced, log_spacing, parameter_t, check_values
+   public :: spaced, log_spacing, parameter_t, check_values, power_of_time
    public :: linear, logarithmic
    public :: positive, not_negative, between_0_and_1
    public :: density, poisson_ratio, equilibrium_modulus, relaxing_modulus
@@ -114,6 +114,17 @@ contains
          return
       end do
    end subroutine check_values
+
+   !> Power of the time that a time, a rate or a root of them is, by its unit; 0 for others
+   elemental function power_of_time(unit) result(power)
+      character(len=*), intent(in) :: unit
+      real(wp) :: power
+
+      power = merge(1.0_wp, 0.0_wp, unit == 's')
+      if (unit == '1/s') power = -1.0_wp
+      if (unit == 's^1/2') power = 0.5_wp
+      if (unit == 's^-1/2') power = -0.5_wp
+   end function power_of_time
 
    !> Whether a number is within a range
    pure function contains_number(range, number) result(yes)

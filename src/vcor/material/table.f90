@@ -62,6 +62,7 @@ module vcor_material_table
       procedure :: glassy
       procedure :: rubbery
       procedure :: exponentials
+      procedure :: rescale
    end type tabulated_t
 
 contains
@@ -168,6 +169,22 @@ contains
          - self%first_modulus*self%first_time
       self%terms%error = maxval(abs(self%terms%value(time)/self%relaxation(time) - 1.0_wp))
    end subroutine set_terms
+
+   !> Multiply all times and all moduli, without another fit: for the one who has built the
+   !> material, before others share it
+   pure subroutine rescale(self, times_by, moduli_by)
+      class(tabulated_t), intent(inout) :: self
+      !> Factor of the times, > 0
+      real(wp), intent(in) :: times_by
+      !> Factor of the moduli, > 0
+      real(wp), intent(in) :: moduli_by
+
+      self%first_time = times_by*self%first_time
+      self%first_modulus = moduli_by*self%first_modulus
+      call self%terms%scale(moduli_by)
+      self%terms%rates(:) = self%terms%rates/times_by
+      self%early_excess = times_by*moduli_by*self%early_excess
+   end subroutine rescale
 
    !> y and its slope at x within the data
    elemental subroutine interpolate(self, x, y, slope)

@@ -28,6 +28,8 @@ module vcor_material_type
       !> Viscosity of a dashpot in parallel: E(t) has a term viscosity*delta(t) [Pa s], >= 0,
       !> which `relaxation` and `integral` leave out
       real(wp) :: viscosity = 0.0_wp
+      !> What its temperature has multiplied all times by: a_T [-]
+      real(wp) :: time_factor = 1.0_wp
    contains
       !> Relaxation modulus E(t)
       procedure(of_time_i), deferred :: relaxation

@@ -1,5 +1,5 @@
-!> A material at another temperature: time-temperature superposition. All times of a material are
-!> a_T times as long as at its reference temperature, its moduli b_T times as large
+!> Time-temperature superposition. At another temperature all times of a material are a_T times as
+!> long as at its reference temperature, and its moduli b_T times as large
 !>
 !>     E(t; T) = b_T E(t/a_T; T_ref),   Q(s; T) = b_T Q(a_T s; T_ref),   b_T = T/T_ref or 1
 !>
@@ -9,19 +9,16 @@
 !>
 !> M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
 !> doi:10.1021/ja01619a008. Their b_T has the ratio of the densities too, which is left out.
-module vcor_material_shifted
+module vcor_material_shift
    use vcor_constants, only : gas_constant
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : parameter_t, positive
-   use vcor_material_type, only : material_t
    use vcor_numeric_monotone, only : cubic, monotone_slopes, piece
    implicit none
    private
 
-   public :: shift_t, shifted_t, new_shifted, time_factor_of
-   public :: shift_laws, shift_parameters, shift_keys, keys_needed, key_laws
+   public :: shift_t, shift_laws, shift_parameters, shift_keys, keys_needed, key_laws
 
    !> Names of the laws, separated by blanks
    character(len=*), parameter :: shift_laws = 'wlf arrhenius table'
@@ -59,32 +56,10 @@ module vcor_material_shifted
       procedure :: find_factors
    end type shift_t
 
-   !> A material around the one at the reference temperature
-   type, extends(material_t) :: shifted_t
-      private
-      !> The material at its reference temperature
-      class(material_t), allocatable :: reference
-      !> Time-shift factor a_T [-]
-      real(wp) :: a = 1.0_wp
-      !> Factor of the moduli b_T [-]
-      real(wp) :: b = 1.0_wp
-   contains
-      !> Go to another temperature
-      procedure :: take_factors
-      procedure :: relaxation
-      procedure :: relaxation_at
-      procedure :: rate
-      procedure :: integral
-      procedure :: complex_modulus
-      procedure :: spectrum
-      procedure :: glassy
-      procedure :: rubbery
-      procedure :: exponentials
-   end type shifted_t
-
 contains
 
-   !> a_T and b_T at a temperature; both are 1, to the last bit, at the reference temperature
+   !> a_T and b_T at a temperature; both are 1, to the last bit, at the reference temperature and
+   !> without a law
    pure subroutine find_factors(self, temperature, constants, a, b, error)
       class(shift_t), intent(in) :: self
       !> Temperature [K], > 0; 0: the reference temperature
@@ -106,7 +81,7 @@ contains
 
       a = 1.0_wp
       b = 1.0_wp
-      if (.not. temperature > 0.0_wp) return
+      if (self%law == '' .or. .not. temperature > 0.0_wp) return
       associate (reference => constants(1), c1 => constants(2), c2 => constants(3), &
                  activation_energy => constants(4))
          distance = temperature - reference
@@ -162,145 +137,4 @@ contains
          self%logarithms(i + 1), slopes(i), slopes(i + 1), temperature, decades, slope)
    end function tabulated
 
-   !> Put a material, which holds at its reference temperature, into one that can be shifted
-   pure subroutine new_shifted(self, reference)
-      type(shifted_t), intent(out) :: self
-      class(material_t), intent(in) :: reference
-
-      allocate (self%reference, source=reference)
-      self%name = reference%name
-      self%rigid = reference%rigid
-      self%discrete = reference%discrete
-      self%viscosity = reference%viscosity
-   end subroutine new_shifted
-
-   !> Go to another temperature
-   pure subroutine take_factors(self, a, b)
-      class(shifted_t), intent(inout) :: self
-      !> a_T, > 0
-      real(wp), intent(in) :: a
-      !> b_T, > 0
-      real(wp), intent(in) :: b
-
-      self%a = a
-      self%b = b
-      self%viscosity = a*b*self%reference%viscosity
-   end subroutine take_factors
-
-   !> What all times of a material are multiplied by
-   pure function time_factor_of(material) result(a)
-      class(material_t), intent(in) :: material
-      !> a_T; 1 for a material without a shift
-      real(wp) :: a
-
-      a = 1.0_wp
-      select type (material)
-      type is (shifted_t)
-         a = material%a
-      end select
-   end function time_factor_of
-
-   !> Relaxation modulus E(t)
-   elemental function relaxation(self, t) result(value)
-      class(shifted_t), intent(in) :: self
-      !> Time since the strain step [s], t >= 0
-      real(wp), intent(in) :: t
-      !> Modulus [Pa]
-      real(wp) :: value
-
-      value = self%b*self%reference%relaxation(t/self%a)
-   end function relaxation
-
-   !> Relaxation modulus at many times
-   pure subroutine relaxation_at(self, t, value)
-      class(shifted_t), intent(in) :: self
-      !> Times since the strain step [s], t >= 0
-      real(wp), intent(in) :: t(:)
-      !> Modulus [Pa], same shape
-      real(wp), intent(out) :: value(:)
-
-      call self%reference%relaxation_at(t/self%a, value)
-      value = self%b*value
-   end subroutine relaxation_at
-
-   !> Rate of relaxation dE/dt
-   elemental function rate(self, t) result(value)
-      class(shifted_t), intent(in) :: self
-      !> Time since the strain step [s], t >= 0
-      real(wp), intent(in) :: t
-      !> Rate [Pa/s], <= 0
-      real(wp) :: value
-
-      value = self%b/self%a*self%reference%rate(t/self%a)
-   end function rate
-
-   !> Integral of E from 0 to t
-   elemental function integral(self, t) result(value)
-      class(shifted_t), intent(in) :: self
-      !> Upper limit [s], t >= 0
-      real(wp), intent(in) :: t
-      !> Integral [Pa s]
-      real(wp) :: value
-
-      value = self%a*self%b*self%reference%integral(t/self%a)
-   end function integral
-
-   !> Complex modulus
-   elemental function complex_modulus(self, s) result(modulus)
-      class(shifted_t), intent(in) :: self
-      !> Laplace variable [1/s]
-      complex(wp), intent(in) :: s
-      !> Complex modulus [Pa]
-      complex(wp) :: modulus
-
-      modulus = self%b*self%reference%complex_modulus(self%a*s)
-   end function complex_modulus
-
-   !> Relaxation spectrum
-   elemental function spectrum(self, rate, beyond_peak) result(density)
-      class(shifted_t), intent(in) :: self
-      !> Rate l [1/s], > 0
-      real(wp), intent(in) :: rate
-      !> ln of the rate over that of the peak of the spectrum, if it has a narrow one
-      real(wp), intent(in) :: beyond_peak
-      !> Spectrum per ln(l) [Pa]
-      real(wp) :: density
-
-      density = self%b*self%reference%spectrum(self%a*rate, beyond_peak)
-   end function spectrum
-
-   !> Glassy modulus
-   pure function glassy(self) result(modulus)
-      class(shifted_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%b*self%reference%glassy()
-   end function glassy
-
-   !> Rubbery modulus
-   pure function rubbery(self) result(modulus)
-      class(shifted_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%b*self%reference%rubbery()
-   end function rubbery
-
-   !> The modulus as a sum of exponentials
-   pure subroutine exponentials(self, window, accuracy, terms)
-      class(shifted_t), intent(in) :: self
-      !> Time up to which the sum is to hold [s], > 0
-      real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
-      real(wp), intent(in) :: accuracy
-      !> The sum, its `error` told
-      type(exponential_sum_t), intent(out) :: terms
-
-      call self%reference%exponentials(window/self%a, accuracy, terms)
-      call terms%scale(self%b)
-      terms%rates(:) = terms%rates/self%a
-      terms%viscosity = self%a*terms%viscosity
-   end subroutine exponentials
-
-end module vcor_material_shifted
+end module vcor_material_shift
