@@ -5,11 +5,9 @@ module vcor_material_cerf
    use vcor_constants, only : pi, sqrt_pi
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : check_values, equilibrium_modulus, parameter_t, &
       poisson_ratio, positive, relaxing_modulus
-   use vcor_material_spectrum, only : sum_of_spectrum
-   use vcor_material_type, only : material_t
+   use vcor_material_spectrum, only : fractional_t
    implicit none
    private
 
@@ -22,12 +20,8 @@ module vcor_material_cerf
       fitted=.true.)]
 
    !> E(t) = E_0 + E_1 CERF(b sqrt(t)), Eq. (24)
-   type, extends(material_t) :: cerf_t
+   type, extends(fractional_t) :: cerf_t
       private
-      !> Equilibrium modulus E_0 [Pa]
-      real(wp) :: equilibrium = 0.0_wp
-      !> Relaxing modulus E_1 [Pa]
-      real(wp) :: relaxing = 0.0_wp
       !> Parameter b [s^(-1/2)]
       real(wp) :: beta = 0.0_wp
    contains
@@ -35,9 +29,6 @@ module vcor_material_cerf
       procedure :: rate
       procedure :: integral
       procedure :: complex_modulus
-      procedure :: glassy
-      procedure :: rubbery
-      procedure :: exponentials
    end type cerf_t
 
 contains
@@ -59,6 +50,9 @@ contains
       self%equilibrium = equilibrium
       self%relaxing = relaxing
       self%beta = beta
+      ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet, and the next one far from it
+      self%peak = 2.0_wp*log(beta)
+      self%distance = pi
    end subroutine new_cerf
 
    !> Relaxation modulus E(t)
@@ -145,36 +139,5 @@ contains
 
       modulus = self%equilibrium + self%relaxing*sqrt(s)/(sqrt(s) + self%beta)
    end function complex_modulus
-
-   !> Glassy modulus E_0 + E_1
-   pure function glassy(self) result(modulus)
-      class(cerf_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%equilibrium + self%relaxing
-   end function glassy
-
-   !> Rubbery modulus E_0
-   pure function rubbery(self) result(modulus)
-      class(cerf_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%equilibrium
-   end function rubbery
-
-   !> The modulus as a sum of exponentials, from its relaxation spectrum
-   pure subroutine exponentials(self, window, accuracy, terms)
-      class(cerf_t), intent(in) :: self
-      !> Time up to which the sum is to hold [s], > 0
-      real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
-      real(wp), intent(in) :: accuracy
-      type(exponential_sum_t), intent(out) :: terms
-
-      ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet, and the next one far from it
-      call sum_of_spectrum(self, window, accuracy, terms, peak=2.0_wp*log(self%beta), distance=pi)
-   end subroutine exponentials
 
 end module vcor_material_cerf

@@ -5,11 +5,9 @@ module vcor_material_mittag_leffler
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : check_values, equilibrium_modulus, interval_t, &
       parameter_t, poisson_ratio, positive, relaxing_modulus
-   use vcor_material_spectrum, only : sum_of_spectrum
-   use vcor_material_type, only : material_t
+   use vcor_material_spectrum, only : fractional_t
    use vcor_numeric_mittag_leffler, only : mittag_leffler_rule_t, new_mittag_leffler_rule
    implicit none
    private
@@ -24,12 +22,8 @@ module vcor_material_mittag_leffler
       parameter_t('time', 'Relaxation time', 's', positive, fitted=.true.)]
 
    !> E(t) = E_0 + E_1 E_a(-(t/tau)^a)
-   type, extends(material_t) :: mittag_leffler_t
+   type, extends(fractional_t) :: mittag_leffler_t
       private
-      !> Equilibrium modulus E_0 [Pa]
-      real(wp) :: equilibrium = 0.0_wp
-      !> Relaxing modulus E_1 [Pa]
-      real(wp) :: relaxing = 0.0_wp
       !> Exponent a
       real(wp) :: exponent = 0.5_wp
       !> Relaxation time tau [s]
@@ -42,9 +36,6 @@ module vcor_material_mittag_leffler
       procedure :: integral
       procedure :: complex_modulus
       procedure :: spectrum
-      procedure :: glassy
-      procedure :: rubbery
-      procedure :: exponentials
       procedure, private :: power
    end type mittag_leffler_t
 
@@ -76,6 +67,9 @@ contains
       self%exponent = exponent
       self%time = time
       self%rule = new_mittag_leffler_rule(exponent)
+      ! Q has its poles where (s tau)^a = -1
+      self%peak = -log(time)
+      self%distance = pi*(1.0_wp - exponent)/exponent
    end subroutine new_mittag_leffler
 
    !> (t/tau)^a
@@ -202,37 +196,5 @@ contains
       modulus = cmplx(self%equilibrium + self%relaxing*storage, &
          sign(self%relaxing*h*sine/square, aimag(s)), wp)
    end function complex_modulus
-
-   !> Glassy modulus E_0 + E_1
-   pure function glassy(self) result(modulus)
-      class(mittag_leffler_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%equilibrium + self%relaxing
-   end function glassy
-
-   !> Rubbery modulus E_0
-   pure function rubbery(self) result(modulus)
-      class(mittag_leffler_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%equilibrium
-   end function rubbery
-
-   !> The modulus as a sum of exponentials, from its relaxation spectrum
-   pure subroutine exponentials(self, window, accuracy, terms)
-      class(mittag_leffler_t), intent(in) :: self
-      !> Time up to which the sum is to hold [s], > 0
-      real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
-      real(wp), intent(in) :: accuracy
-      type(exponential_sum_t), intent(out) :: terms
-
-      ! Q has its poles where (s tau)^a = -1
-      call sum_of_spectrum(self, window, accuracy, terms, peak=-log(self%time), &
-         distance=pi*(1.0_wp - self%exponent)/self%exponent)
-   end subroutine exponentials
 
 end module vcor_material_mittag_leffler

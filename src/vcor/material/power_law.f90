@@ -4,11 +4,9 @@ module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
-   use vcor_material_exponential_sum, only : exponential_sum_t
    use vcor_material_parameter, only : between_0_and_1, check_values, equilibrium_modulus, &
       parameter_t, poisson_ratio, positive
-   use vcor_material_spectrum, only : sum_of_spectrum
-   use vcor_material_type, only : material_t
+   use vcor_material_spectrum, only : fractional_t
    implicit none
    private
 
@@ -23,10 +21,8 @@ module vcor_material_power_law
       fitted=.true.)]
 
    !> E(t) = E_0 + C t^-a/Gamma(1 - a), Eq. (23-b) with a = 1/2
-   type, extends(material_t) :: power_law_t
+   type, extends(fractional_t) :: power_law_t
       private
-      !> Equilibrium modulus E_0 [Pa]
-      real(wp) :: equilibrium = 0.0_wp
       !> Coefficient C [Pa s^a]
       real(wp) :: coefficient = 0.0_wp
       !> Exponent a
@@ -38,9 +34,6 @@ module vcor_material_power_law
       procedure :: rate
       procedure :: integral
       procedure :: complex_modulus
-      procedure :: glassy
-      procedure :: rubbery
-      procedure :: exponentials
    end type power_law_t
 
 contains
@@ -61,6 +54,7 @@ contains
       if (allocated(error)) return
 
       self%equilibrium = equilibrium
+      self%relaxing = ieee_value(1.0_wp, ieee_positive_inf)
       self%coefficient = coefficient
       self%exponent = exponent
       self%factor = coefficient/gamma(1.0_wp - exponent)
@@ -118,35 +112,5 @@ contains
 
       modulus = self%equilibrium + self%coefficient*s**self%exponent
    end function complex_modulus
-
-   !> Glassy modulus: infinite
-   pure function glassy(self) result(modulus)
-      class(power_law_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%relaxation(0.0_wp)
-   end function glassy
-
-   !> Rubbery modulus E_0
-   pure function rubbery(self) result(modulus)
-      class(power_law_t), intent(in) :: self
-      !> Modulus [Pa]
-      real(wp) :: modulus
-
-      modulus = self%equilibrium
-   end function rubbery
-
-   !> The modulus as a sum of exponentials, from its relaxation spectrum
-   pure subroutine exponentials(self, window, accuracy, terms)
-      class(power_law_t), intent(in) :: self
-      !> Time up to which the sum is to hold [s], > 0
-      real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0
-      real(wp), intent(in) :: accuracy
-      type(exponential_sum_t), intent(out) :: terms
-
-      call sum_of_spectrum(self, window, accuracy, terms)
-   end subroutine exponentials
 
 end module vcor_material_power_law

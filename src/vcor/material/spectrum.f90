@@ -23,31 +23,61 @@ module vcor_material_spectrum
    implicit none
    private
 
-   public :: sum_of_spectrum, sum_of_resolved_spectrum, rule_for_spectrum
+   public :: fractional_t, sum_of_resolved_spectrum, rule_for_spectrum
 
    !> A rate this small against that of the window is a constant, its inverse a dashpot
    real(wp), parameter :: constant = 1.0e-14_wp
 
+   !> A material with a continuous spectrum that is a power of the rate, or has one peak: that of a
+   !> model with a fractional derivative
+   type, abstract, extends(material_t) :: fractional_t
+      !> Equilibrium modulus E_0 [Pa]
+      real(wp) :: equilibrium = 0.0_wp
+      !> Relaxing modulus E_1 [Pa], infinite for a power
+      real(wp) :: relaxing = 0.0_wp
+      !> ln of the rate [1/s] at which the spectrum has its peak; not allocated for a power
+      real(wp), allocatable :: peak
+      !> Distance of the poles from the peak in ln(l), > 0
+      real(wp), allocatable :: distance
+   contains
+      procedure :: glassy
+      procedure :: rubbery
+      procedure :: exponentials
+   end type fractional_t
+
 contains
 
-   !> Sum of exponentials for a material with a continuous spectrum
-   pure subroutine sum_of_spectrum(material, window, accuracy, terms, peak, distance)
-      !> The material; its rubbery modulus is E_0
-      class(material_t), intent(in) :: material
+   !> Glassy modulus E_0 + E_1
+   pure function glassy(self) result(modulus)
+      class(fractional_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium + self%relaxing
+   end function glassy
+
+   !> Rubbery modulus E_0
+   pure function rubbery(self) result(modulus)
+      class(fractional_t), intent(in) :: self
+      !> Modulus [Pa]
+      real(wp) :: modulus
+
+      modulus = self%equilibrium
+   end function rubbery
+
+   !> The modulus as a sum of exponentials, from its spectrum
+   pure subroutine exponentials(self, window, accuracy, terms)
+      class(fractional_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       !> The sum; its error is the largest one found at some times of the window
       type(exponential_sum_t), intent(out) :: terms
-      !> ln of the rate [1/s] at which the spectrum has its peak; absent: it is a power of the rate
-      real(wp), intent(in), optional :: peak
-      !> Distance d of the poles from the peak in ln(l), > 0
-      real(wp), intent(in), optional :: distance
 
-      call rule_for_spectrum(material, window, accuracy, terms, peak, distance)
-      terms%error = largest_error(material, window, terms)
-   end subroutine sum_of_spectrum
+      call rule_for_spectrum(self, window, accuracy, terms, self%peak, self%distance)
+      terms%error = largest_error(self, window, terms)
+   end subroutine exponentials
 
    !> The rule by itself, its error not known
    pure subroutine rule_for_spectrum(material, window, accuracy, terms, peak, distance, finer, &
