@@ -4,12 +4,13 @@ import json
 
 import numpy as np
 import pytest
-from conftest import PAPER
+from conftest import PAPER, ROOT
 from scipy.integrate import solve_ivp
 
 import vcor
 from vcor import uncertainty
 
+EXAMPLES = ROOT / "examples"
 MATERIAL = ["rubber.glassy_modulus", "rubber.alpha", "rubber.beta"]
 
 
@@ -157,6 +158,53 @@ def test_covariance_counts_as_one_parameter(half_space, tmp_path):
     for name in ("cor", "max_force"):
         wanted = [end[name] for end in ends]
         assert swing.sel(quantity=name).values == pytest.approx(wanted, rel=1e-6)
+
+
+GROUP = """&material
+   name = 'soft rubber'
+   model = 'mittag_leffler'
+   poisson_ratio = 0.4
+   equilibrium_modulus = 1e6
+   exponent = 0.4
+   relaxing_modulus = 1e9
+   time = 1.0
+   shift = 'table'
+   shift_file = 'shift.csv'
+   reference_temperature = 293.15
+/
+"""
+
+
+def test_the_group_of_a_fit_takes_the_place_of_that_of_the_case(tmp_path):
+    """Its shift counts, not that of the guess; the density of the case stays."""
+    case = vcor.read(EXAMPLES / "identification" / "block.nml")
+    case = vcor.Case(case.text().replace("'rubber'", "'soft rubber'"))
+    (tmp_path / "shift.csv").write_text("T [K],log10 a_T\n273.15,4\n293.15,0\n313.15,-2.4\n")
+    values = {"equilibrium_modulus": 1e6, "exponent": 0.4, "relaxing_modulus": 1e9, "time": 1.0}
+    source = {
+        "name": "soft rubber",
+        "parameters": [{"name": name, "value": value} for name, value in values.items()],
+        "covariance": np.diag([(1e-4 * value) ** 2 for value in values.values()]).tolist(),
+        "group": GROUP,
+        "note": "the errors are too small",
+    }
+    (tmp_path / "fit.json").write_text(json.dumps(source))
+    with pytest.warns(UserWarning, match="the errors are too small"):
+        found = vcor.propagate(
+            case, covariance=tmp_path / "fit.json", samples=64, quantities=["cor"]
+        )
+    text = case.text()[: case.text().rindex("&material")]
+    group = GROUP.replace("time = 1.0", "time = 1.0, density = 1100")
+    wanted = vcor.Case(text + group, name=str(tmp_path / "case.nml")).solve()["cor"]
+    assert float(found.table.value.sel(quantity="cor")) == pytest.approx(wanted, abs=1e-9)
+    assert abs(case.solve()["cor"] - wanted) > 0.05
+
+
+@pytest.mark.parametrize("text", ["velocity,cor\n1,0.5\n", "[1]", '{"name": 3}'])
+def test_what_is_no_fit_is_named(text, tmp_path, sls):
+    (tmp_path / "fit.json").write_text(text)
+    with pytest.raises(vcor.InputError, match="JSON.* of vcor fit or identify"):
+        vcor.propagate(sls, covariance=tmp_path / "fit.json")
 
 
 def test_model_error_is_the_distance_to_the_exact_mechanics(half_space):

@@ -62,13 +62,13 @@ def read(path: str | os.PathLike[str], *materials: str | os.PathLike[str]) -> Ca
     if materials:
         text = read_text(path, "surrogateescape")
         for one in map(Path, materials):
-            text += "\n" + _with_folder(read_text(one, "surrogateescape"), one.parent.absolute())
+            text += "\n" + with_folder(read_text(one, "surrogateescape"), one.parent.absolute())
     case = Case.__new__(Case)
     case._read(text, os.fspath(path))
     return case
 
 
-def _with_folder(text: str, folder: Path) -> str:
+def with_folder(text: str, folder: Path) -> str:
     """A case whose data files are found from anywhere."""
     return re.sub(
         r"(\b(?:shift_)?file\s*=\s*)(['\"])(.*?)\2",

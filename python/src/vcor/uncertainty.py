@@ -7,6 +7,8 @@ import contextlib
 import json
 import math
 import os
+import re
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +20,7 @@ from scipy.special import ndtri
 
 from . import _command, _library
 from ._library import Floats, InputError, NumericalError, UsageError
-from .case import Case, listed, read
+from .case import Case, listed, read, with_folder
 from .observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -88,13 +90,16 @@ class Spread:
                          "larger than 0")  # fmt: skip
 
     @classmethod
-    def joint(cls, case: Case, source: Any) -> Spread:
-        """Parameters with a covariance, by the JSON of a fit; the case takes their values."""
+    def joint(cls, case: Case, source: Any) -> tuple[Case, Spread]:
+        """Parameters with a covariance, by the JSON of a fit, and the case with what was found."""
+        folder = Path.cwd()
         if not isinstance(source, Mapping):
+            folder, name = Path(source).parent.absolute(), source
             try:
-                source = json.loads(_command.read_text(source, "strict"))
-            except ValueError as error:
-                raise InputError(f"{source}: {error}") from None
+                source = json.loads(_command.read_text(name, "strict"))
+            except ValueError:
+                raise InputError(f"--covariance {name}: found no JSON of vcor fit or "
+                                 "identify") from None  # fmt: skip
         try:
             prefix = f"{source['name']}." if "name" in source else ""
             rows = source["parameters"]
@@ -103,7 +108,8 @@ class Spread:
             ]
             values = np.array([float(row["value"]) for row in rows])
             covariance = np.array(source["covariance"], dtype=float)
-        except (KeyError, TypeError, ValueError):
+            group, note = source.get("group"), source.get("note")
+        except (AttributeError, KeyError, TypeError, ValueError):
             raise InputError("--covariance: found no JSON of vcor fit or identify") from None
         for row, address in zip(rows, addresses, strict=True):
             if row.get("standard_error", 0) is None:
@@ -118,6 +124,10 @@ class Spread:
         weights, vectors = np.linalg.eigh((scaled + scaled.T) / 2)
         if weights.min() < -1e-8 * weights.max():
             raise InputError("--covariance: the matrix is not positive")
+        if note:
+            warnings.warn(f"--covariance: {note}", stacklevel=3)
+        if group:
+            case = _with_group(case, prefix[:-1], with_folder(group, folder))
         for i in kept:
             case[addresses[i]] = float(values[i])
         values, root = values[kept], vectors * np.sqrt(weights.clip(0))
@@ -129,8 +139,8 @@ class Spread:
             moved: Floats = values * np.exp((pull @ root.T)[:, None] * np.array([[-1], [1]]))
             return moved
 
-        return cls("covariance", [addresses[i] for i in kept],
-                   lambda share: values * np.exp(ndtri(share) @ root.T), ends)  # fmt: skip
+        return case, cls("covariance", [addresses[i] for i in kept],
+                         lambda share: values * np.exp(ndtri(share) @ root.T), ends)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -271,7 +281,8 @@ def propagate(
         Distribution at each address: 0.05 or "5%" of its value, "0.1" in its unit, "1:2" uniform.
     covariance
         JSON of `vcor fit` or `vcor identify`, or its content: values and covariance of parameters,
-        which count as one parameter for Sobol' indices, since they depend on each other.
+        which count as one parameter for Sobol' indices, since they depend on each other. The
+        &material group of a fit takes the place of that of the case.
     samples
         Impacts that are solved, about; rounded to a power of 2 times (parameters + 2).
     quantities
@@ -292,7 +303,10 @@ def propagate(
     if samples < 1:
         raise UsageError(f"samples: found {samples}, expected a number > 0")
     case = (case if isinstance(case, Case) else read(case)).copy()
-    joint = [] if covariance is None else [Spread.joint(case, covariance)]
+    joint = []
+    if covariance is not None:
+        case, found_together = Spread.joint(case, covariance)
+        joint = [found_together]
     spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()] + joint
     addresses = [address for spread in spreads for address in spread.addresses]
     if not addresses:
@@ -357,6 +371,15 @@ def propagate(
     dominant = max(errors, key=errors.__getitem__)
     words = [str(judged[name]) for name in ("validity", "validity_cause")]
     return Uncertainty(table, len(found), len(found) - len(shown), dominant, *words)
+
+
+def _with_group(case: Case, name: str, group: str) -> Case:
+    """The case with a &material group in the place of its own of this name, whose density stays."""
+    given, density = case[f"{name}.name"], case[f"{name}.density"]
+    if density is not None and not re.search(r"(?m)^\s*density\s*=", group):
+        group = group.replace("\n", f"\n   density = {density}\n", 1)
+    old = rf"(?ms)^&material\n   name = '{re.escape(str(given))}'\n.*?^/$"
+    return Case(re.sub(old, lambda _: group, case.text()), name=case.name)
 
 
 def _swing(
