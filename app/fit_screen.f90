@@ -2,7 +2,7 @@
 module vcor_app_fit_screen
    use vcor_app_screen, only : percent, short, significant
    use vcor_fit, only : fit_t, samples_t, state_bound, state_fixed, unseen_earlier, unseen_later
-   use vcor_fit_json, only : parameter_name
+   use vcor_fit_json, only : parameter_name, shift_note
    use vcor_text, only : integer_text, printable
    use vcor_kinds, only : wp
    use vcor_version, only : version
@@ -46,6 +46,7 @@ contains
       text = text//nl
       if (fit%structured) text = text//'  note: '//no_noise//', its standard errors mean ' &
          //'little'//nl
+      if (shift_note(samples) /= '') text = text//'  note: '//shift_note(samples)//nl
       if (is_open(fit)) text = text//'  note: the modulus still falls where the data end: ' &
          //'equilibrium_modulus holds all that relaxes later'//nl
       text = text//tail//nl

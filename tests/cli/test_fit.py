@@ -1,5 +1,6 @@
 """vcor fit: data files of all sorts in, a &material group out."""
 
+import json
 import re
 
 import f90nml
@@ -184,6 +185,17 @@ def test_shear(vcor, head, words):
     is_the_sls(found)
     assert found["poisson_ratio"] == 0.4
     vcor.refuses("fit", "data.csv", "--model", "sls", *words, code=USAGE, says="--poisson-ratio")
+
+
+def test_errors_without_those_of_a_shift_say_so(vcor):
+    """Of a master curve; in the report and in the JSON, which vcor uncertainty reads."""
+    text = columns(TIMES, sls(TIMES), head="t [s],E [Pa]\n")
+    for keys, said in (("", False), ("# &material shift = 'wlf'\n", True)):
+        vcor.write(keys + text, "data.csv")
+        report = vcor.succeeds("fit", "data.csv", "--json", "fit.json")
+        note = json.loads((vcor.folder / "fit.json").read_text())["note"]
+        assert ("leave out those of the shift factors" in note) is said
+        assert ("  note: the standard errors leave out" in report) is said
 
 
 def test_own_files_are_read(vcor):

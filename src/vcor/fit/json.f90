@@ -9,7 +9,7 @@ module vcor_fit_json
    implicit none
    private
 
-   public :: fit_json, parameter_name
+   public :: fit_json, parameter_name, shift_note
 
    !> States of a parameter, by their numbers
    character(len=*), parameter :: states(0:2) = ['free ', 'fixed', 'bound']
@@ -25,6 +25,19 @@ contains
       name = trim(fit%parameters(i)%name)
       if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
    end function parameter_name
+
+   !> What the standard errors of a fit to a master curve leave out: errors of the shift factors
+   !> move all points of a temperature together, which no misfit shows
+   pure function shift_note(samples) result(text)
+      type(samples_t), intent(in) :: samples
+      !> In words; nothing for data without a shift
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (.not. allocated(samples%keys)) return
+      if (index(samples%keys, ' shift =') > 0) text = 'the standard errors leave out those of ' &
+         //'the shift factors: vcor identify fits moduli and shift at once'
+   end function shift_note
 
    !> The document: parameters in SI units, their covariance, the misfit and the band of the data
    pure function fit_json(fit, samples, group) result(text)
@@ -55,7 +68,7 @@ contains
          //array(list, 'parameters')//array(covariance, 'covariance') &
          //array(correlation, 'correlation')//member('rms_misfit', fit%rms) &
          //member('largest_misfit', fit%largest)//member('largest_misfit_at', fit%largest_at) &
-         //member('follows', .not. fit%structured) &
+         //member('follows', .not. fit%structured)//member('note', shift_note(samples)) &
          //array(numbers([samples%first_time(), samples%last_time()]), 'band') &
          //member('group', group))
       text = text(:len(text) - 2)//new_line('a')
