@@ -537,6 +537,8 @@ def bad(results):
         (["sweep.h5", "--range", "x=nan:1"], 2, "expected a range"),
         (["cube.h5", "--levels", "a"], 2, "or levels such as"),
         (["cube.h5", "--levels", "0.5"], 2, "expected two or more"),
+        (["cube.h5", "--levels", "nan,1"], 2, "no finite number"),
+        (["cube.h5", "--levels", "inf,1"], 2, "no finite number"),
         (["sweep.h5", "--log", "w"], 2, "expected letters among x, y, z"),
         (["sweep.h5", "--width", "1"], 2, "a width of 1 cm"),
         (["sweep.h5", "--width", "85"], 2, "such as 85mm"),

@@ -470,6 +470,8 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
     low, high = (end if end is not None else e for end, e in zip(bounds, (low, high), strict=True))
     if not isinstance(wishes.levels, int):
         levels = sorted({float(level) for level in wishes.levels})
+        if not np.isfinite(levels).all():
+            raise UsageError("found a level that is no finite number, expected such as 0.2,0.5")
     elif "z" in (wishes.log or ""):
         if not 0 < low < high:
             raise InputError(f"found values from {low:g} to {high:g}, of which no logarithm is")
