@@ -468,7 +468,13 @@ def test_the_command_refuses_in_one_line(tmp_path, capsys):
     words = [case, "--for", "lsdyna"]
     assert "--poisson-ratio 0.495" in command(capsys, *words, code=3)
     assert "no such" in command(capsys, "none.k", code=4).lower()
-    assert "found no card" in command(capsys, ROOT / "LICENSE", code=2)
+    drops = ROOT / "examples" / "identification" / "drops.csv"
+    (tmp_path / "empty").write_text("")
+    (tmp_path / "binary").write_bytes(bytes(range(256)))
+    for file in (ROOT / "LICENSE", drops, tmp_path / "empty", tmp_path / "binary"):
+        assert "found no card" in command(capsys, file, code=3)
+    for error in ("-1", "0", "nan", "1"):
+        assert "found --accuracy" in command(capsys, *words, f"--accuracy={error}", code=2)
     assert "would replace" in command(
         capsys, *words, "--poisson-ratio", "0.49", "--output", case, code=2
     )

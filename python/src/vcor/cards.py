@@ -67,6 +67,8 @@ def card(
     InputError
         No card holds the material, or no sum of so many terms is accurate enough.
     """
+    if not 0 < accuracy < 1:
+        raise UsageError(f"found --accuracy {accuracy:g}, expected more than 0 and less than 1")
     has_impact = True
     if isinstance(case, Case):
         case = case.copy()
@@ -211,8 +213,10 @@ def read_card(
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
     if code not in FORMATS:
-        what = f"unknown program '{code}'" if code else f"{path}: found no card"
-        raise UsageError(f"{what}, expected --for, one of {', '.join(FORMATS)}")
+        expected = f"expected --for, one of {', '.join(FORMATS)}"
+        if code is None:
+            raise InputError(f"{os.fspath(path)}: found no card, {expected}")
+        raise UsageError(f"unknown program '{code}', {expected}")
     source = Source(os.fspath(path), text, material, units or "", modulus, poisson_ratio, use_shift)
     return FORMATS[code].read(source)
 
