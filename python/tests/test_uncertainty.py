@@ -1,6 +1,7 @@
 """Uncertainty: elasticities against independent differences, Sobol' indices against known ones."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -253,6 +254,24 @@ def test_bad_spreads_are_refused_in_one_line(word, said, capsys, tmp_path):
     assert said in error
 
 
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--quantity", "cor,status"], "status: found a column of words"),
+        (["--quantity", "validity"], "validity: found a column of words"),
+        (["--seed", "-1"], "seed: found -1"),
+        (["--threads", "0"], "threads: found 0"),
+    ],
+)
+def test_bad_options_are_refused_in_one_line(words, said, capsys, tmp_path):
+    words = [str(PAPER / "sls.nml"), "--vary", "rubber.beta=5%", *words, "--output", str(tmp_path)]
+    with pytest.raises(SystemExit) as caught:
+        uncertainty.main(words)
+    assert caught.value.code == 2
+    error = capsys.readouterr().err
+    assert said in error and error.count("\n") == 1
+
+
 def test_impacts_without_a_result_are_a_line(capsys, tmp_path):
     words = [PAPER / "sls.nml", "--vary", "sphere.radius=0.5", "--samples", "32", "--output"]
     with pytest.raises(SystemExit):
@@ -270,7 +289,10 @@ def test_a_list_is_varied_term_by_term():
 def test_any_thickness_and_what_no_column_has(sls):
     """With waves = 'body' the accuracy is what can be had."""
     sls["plate.waves"], sls["rubber.poisson_ratio"] = "body", 0.48
-    found = vcor.propagate(sls, {"rubber.beta": 0.05}, samples=32, quantities=["cor"])
+    found = vcor.propagate(sls, {"rubber.beta": 0.05}, samples=32, quantities=["cor", "max_force"])
+    # only what states its own error has a numerical one
+    assert np.isnan(found.table.numerical.sel(quantity="max_force"))
+    assert re.search(r"(?m)^max_force \[N\] +\S+ +- ", str(found))
     row = found.table.sel(quantity="cor")
     assert 0 < float(row.numerical) < 1e-3 and np.isfinite(row.elasticity).all()
     assert (found.validity, found.validity_cause) == ("caution", "footprint_effect")

@@ -423,8 +423,8 @@ class Case:
         if threads is None:
             threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
         elif not isinstance(threads, (int, np.integer)) or not 1 <= threads <= _MOST_THREADS:
-            raise InputError(f"threads: found {threads!r}, expected a whole number from 1 to "
-                             f"{_MOST_THREADS}")  # fmt: skip
+            raise _library.UsageError(f"threads: found {threads!r}, expected a whole number from 1 "
+                                      f"to {_MOST_THREADS}")  # fmt: skip
         threads = int(threads)
         results = np.empty((len(table), len(names)))
         remarks = []

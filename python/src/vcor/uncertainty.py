@@ -147,7 +147,8 @@ class Spread:
 class Uncertainty:
     """What is known of the results of an impact; `str` is the report of the command."""
 
-    #: Over `quantity`: value, numerical, material and model error, standard deviation, percentiles;
+    #: Over `quantity`: value, numerical, material and model error, nan if not known, standard
+    #: deviation, percentiles;
     #: over `parameter` too: elasticity; over `source`, a parameter or the covariance as one: first
     #: and total Sobol' index, their 95 % half widths, and swing, the ends of one deviation
     table: xr.Dataset
@@ -300,8 +301,13 @@ def propagate(
     from SALib.sample import sobol as sampling
 
     quantities = listed(quantities)
-    if samples < 1:
-        raise UsageError(f"samples: found {samples}, expected a number > 0")
+    columns = _library.columns(0)
+    for name in quantities:
+        if name in columns and columns[name].labels:
+            raise UsageError(f"{name}: found a column of words, expected one of numbers")
+    if samples < 1 or seed < 0:
+        wrong = f"samples: found {samples}, expected a number > 0"
+        raise UsageError(wrong if samples < 1 else f"seed: found {seed}, expected a number >= 0")
     case = (case if isinstance(case, Case) else read(case)).copy()
     joint = []
     if covariance is not None:
@@ -333,8 +339,11 @@ def propagate(
     sobol = _sobol(problem, values, names, seed)
     value = _values(case, quantities)
     judged = case.solve(quantities=["validity", "validity_cause", "cor_error", "cor_sphere_error"])
-    stated = [judged.get(f"{name}_error", 0.0) for name in quantities]
-    numerical = np.fmax(np.abs(value - _values(_accurate(case), quantities)), stated)
+    # a layer is not solved any better: what is not stated of it is not known
+    layer = case["plate.waves"] == "body"
+    better = np.full(len(value), np.nan) if layer else _values(_accurate(case), quantities)
+    stated = [judged.get(f"{name}_error", np.nan) for name in quantities]
+    numerical = np.fmax(np.abs(value - better), stated)
     shown = found[np.isfinite(found).all(axis=1)]
     elastic = np.full((len(quantities), len(addresses)), np.nan)
     apart = [i for i, address in enumerate(addresses) if case[address] != 0]
@@ -342,7 +351,6 @@ def propagate(
         elastic[:, apart] = sensitivities(case, [addresses[i] for i in apart], quantities)
     pull = np.nan_to_num(elastic) * np.sign(value)[:, None]
     swing = _swing(case, spreads, addresses, pull, quantities)
-    columns = _library.columns(0)
     over, both = ("quantity",), ("quantity", "parameter")
     table = xr.Dataset(
         {
@@ -479,7 +487,8 @@ def _report(found: Uncertainty) -> str:
         unit = str(row.units.item())
         text = f"{name} [{unit}]" if unit != "1" else str(name)
         low, *_, high = row.percentiles.values
-        errors = "".join(f"{float(row[key]):11.2g}" for key in ("numerical", "material", "model"))
+        known = [float(row[key]) for key in ("numerical", "material", "model")]
+        errors = "".join(f"{'-':>11s}" if math.isnan(one) else f"{one:11.2g}" for one in known)
         number = float(row["value"])
         lines.append(f"{text:26s}{number:13.6g}{errors}  {low:.5g} to {high:.5g}")
     name = str(table.quantity.values[0])
