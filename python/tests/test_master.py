@@ -133,9 +133,47 @@ def test_three_temperatures_fix_the_constants_of_wlf_and_a_fourth_tests_them(tmp
         vcor.master(path, reference_temperature=25)
 
 
+def table(head, temperatures, modulus=lambda at, t: moduli(at, t + 273.15, True)):
+    """A file of storage and loss moduli over rad/s, one row after the other."""
+    at = np.geomspace(1, 1000, 12)
+    columns = ((t, at, *modulus(at, t)) for t in temperatures)
+    rows = (row for column in columns for row in np.column_stack(np.broadcast_arrays(*column)))
+    return head + "".join(",".join(map(str, row)) + "\n" for row in rows)
+
+
+HEAD = "omega [rad/s],E_stor [Pa],E_loss [Pa]\n"
+
+
+@pytest.mark.parametrize("unit", ["degC", "°C", "deg C", "Celsius"])
+def test_units_of_temperatures(tmp_path, unit):
+    path = tmp_path / "raw.csv"
+    path.write_text(table(f"temperature [{unit}],{HEAD}", [0, 10, 20]))
+    assert np.allclose(vcor.master(path).temperatures, [273.15, 283.15, 293.15])
+
+
+def test_shear_moduli_become_tensile_ones(tmp_path):
+    path = tmp_path / "raw.csv"
+    path.write_text(table(f"T [C],{HEAD}", [0, 10, 20]))
+    tensile = vcor.master(path)
+    shear = table(f"T [C],{HEAD}", [0, 10, 20],
+                  lambda at, t: np.array(moduli(at, t + 273.15, True)) / 2.8)  # fmt: skip
+    path.write_text(shear.replace("E_", "G_"))
+    with pytest.raises(vcor.UsageError, match="give --poisson-ratio"):
+        vcor.master(path)
+    found = vcor.master(path, poisson_ratio=0.4)
+    assert np.allclose(found.curve(), tensile.curve(), rtol=1e-6)
+    master_curve.main([str(path), "--poisson-ratio", "0.4", "--output", str(tmp_path), "--quiet"])
+    assert (tmp_path / "raw_master.csv").exists()
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
+        (table(f"T [F],{HEAD}", [0, 10]), "found 'F' as unit of the temperatures"),
+        (table(f"T,{HEAD}", [0, 10]), "expected T [C] or T [K]"),
+        (table(f"T [K],{HEAD}", [0, 10]), "above 0 K"),
+        (table(f"T [C],{HEAD}", [0, 10, 0, 10]), "two curves at 273.15 K"),
+        (table(f"T [C],{HEAD}", [-40, 90]), "the storage moduli at 233.15 and 363.15 K have none"),
         ("f,E_stor,E_loss\n1,2,3\n2,3,4\n", "no column of temperatures"),
         ("f,E_stor,E_loss,T\nHz,MPa,MPa,C\n1,2,3,20\n2,3,4,20\n3,4,5,20\n", "two or more"),
         ("f,E_stor,E_loss,T\nHz,MPa,MPa,F\n1,2,3,20\n2,3,4,20\n", "unit of the temperatures"),
@@ -144,6 +182,6 @@ def test_three_temperatures_fix_the_constants_of_wlf_and_a_fourth_tests_them(tmp
 def test_bad_files_are_refused_in_one_line(tmp_path, text, said):
     path = tmp_path / "raw.csv"
     path.write_text(text)
-    with pytest.raises(vcor.InputError) as caught:
+    with pytest.raises(vcor.Error) as caught:
         vcor.master(path)
     assert said in str(caught.value)

@@ -39,7 +39,14 @@ COLDEST = 100.0
 _UNITS = {"wlf_c1": "", "wlf_c2": "K", "activation_energy": "J/mol"}
 #: Largest misfit of the steps, in standard errors, of a law that stands for the table
 FOLLOWS = 2.0
-_TEMPERATURE = re.compile(r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(]\s*\W*([CK])\b.*)?")
+#: Difference of temperatures of which none is the next of the other [K]
+SAME = 0.1
+#: A column of temperatures with its unit; `T [s]` is a time
+_TEMPERATURE = re.compile(
+    r"(?:(?i:temp(?:erature)?)|T)\.?\s*(?:[/\[(](?!\W*(?:[mnµu]?s|min|h)\b)([^])]*).*)?"
+)
+#: Units of temperatures; the degree sign comes in several encodings
+_UNIT = re.compile(r"(?:\W|Â|deg(?:rees?)?)*(?:([Cc]elsius|C)|[Kk]elvin|K)\b")
 
 
 @dataclass(frozen=True)
@@ -192,6 +199,7 @@ def master(
     data: str | os.PathLike[str] | Sequence[str | os.PathLike[str]],
     *,
     reference_temperature: float | None = None,
+    poisson_ratio: float | None = None,
 ) -> Master:
     """Master curve of moduli at several temperatures, as `vcor master` makes it.
 
@@ -201,6 +209,8 @@ def master(
         Files with a column of temperatures, or one file per temperature, `FILE@-20C` or `FILE@253`.
     reference_temperature
         [K], one of those of the data within 3 K is taken; None: that in their middle.
+    poisson_ratio
+        Poisson's ratio, by which shear moduli become tensile ones; needed for them only.
 
     Returns
     -------
@@ -212,16 +222,21 @@ def master(
     InputError
         The files have no moduli at two or more temperatures.
     NumericalError
-        Two neighbouring temperatures have no modulus in common.
+        Two neighbouring temperatures have no storage or relaxation modulus in common.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
-    curves = sorted((c for name in names for c in read_curves(name)), key=lambda c: c.temperature)
+    ratio = NOT_GIVEN if poisson_ratio is None else poisson_ratio
+    read = (one for name in names for one in read_curves(name, ratio))
+    curves = sorted(read, key=lambda one: one.temperature)
     if any(math.isnan(curve.temperature) for curve in curves):
         raise InputError(f"{names[0]}: found no column of temperatures, expected one named T, or "
                          f"{names[0]}@-20C for a file of one temperature")  # fmt: skip
     if len(curves) < 2 or len({curve.dynamic for curve in curves}) > 1:
         raise InputError("expected moduli of one kind at two or more temperatures")
     temperatures = np.array([curve.temperature for curve in curves])
+    if (same := np.flatnonzero(np.diff(temperatures) < SAME)).size:
+        raise InputError(f"found two curves at {temperatures[same[0]]:.2f} K, expected one at each "
+                         "temperature")  # fmt: skip
     if reference_temperature is None:
         middle = len(curves) // 2
     else:
@@ -274,8 +289,8 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
     cells = [cell.strip() for cell in rows[head]]
     place = next(i for i, cell in enumerate(cells) if _TEMPERATURE.fullmatch(cell))
     found = _TEMPERATURE.fullmatch(cells[place])
-    units = [cell.strip().strip("[]()°") for cell in rows[head + 1]] if head + 1 < len(rows) else []
-    unit = (found[1] if found else None) or (units[place] if place < len(units) else "")
+    below = dict(enumerate(rows[head + 1])) if head + 1 < len(rows) else {}
+    given = (found[1] if found else None) or below.get(place, "").strip()
     which = next((i for i, cell in enumerate(cells) if cell.lower() == "set"), place)
 
     def numbers(column: int) -> Floats:
@@ -290,11 +305,11 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
     kept = np.flatnonzero(np.isfinite(temperature) & np.isfinite(group))
     if not kept.size:
         raise InputError(f"{path}: found no temperatures in column {place + 1}")
-    # the degree sign comes in several encodings
-    unit = unit[-1:]
-    if unit not in ("C", "K"):
-        raise InputError(f"{path}: found no unit of the temperatures, expected T [C] or T [K]")
-    zero = ZERO_C if unit == "C" else 0.0
+    unit = _UNIT.match(given)
+    if not unit:
+        what = f"'{given}' as" if re.search("[A-Za-z]", given) else "no"
+        raise InputError(f"{path}: found {what} unit of the temperatures, expected T [C] or T [K]")
+    zero = ZERO_C if unit[1] else 0.0
     times = numbers(0) if cells[0] in ("t", "time") else np.arange(len(rows))
     # a new curve where the set changes, or the temperature jumps
     jumps = np.abs(np.diff(group[kept])) > (1.0 if which == place else 0.0)
@@ -309,6 +324,9 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
 
 def _curve(path: str, lines: Sequence[str], temperature: float, poisson_ratio: float) -> Curve:
     """Curve of the lines of a file, read as `vcor fit` reads them."""
+    if temperature <= 0:
+        raise InputError(f"{path}: found {temperature:g} K, expected a temperature above 0 K; one "
+                         "in degrees Celsius stands under T [C] or ends in C, as -20C")  # fmt: skip
     # a null would end the text: vcor refuses it as any control character
     text = "\n".join(lines).replace("\0", "\1")
     n, columns, values = c_int(), c_int(), c_void_p()
@@ -353,8 +371,9 @@ def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
     if best in (0, len(trials) - 1):
         pair = f"{cold.temperature:.2f} and {warm.temperature:.2f} K"
         raise NumericalError(
-            f"the data at {pair} have no modulus in common, expected more "
-            "frequencies, or temperatures between"
+            f"the {'storage' if cold.dynamic else 'relaxation'} moduli at {pair} have none in "
+            "common, by which alone they are shifted; expected more "
+            f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
         )
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
@@ -413,6 +432,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     what = "file with a column T [C] or T [K], or FILE@-20C of one temperature"
     add("data", nargs="+", metavar="DATA", help=what)
     add("--reference", metavar="TEMPERATURE", help="such as 20C or 293.15K; default: the middle")
+    what = "for shear moduli: Poisson's ratio, by which they become tensile ones"
+    add("--poisson-ratio", type=float, metavar="NU", help=what)
     # argparse takes -5C for an option
     words = list(sys.argv[1:] if arguments is None else arguments)
     if "--reference" in words[:-1]:
@@ -425,7 +446,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _work(options: argparse.Namespace) -> None:
     given = options.reference
     reference = _kelvin(given, "--reference") if given is not None else None
-    found = master(options.data, reference_temperature=reference)
+    nu = options.poisson_ratio
+    if nu is not None and not -1 < nu <= 0.5:
+        raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")
+    found = master(options.data, reference_temperature=reference, poisson_ratio=nu)
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
     reference = found.reference_temperature
