@@ -77,6 +77,17 @@ def test_separates_or_rests(vcor, law, waves):
     assert {found[0], found[-1]} == {"separated", "rests"}
 
 
+def test_just_comes_off(vcor):
+    """A force that is gone for a moment only ends the contact, however long the steps are."""
+    vcor.write(CASE.replace("velocity = 0.4", "velocity = 0.2669"))
+    values, status = run(vcor, "cor", "--set", "solver.accuracy=1e-11")
+    assert status == "separated"
+    for digits in range(6, 11):
+        others, status = run(vcor, "cor", "--set", f"solver.accuracy=1e-{digits}")
+        assert status == "separated"
+        assert others == pytest.approx(values, abs=10.0**-digits)
+
+
 def test_end_time(vcor):
     """At the end of the computation it rests or it does not, as its energy says."""
     vcor.write(CASE.replace("velocity = 0.4", "velocity = 1e-3"))

@@ -19,8 +19,8 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
    use vcor_solver_ive_course, only : course_t, share
-   use vcor_solver_ive_landing, only : end_at_zero, first_without_force, land_on_largest, &
-      land_on_zero, slope_at_end
+   use vcor_solver_ive_landing, only : end_at_zero, first_without_force, hides_a_zero, &
+      land_on_largest, land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
    use vcor_solver_ive_newton, only : accompany, guess, solve
    use vcor_solver_ive_panel, only : panel_t, plate_gains, relative_velocity
@@ -323,6 +323,9 @@ contains
             if (any(impact%outruns(panel%alpha(j - 1), panel%alpha(j), panel%impulse(j:n), &
                 panel%time(j:n)))) self%excess = huge(1.0_wp)
          end do
+         if (trajectory%status /= contact_separated .and. .not. (self%ends .or. self%recedes)) then
+            if (hides_a_zero(collocator%rule, panel)) self%excess = huge(1.0_wp)
+         end if
       end associate
    end subroutine judge
 

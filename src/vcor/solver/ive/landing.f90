@@ -14,7 +14,8 @@ module vcor_solver_ive_landing
    implicit none
    private
 
-   public :: first_without_force, land_on_zero, land_on_largest, end_at_zero, slope_at_end
+   public :: first_without_force, hides_a_zero, land_on_zero, land_on_largest, end_at_zero, &
+      slope_at_end
 
    !> Correction of a time over it that may be rounding
    real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
@@ -33,6 +34,29 @@ contains
       end do
       stage = 0
    end function first_without_force
+
+   !> Whether the force is gone between two stages and back at the second one, as that of a sphere
+   !> which its weight all but keeps in contact: such a panel is too long to see the end
+   pure function hides_a_zero(rule, panel) result(hides)
+      type(collocation_t), intent(in) :: rule
+      type(panel_t), intent(in) :: panel
+      logical :: hides
+
+      real(wp) :: slope(0:width), growth(0:width), lowest
+      integer :: j
+
+      hides = .false.
+      slope = rule%slopes(panel%force)
+      if (.not. any(slope(0:width - 1) < 0.0_wp .and. slope(1:) > 0.0_wp)) return
+      growth = rule%slopes(panel%indentation)
+      do j = 1, panel%stages
+         if (.not. (panel%force(j - 1) > 0.0_wp .and. growth(j - 1) < 0.0_wp)) cycle
+         if (.not. (slope(j - 1) < 0.0_wp .and. slope(j) > 0.0_wp)) cycle
+         lowest = rule%crossing(slope, rule%point(j - 1), rule%point(j), rounding)
+         hides = .not. rule%interpolate(panel%force, lowest) > 0.0_wp
+         if (hides) return
+      end do
+   end function hides_a_zero
 
    !> Cut a panel in which the indentation has its maximum so that it ends there: first where that
    !> is by the polynomial of the panel, then by Newton's method. It need not be close to the last
