@@ -65,6 +65,16 @@ def test_errors_are_those_of_the_noise(tmp_path):
     assert found.log_error[away].max() < 0.5
 
 
+def test_points_lie_where_the_law_has_them(tmp_path):
+    # the moduli at -4 C hardly overlap those at 0 C: that step is known to 0.9 decades
+    path = file_of(tmp_path / "raw.csv", [-4, *range(0, 60, 5)], noise=0.01)
+    found = vcor.master(path, reference_temperature=REFERENCE)
+    assert found.law.name == "WLF" and found.log_error[0] > 0.5
+    at, *rest = found.curve()
+    coldest = slice(-10, None)
+    assert np.allclose(rest[1][coldest], moduli(at[coldest], REFERENCE, True)[1], rtol=0.1)
+
+
 def test_one_file_per_temperature(tmp_path):
     names = []
     for t in (10, 20, 30):
@@ -142,6 +152,20 @@ def table(head, temperatures, modulus=lambda at, t: moduli(at, t + 273.15, True)
 
 
 HEAD = "omega [rad/s],E_stor [Pa],E_loss [Pa]\n"
+
+
+@pytest.mark.parametrize("seed", [2, 3, 4])
+def test_curves_that_are_flat_are_not_shifted(tmp_path, seed):
+    rng = np.random.default_rng(seed)
+    path = tmp_path / "raw.csv"
+    text = table(
+        f"T [C],{HEAD}",
+        [-40, -30],
+        lambda at, _: (8e8 * at**0.002 * (1 + 0.01 * rng.normal(size=12)), 1e6),
+    )
+    path.write_text(text)
+    with pytest.raises(vcor.NumericalError, match=r"233.15 and 243.15 K are too flat"):
+        vcor.master(path)
 
 
 @pytest.mark.parametrize("unit", ["degC", "°C", "deg C", "Celsius"])

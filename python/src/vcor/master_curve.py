@@ -32,6 +32,8 @@ from .fit import NOT_GIVEN
 
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
+#: Standard errors that a shift has to be known to, to one side at least
+UNSURE = 3.0
 #: Smallest scatter of a curve that is believed, relative
 LEAST_SCATTER = 1e-3
 #: Temperature below which one in kelvin is taken for a slip [K]
@@ -101,8 +103,16 @@ class Master:
     curves: tuple[Curve, ...]
 
     def curve(self) -> tuple[Floats, ...]:
-        """Reduced frequency and moduli, or reduced time and modulus, in rising order."""
-        factors = 10**self.log_shift
+        """Reduced frequency and moduli, or reduced time and modulus, in rising order.
+
+        The shift factors are those that a material takes: of the law, if they follow one.
+        """
+        law, log_shift = self.law, self.log_shift
+        if law:
+            log_shift = _shift(
+                list(law.values.values()), self.temperatures, self.reference_temperature
+            )
+        factors = 10**log_shift
         at = np.concatenate([
             one.at * factor if one.dynamic else one.at / factor
             for one, factor in zip(self.curves, factors, strict=True)
@@ -368,18 +378,23 @@ def _step(cold: Curve, warm: Curve) -> tuple[float, float]:
     trials = np.linspace(cold.x[0] - warm.x[-1], 0.1 * span, 301)
     values = np.array([misfit(trial) for trial in trials])
     best = int(np.argmin(values))
+    dof = max(1, y.size - DEGREE - 2)
+    pair = (f"the {'storage' if cold.dynamic else 'relaxation'} moduli at {cold.temperature:.2f} "
+            f"and {warm.temperature:.2f} K")  # fmt: skip
     if best in (0, len(trials) - 1):
-        pair = f"{cold.temperature:.2f} and {warm.temperature:.2f} K"
         raise NumericalError(
-            f"the {'storage' if cold.dynamic else 'relaxation'} moduli at {pair} have none in "
-            "common, by which alone they are shifted; expected more "
+            f"{pair} have none in common, by which alone they are shifted; expected more "
             f"{'frequencies' if cold.dynamic else 'times'}, or temperatures between"
+        )
+    if max(values[0], values[-1]) < values[best] + UNSURE**2 * max(values[best] / dof, 1.0):
+        raise NumericalError(
+            f"{pair} are too flat for their scatter to tell the shift between them; expected data "
+            "without one of the two"
         )
     h = trials[1] - trials[0]
     found = minimize_scalar(misfit, bounds=(trials[best] - h, trials[best] + h), method="bounded",
                             options={"xatol": 1e-8})  # fmt: skip
     curvature = (misfit(found.x + h) + misfit(found.x - h) - 2 * found.fun) / h**2
-    dof = max(1, y.size - DEGREE - 2)
     return float(found.x), float(2 * max(found.fun / dof, 1.0) / curvature)
 
 
