@@ -500,6 +500,19 @@ def test_noise_is_noise(vcor, model, seed):
     assert NO_NOISE not in out
 
 
+def test_no_noise_is_so_large(vcor):
+    """Curves that were shifted wrongly alternate, and so do their misfits."""
+    frequency = np.logspace(1, 5, 40)
+    storage, loss = sls_dynamic(frequency)
+    loss[::2] *= 10
+    loss[1::2] /= 10
+    rows = "".join(f"{a},{b},{c}\n" for a, b, c in zip(frequency, storage, loss))
+    vcor.write("omega,E_stor,E_loss\nrad/s,Pa,Pa\n" + rows, "data.csv")
+    out = vcor.succeeds("fit", "data.csv", "--model", "sls")
+    assert float(re.search(r"rms misfit +(\S+) %", out)[1]) > 300
+    assert f"note: the model {NO_NOISE}" in out
+
+
 @pytest.mark.parametrize("model, most", [("cerf", 10), ("sls", 25), ("mittag_leffler", 6)])
 def test_little_noise_on_the_wrong_model(vcor, model, most):
     """A few percent of misfit that are no noise are told, on the screen and in the group."""

@@ -29,6 +29,8 @@ module vcor_fit_result
 
    !> Root mean square misfit that is as good as any data: numbers of three digits are no better
    real(wp), parameter :: negligible = 5.0e-3_wp
+   !> Root mean square misfit, a factor of two, that is no noise of moduli, whatever its order
+   real(wp), parameter :: hopeless = log(2.0_wp)
    !> Standard deviations above the mean that one fit in a thousand exceeds by chance
    real(wp), parameter :: unlikely = 3.1_wp
    !> Residuals more than parameters, at least: with fewer no correlation is so far above the mean
@@ -131,7 +133,8 @@ contains
             //fit%data%model//": take fewer, by --terms or --fix, or another model")
          return
       end if
-      fit%structured = is_structured(r, j(:, inner), points)
+      fit%structured = norm2(r) > hopeless*sqrt(real(size(r), wp))
+      if (.not. fit%structured) fit%structured = is_structured(r, j(:, inner), points)
       fit%variance = sum(r**2)/real(max(1, size(r) - size(inner)), wp)
       call covariance(j, inverse, condition)
       allocate (fit%correlation(size(fit%parameters), size(fit%parameters)), source=0.0_wp)
