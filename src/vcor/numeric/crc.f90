@@ -1,8 +1,8 @@
 !> Check sums of bytes: CRC-32 as in zip, PNG and Ethernet (`zlib.crc32` of Python)
 !>
-!> The bits of the bytes are the coefficients of a polynomial over the integers modulo 2; the sum is
-!> its remainder, divided by a polynomial of degree 32. No flip of one or two bits passes unseen, no
-!> damage within 32 bits in a row, and of other damage one in 2**32.
+!> The bytes are read as a polynomial over the integers modulo 2; the sum is its remainder after
+!> division by a polynomial of degree 32. It detects every error of one bit, of two bits (in up to
+!> 512 MiB) and within 32 consecutive bits; of other errors one in 2**32 escapes.
 module vcor_numeric_crc
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    implicit none
@@ -10,10 +10,10 @@ module vcor_numeric_crc
 
    public :: crc32
 
-   !> The divisor, 0xEDB88320: its coefficients from the lowest power on, the highest bit first
+   !> The divisor without its leading term, the lowest power in the highest bit: 0xEDB88320
    integer(int32), parameter :: divisor = -306674912_int32
    integer :: i
-   !> Remainders of the bytes 0 to 255 after 0, 1, ... 8 of their bits
+   !> Remainders of the bytes 0 to 255 after division of 0, 1, ... 8 of their bits
    integer(int32), parameter :: &
       bits0(0:255) = [(int(i, int32), i=0, 255)], &
       bits1(0:255) = ieor(shiftr(bits0, 1), iand(bits0, 1_int32)*divisor), &
@@ -24,8 +24,8 @@ module vcor_numeric_crc
       bits6(0:255) = ieor(shiftr(bits5, 1), iand(bits5, 1_int32)*divisor), &
       bits7(0:255) = ieor(shiftr(bits6, 1), iand(bits6, 1_int32)*divisor), &
       bits8(0:255) = ieor(shiftr(bits7, 1), iand(bits7, 1_int32)*divisor)
-   !> Remainders of a byte, and of a byte with 1, 2 and 3 bytes of zeros behind it: with them four
-   !> bytes in a row need not wait for each other
+   !> Mask of the lowest byte, and remainders of a byte followed by 1, 2 and 3 zero bytes: with them
+   !> four bytes are processed at a time
    integer(int32), parameter :: last = 255_int32, &
       bits16(0:255) = ieor(shiftr(bits8, 8), bits8(iand(bits8, last))), &
       bits24(0:255) = ieor(shiftr(bits16, 8), bits8(iand(bits16, last))), &
@@ -37,7 +37,7 @@ contains
    pure function crc32(bytes, before) result(crc)
       !> Bytes, shape (n)
       integer(int8), intent(in), contiguous :: bytes(:)
-      !> Sum of the bytes before them; 0 where there are none
+      !> Check sum of the bytes before them; 0 if there are none
       integer(int32), intent(in) :: before
       integer(int32) :: crc
 

@@ -1,18 +1,17 @@
-!> Quadrature between two branch points of the square-root kind with two more beyond them
+!> Quadrature between two square-root branch points with one or two more outside the interval
 !>
-!> The substitution by Jacobi's elliptic functions that turns sqrt((l - p)(l - z)(b - l)(q - l)),
-!> p < z < b < q, into a single-valued function makes all four of them points of a double period.
-!> An integrand over (z, b) whose only singularities are these becomes periodic and analytic in a
-!> strip |Im u| < K', and the midpoint rule of n nodes converges as exp(-a K'), a = 2 pi n/K,
-!> however far apart the points are: P. F. Byrd and M. D. Friedman, Handbook of Elliptic Integrals,
-!> 2nd ed. (1971), 255, and N. Hale, N. J. Higham and L. N. Trefethen, SIAM J. Numer. Anal. 46
-!> (2008) 2505, doi:10.1137/070700607, for the use of it.
+!> The integrand has branch points of sqrt((l - p)(l - z)(b - l)(q - l)), p < z < b < q, on the
+!> interval z < l < b; q may be infinite. Written in Jacobi's elliptic functions of u, l makes it a
+!> periodic function that is analytic in a strip |Im u| < K', so the midpoint rule of n nodes
+!> converges as exp(-a K'), a = 2 pi n/K, whatever the distances of the points: P. F. Byrd and M. D.
+!> Friedman, Handbook of Elliptic Integrals, 2nd ed. (1971), 255; for its use, N. Hale, N. J. Higham
+!> and L. N. Trefethen, SIAM J. Numer. Anal. 46 (2008) 2505, doi:10.1137/070700607.
 !>
-!> With exp(-l t) in the integrand the edge of the strip is out of reach, since l is infinite at one
-!> point of it. The saddle point of exp(i a u - l t) below leaves exp(-a K' + c), with
-!> c = (a t sqrt((q - z)(b - p)))^(1/2) or, without q, c = (27/32 a^2 t (b - p))^(1/3). Halfway to
-!> the edge l runs on a circle round z and b that passes between p and z: exp(-a K'/2) is reached
-!> for any t.
+!> With a factor exp(-l t) the edge of the strip cannot be reached, since l is infinite at one point
+!> of it. The saddle point of exp(i a u - l t) gives the error exp(-a K' + c), with
+!> c = (a t sqrt((q - z)(b - p)))^(1/2) or, without q, c = (27/32 a^2 t (b - p))^(1/3). At
+!> Im u = K'/2 l runs on a circle around z and b that passes between p and z, so the error is at
+!> most exp(-a K'/2) for any t.
 module vcor_numeric_elliptic
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : pi
@@ -22,16 +21,16 @@ module vcor_numeric_elliptic
 
    public :: branch_rule
 
-   !> Steps after which the transformation has converged for any parameter
+   !> Number of steps that suffices for any modulus
    integer, parameter :: most_steps = 30
 
-   !> Landen's transformation for one modulus
+   !> Landen's transformation of one modulus
    type :: landen_t
       !> Number of steps
       integer :: steps = 0
       !> Modulus after each step
       real(wp) :: modulus(most_steps) = 0.0_wp
-      !> 1 less it
+      !> 1 - modulus
       real(wp) :: complement(most_steps) = 1.0_wp
       !> Quarter period K of the functions
       real(wp) :: quarter = 0.5_wp*pi
@@ -39,7 +38,8 @@ module vcor_numeric_elliptic
 
 contains
 
-   !> Nodes in (z, b) by their distances from both ends, and weights, for integrands with exp(-l t)
+   !> Nodes in (z, b), given by their distances from both ends, and weights, for integrands with
+   !> exp(-l t)
    pure subroutine branch_rule(before, length, after, time, accuracy, from_lower, to_upper, &
                                weight)
       !> Distance z - p, > 0
@@ -48,9 +48,9 @@ contains
       real(wp), intent(in) :: length
       !> Distance q - b, > 0; infinite if there is no q
       real(wp), intent(in) :: after
-      !> Largest t [the inverse of the distances], >= 0
+      !> Largest t [inverse of the unit of the distances], >= 0
       real(wp), intent(in) :: time
-      !> Wanted relative accuracy, > 0
+      !> Relative accuracy wanted, > 0
       real(wp), intent(in) :: accuracy
       !> Distances l - z of the nodes, > 0, shape (n)
       real(wp), allocatable, intent(out) :: from_lower(:)
@@ -74,13 +74,13 @@ contains
       end if
       call descend(m, complement, landen)
       call descend(complement, m, other)
-      ! a K' = more*wanted, with that of c in it
+      ! a K' = more*wanted, so that exp(-a K' + c) is the accuracy
       wanted = log(2.0_wp/accuracy)
       if (ieee_is_finite(after)) then
          c = 0.25_wp*time*sqrt((after + length)*(length + before))/(wanted*other%quarter)
          more = (sqrt(c) + sqrt(1.0_wp + c))**2
       else
-         ! x^3 = 1 + 3 c x^2, to the second order
+         ! root x of x^3 = 1 + 3 c x^2 to second order in c; more = x^3
          c = (time*(length + before)/(32.0_wp*wanted*other%quarter**2))**(1.0_wp/3.0_wp)
          more = (1.0_wp + c*(1.0_wp + c))**3
       end if
@@ -107,7 +107,7 @@ contains
       !> The transformation
       type(landen_t), intent(out) :: landen
 
-      ! the modulus that follows on it is below rounding
+      ! the next modulus is below rounding
       real(wp), parameter :: small = 1.0e-8_wp
       real(wp) :: a, b, c, next
 
@@ -128,9 +128,9 @@ contains
 
    !> Jacobi's elliptic functions
    pure subroutine jacobi(landen, part, sn, cn, dn)
-      !> The transformation of their modulus
+      !> The transformation of the modulus
       type(landen_t), intent(in) :: landen
-      !> Argument u over the quarter period, between 0 and 1
+      !> Argument u over the quarter period K, between 0 and 1
       real(wp), intent(in) :: part
       !> sn(u)
       real(wp), intent(out) :: sn

@@ -1,4 +1,4 @@
-!> Zeros of the functions of materials that are sums of simple poles: they interlace with the poles
+!> Zeros of a sum of simple poles with positive weights, which interlace with the poles
 !>
 !> f(x) = c + sum_j w_j/(d_j - x) with w_j > 0 rises from minus to plus infinity between two poles,
 !> so there is one zero in each gap, and one beyond the last pole if c > 0.
@@ -11,8 +11,8 @@ module vcor_numeric_interlacing
 
 contains
 
-   !> Zeros of f, each as a pole close to it and the distance from there: differences of zeros and
-   !> poles then keep all their digits
+   !> Zeros of f, each as its distance from the nearest pole: differences between zeros and poles
+   !> then keep all their digits
    pure subroutine zeros_between_poles(pole, weight, constant, near, offset)
       !> Poles d, strictly increasing, shape (n)
       real(wp), intent(in) :: pole(:)
@@ -20,9 +20,9 @@ contains
       real(wp), intent(in) :: weight(:)
       !> Constant c >= 0
       real(wp), intent(in) :: constant
-      !> Number of the pole that each zero is counted from, shape (n - 1), (n) if c > 0
+      !> Number of the pole from which each zero is measured, shape (n - 1), (n) if c > 0
       integer, intent(out) :: near(:)
-      !> Distance of each zero from it, of either sign, same shape
+      !> Signed distance of each zero from that pole, same shape
       real(wp), intent(out) :: offset(:)
 
       real(wp) :: gap
@@ -31,7 +31,7 @@ contains
       n = size(pole)
       do i = 1, n - 1
          gap = pole(i + 1) - pole(i)
-         ! f rises: where it is positive in the middle, the zero is in the lower half
+         ! f rises: if it is positive at the midpoint, the zero is in the lower half
          if (value_at(i, 0.5_wp*gap) > 0.0_wp) then
             near(i) = i
             offset(i) = root(i, 1.0_wp, 0.5_wp*gap)
@@ -42,7 +42,7 @@ contains
       end do
       if (constant > 0.0_wp .and. n > 0) then
          near(n) = n
-         ! no zero is farther off than if all poles were at the last one
+         ! the zero is farthest away if all poles coincide with the last one
          offset(n) = root(n, 1.0_wp, sum(weight)/constant)
       end if
 
@@ -59,8 +59,8 @@ contains
          value = constant + sum(weight/((pole - pole(j)) - distance))
       end function value_at
 
-      !> Distance of the zero from a pole, by Newton's method for distance*f, which has no pole
-      !> there, kept in bounds by bisection
+      !> Distance of the zero from a pole: Newton's method for distance*f, which is regular at the
+      !> pole, safeguarded by bisection
       pure function root(j, side, farthest) result(distance)
          !> Number of the pole
          integer, intent(in) :: j

@@ -10,9 +10,9 @@ module vcor_numeric_lapack
       !> Eigenvalues and eigenvectors of a general real matrix
       subroutine dgeev(jobvl, jobvr, n, a, lda, wr, wi, vl, ldvl, vr, ldvr, work, lwork, info)
          import :: wp
-         !> 'N': no left eigenvectors, 'V': compute them
+         !> 'N': left eigenvectors are not computed, 'V': they are
          character(len=1), intent(in) :: jobvl
-         !> 'N': no right eigenvectors, 'V': compute them
+         !> 'N': right eigenvectors are not computed, 'V': they are
          character(len=1), intent(in) :: jobvr
          !> Order of the matrix
          integer, intent(in) :: n
@@ -22,7 +22,7 @@ module vcor_numeric_lapack
          real(wp), intent(inout) :: a(lda, *)
          !> Real parts of the eigenvalues, shape (n)
          real(wp), intent(out) :: wr(*)
-         !> Imaginary parts of the eigenvalues, pairs with the positive one first, shape (n)
+         !> Imaginary parts of the eigenvalues, the positive one of a pair first, shape (n)
          real(wp), intent(out) :: wi(*)
          !> Leading dimension of `vl`
          integer, intent(in) :: ldvl
@@ -30,7 +30,7 @@ module vcor_numeric_lapack
          real(wp), intent(out) :: vl(ldvl, *)
          !> Leading dimension of `vr`
          integer, intent(in) :: ldvr
-         !> Right eigenvectors; a pair's real and imaginary parts side by side, shape (ldvr, n)
+         !> Right eigenvectors, for a pair its real and its imaginary part, shape (ldvr, n)
          real(wp), intent(out) :: vr(ldvr, *)
          !> Work space, shape (lwork)
          real(wp), intent(out) :: work(*)
@@ -40,7 +40,7 @@ module vcor_numeric_lapack
          integer, intent(out) :: info
       end subroutine dgeev
 
-      !> Factors of a matrix, A P = Q R, with columns exchanged so that the diagonal of R falls
+      !> QR factorisation with column pivoting, A P = Q R; |R(i, i)| does not increase with i
       pure subroutine dgeqp3(m, n, a, lda, jpvt, tau, work, lwork, info)
          import :: wp
          !> Rows
@@ -51,9 +51,9 @@ module vcor_numeric_lapack
          integer, intent(in) :: lda
          !> The matrix, on return R in its upper triangle and Q below it, shape (lda, n)
          real(wp), intent(inout) :: a(lda, *)
-         !> Not 0: the column comes first; on return which column is at each place, shape (n)
+         !> Nonzero: the column comes first; on return the original number of each, shape (n)
          integer, intent(inout) :: jpvt(*)
-         !> Factors of the reflections that Q is made of, shape (min(m, n))
+         !> Scalars of the reflections of which Q is the product, shape (min(m, n))
          real(wp), intent(out) :: tau(*)
          !> Workspace, shape (lwork)
          real(wp), intent(out) :: work(*)
@@ -138,20 +138,20 @@ module vcor_numeric_lapack
          integer, intent(out) :: info
       end subroutine dgesvd
 
-      !> Columns of Q of the factors of a matrix
+      !> The first columns of Q of a QR factorisation
       pure subroutine dorgqr(m, n, k, a, lda, tau, work, lwork, info)
          import :: wp
          !> Rows
          integer, intent(in) :: m
-         !> Columns that are wanted, at most m
+         !> Number of columns wanted, at most m
          integer, intent(in) :: n
          !> Number of reflections, at most n
          integer, intent(in) :: k
          !> Leading dimension of `a`
          integer, intent(in) :: lda
-         !> What `dgeqp3` or `dgeqrf` left; on return the columns, shape (lda, n)
+         !> Reflections as `dgeqp3` or `dgeqrf` leave them; on return the columns, shape (lda, n)
          real(wp), intent(inout) :: a(lda, *)
-         !> Factors of the reflections, shape (k)
+         !> Scalars of the reflections, shape (k)
          real(wp), intent(in) :: tau(*)
          !> Workspace, shape (lwork)
          real(wp), intent(out) :: work(*)
@@ -161,7 +161,7 @@ module vcor_numeric_lapack
          integer, intent(out) :: info
       end subroutine dorgqr
 
-      !> Multiply a matrix by the orthogonal one of a QR factorisation
+      !> Multiply a matrix by the orthogonal matrix Q of a QR factorisation
       pure subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
          import :: wp
          !> 'L': from the left, 'R': from the right
@@ -176,7 +176,7 @@ module vcor_numeric_lapack
          integer, intent(in) :: k
          !> Leading dimension of `a`
          integer, intent(in) :: lda
-         !> The reflections, as `dgeqrf` leaves them, shape (lda, k)
+         !> The reflections as `dgeqrf` leaves them, shape (lda, k)
          real(wp), intent(in) :: a(lda, *)
          !> Their scalars, shape (k)
          real(wp), intent(in) :: tau(*)
@@ -186,7 +186,7 @@ module vcor_numeric_lapack
          real(wp), intent(inout) :: c(ldc, *)
          !> Work space, shape (lwork)
          real(wp), intent(out) :: work(*)
-         !> Length of the work space, >= n, from the right >= m
+         !> Length of the work space, >= n for 'L', >= m for 'R'
          integer, intent(in) :: lwork
          !> 0 on success
          integer, intent(out) :: info
@@ -199,7 +199,7 @@ module vcor_numeric_lapack
          character(len=1), intent(in) :: uplo
          !> 'N': A x = b, 'T': A' x = b
          character(len=1), intent(in) :: trans
-         !> 'N': the diagonal is that of `a`, 'U': ones
+         !> 'N': the diagonal of `a` is used, 'U': it is taken as ones
          character(len=1), intent(in) :: diag
          !> Order of the matrix
          integer, intent(in) :: n
@@ -207,7 +207,7 @@ module vcor_numeric_lapack
          integer, intent(in) :: nrhs
          !> Leading dimension of `a`
          integer, intent(in) :: lda
-         !> The triangle; the other one is not looked at, shape (lda, n)
+         !> The triangle; the other half is not referenced, shape (lda, n)
          real(wp), intent(in) :: a(lda, *)
          !> Leading dimension of `b`
          integer, intent(in) :: ldb

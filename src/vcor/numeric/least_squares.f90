@@ -1,10 +1,9 @@
-!> Nonlinear least squares within bounds, and how well the solution is determined
+!> Nonlinear least squares with bounds, and the covariance of the solution
 !>
 !> The iteration is MINPACK's (Levenberg and Marquardt): J. J. More, B. S. Garbow, K. E. Hillstrom,
-!> "User Guide for MINPACK-1", Argonne National Laboratory report ANL-80-74 (1980). MINPACK knows no
-!> bounds, so it works on angles: an unknown is x = l + (u - l) (1 + sin y)/2, as in F. James and M.
-!> Roos, Comput. Phys. Commun. 10 (1975) 343. An iteration that runs into a bound can leave it
-!> again.
+!> "User Guide for MINPACK-1", Argonne National Laboratory report ANL-80-74 (1980). MINPACK has no
+!> bounds, so it iterates on angles y with x = l + (u - l) (1 + sin y)/2, as in F. James and M.
+!> Roos, Comput. Phys. Commun. 10 (1975) 343. An iteration that reaches a bound can leave it again.
 module vcor_numeric_least_squares
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgesvd
@@ -13,7 +12,7 @@ module vcor_numeric_least_squares
 
    public :: least_squares_t, minimise, covariance
 
-   !> A problem
+   !> Residuals as functions of n unknowns with bounds
    type, abstract :: least_squares_t
       !> Smallest values of the unknowns, shape (n)
       real(wp), allocatable :: lower(:)
@@ -22,7 +21,7 @@ module vcor_numeric_least_squares
    contains
       !> Residuals
       procedure(residuals_i), deferred :: residuals
-      !> Their derivatives
+      !> Derivatives of the residuals
       procedure(jacobian_i), deferred :: jacobian
    end type least_squares_t
 
@@ -49,7 +48,7 @@ module vcor_numeric_least_squares
    end interface
 
    abstract interface
-      !> What `lmder` calls: residuals or their derivatives
+      !> Residuals or their derivatives, as `lmder` calls them
       subroutine lmder_function_i(m, n, x, fvec, fjac, ldfjac, iflag)
          import :: wp
          !> Number of residuals
@@ -80,48 +79,48 @@ module vcor_numeric_least_squares
          integer, intent(in) :: m
          !> Number of unknowns, <= m
          integer, intent(in) :: n
-         !> Unknowns, on entry a guess, shape (n)
+         !> Unknowns, on entry an initial guess, on return the solution, shape (n)
          real(wp), intent(inout) :: x(n)
          !> Residuals at the solution, shape (m)
          real(wp), intent(out) :: fvec(m)
          !> Leading dimension of `fjac`, >= m
          integer, intent(in) :: ldfjac
-         !> Its triangle is that of the pivoted derivatives, shape (ldfjac, n)
+         !> Upper triangle: R of the derivatives with pivoted columns, shape (ldfjac, n)
          real(wp), intent(out) :: fjac(ldfjac, n)
-         !> Reduction of the sum of squares that counts as none, relative
+         !> Relative reduction of the sum of squares at which the iteration ends
          real(wp), intent(in) :: ftol
-         !> Change of the unknowns that counts as none, relative
+         !> Relative change of the unknowns at which the iteration ends
          real(wp), intent(in) :: xtol
-         !> Cosine between residuals and a column of the derivatives that counts as none
+         !> Cosine between residuals and any column of the derivatives at which the iteration ends
          real(wp), intent(in) :: gtol
-         !> Most evaluations of the residuals
+         !> Maximum evaluations of the residuals
          integer, intent(in) :: maxfev
          !> Scales of the unknowns, set if mode = 1, shape (n)
          real(wp), intent(inout) :: diag(n)
-         !> Scales from the derivatives (1), or given (2)
+         !> 1: scales from the derivatives, 2: scales as given
          integer, intent(in) :: mode
          !> Bound of the first step, in scaled unknowns
          real(wp), intent(in) :: factor
-         !> 0: nothing is called between the iterations
+         !> 0: `fcn` is not called between the iterations
          integer, intent(in) :: nprint
-         !> 0 wrong arguments, 1 to 4 a tolerance is met, 5 too many evaluations, 6 to 8 a tolerance
-         !> is below what rounding allows; negative: ended by the function
+         !> 0: wrong arguments, 1 to 4: a tolerance is met, 5: too many evaluations, 6 to 8: a
+         !> tolerance is below rounding; negative: ended by `fcn`
          integer, intent(out) :: info
-         !> Evaluations of the residuals
+         !> Number of evaluations of the residuals
          integer, intent(out) :: nfev
-         !> Evaluations of the derivatives
+         !> Number of evaluations of the derivatives
          integer, intent(out) :: njev
-         !> Order of the columns, shape (n)
+         !> Order of the pivoted columns, shape (n)
          integer, intent(out) :: ipvt(n)
-         !> Residuals in the basis of the columns, shape (n)
+         !> First n elements of Q' r, shape (n)
          real(wp), intent(out) :: qtf(n)
          !> Work space
          real(wp), intent(out) :: wa1(n), wa2(n), wa3(n), wa4(m)
       end subroutine lmder
    end interface
 
-   !> The problem that MINPACK works at, which hands nothing on to the function that it calls; each
-   !> thread has its own
+   !> The problem that MINPACK solves, one per thread: MINPACK passes no data on to the function
+   !> that it calls
    class(least_squares_t), pointer :: current => null()
 !$omp threadprivate(current)
 
@@ -130,16 +129,16 @@ contains
    !> Minimise the sum of squares
    subroutine minimise(problem, x, r, converged, tolerance, most)
       class(least_squares_t), intent(in), target :: problem
-      !> Unknowns: on entry a guess, on return the solution within its bounds, shape (n)
+      !> Unknowns, on entry an initial guess, on return the solution within its bounds, shape (n)
       real(wp), intent(inout) :: x(:)
-      !> Residuals there, shape (m), m >= n
+      !> Residuals at the solution, shape (m), m >= n
       real(wp), intent(out) :: r(:)
-      !> Whether it is a solution, and not where the iteration gave up
+      !> Whether the iteration converged; false if it gave up
       logical, intent(out) :: converged
-      !> Reduction of the sum of squares, and change of the unknowns, that counts as none; 0: as far
-      !> as rounding allows
+      !> Relative change of the sum of squares and of the unknowns at which the iteration ends; 0:
+      !> as small as rounding allows
       real(wp), intent(in) :: tolerance
-      !> Most evaluations
+      !> Maximum evaluations of the residuals
       integer, intent(in) :: most
 
       real(wp), parameter :: first_step = 10.0_wp
@@ -162,7 +161,7 @@ contains
       call problem%residuals(x, r)
    end subroutine minimise
 
-   !> Unknowns of angles
+   !> Unknowns from angles
    pure function unknowns_of(problem, y) result(x)
       class(least_squares_t), intent(in) :: problem
       !> Angles, shape (n)
@@ -173,7 +172,7 @@ contains
       x = problem%lower + (problem%upper - problem%lower)*0.5_wp*(1.0_wp + sin(y))
    end function unknowns_of
 
-   !> Angles of unknowns; of those at or beyond a bound, angles a little within
+   !> Angles from unknowns; an unknown at or beyond a bound starts a little within it
    pure function angles_of(problem, x) result(y)
       class(least_squares_t), intent(in) :: problem
       !> Unknowns, shape (n)
@@ -181,14 +180,14 @@ contains
       !> Angles, shape (n)
       real(wp) :: y(size(x))
 
-      !> Largest sine: at a bound itself nothing depends on the angle
+      !> Largest sine of an angle: at a bound itself the derivative by the angle is zero
       real(wp), parameter :: most = 0.99_wp
 
       y = asin(max(-most, min(most, &
          2.0_wp*(x - problem%lower)/(problem%upper - problem%lower) - 1.0_wp)))
    end function angles_of
 
-   !> What MINPACK calls
+   !> Callback of MINPACK
    subroutine evaluate(m, n, x, fvec, fjac, ldfjac, iflag)
       !> Number of residuals
       integer, intent(in) :: m
@@ -202,7 +201,7 @@ contains
       integer, intent(in) :: ldfjac
       !> Derivatives
       real(wp), intent(inout) :: fjac(ldfjac, n)
-      !> Residuals (1) or derivatives (2)
+      !> 1: set the residuals, 2: set the derivatives
       integer, intent(inout) :: iflag
 
       real(wp) :: inside(n)
@@ -219,8 +218,9 @@ contains
       end if
    end subroutine evaluate
 
-   !> Inverse of J' J, by the singular values of J with its columns scaled to length 1. What the
-   !> residuals hardly depend on, or do not, has a very large variance, the others keep theirs
+   !> Inverse of J' J from the singular values of J with its columns scaled to length 1.
+   !> Combinations of unknowns that the residuals do not determine get a very large variance; the
+   !> others keep theirs
    subroutine covariance(j, inverse, condition)
       !> Derivatives of the residuals, shape (m, n), m >= n
       real(wp), intent(in) :: j(:, :)
@@ -229,8 +229,8 @@ contains
       !> Largest over smallest singular value; huge where that is 0
       real(wp), intent(out) :: condition
 
-      !> Singular value that differences of ten digits can tell from 0, and what stands for the
-      !> length of a column of zeros
+      !> Smallest scaled singular value that derivatives of ten digits can tell from 0, and the
+      !> length that replaces that of a zero column
       real(wp), parameter :: least = 1.0e-9_wp, shortest = 1.0e-100_wp
       real(wp) :: scaled(size(j, 1), size(j, 2)), length(size(j, 2)), values(size(j, 2))
       real(wp) :: rows(size(j, 2), size(j, 2)), none(1, 1)

@@ -1,24 +1,24 @@
-!> Mittag-Leffler functions E_{a,b}(-u) of negative argument for 0 < a <= 1, with the relative
-!> accuracy of some units in the 15th digit for every u >= 0
+!> Mittag-Leffler functions E_{a,b}(-u) for 0 < a <= 1 and u >= 0, with a relative error of a few
+!> units in the 15th digit
 !>
-!> Along any contour that comes from minus infinity below the negative real axis and goes back
-!> above it, with powers cut along that axis,
+!> Along any contour that comes from minus infinity below the negative real axis and returns above
+!> it, with the branch cut of powers on that axis,
 !>
 !>     E_{a,b}(-u) = 1/(2 pi i) int exp(w) w^(a-b)/(w^a + u) dw.
 !>
 !> On the parabola w = mu (1 + i y)^2 the integrand is analytic for |Im y| < 1 and falls like
 !> exp(-mu y^2), so the midpoint rule converges exponentially, whatever u: see Weideman and
-!> Trefethen, Math. Comp. 76 (2007) 1341, and for these functions Garrappa, SIAM J. Numer. Anal.
-!> 53 (2015) 1350. As w does not depend on u, powers and exponentials of the nodes are taken once.
-!> The nodes below the axis are the conjugates of those above and are not needed.
+!> Trefethen, Math. Comp. 76 (2007) 1341, and for these functions Garrappa, SIAM J. Numer. Anal. 53
+!> (2015) 1350. The nodes w do not depend on u, so their powers and exponentials are computed once.
+!> The nodes below the axis are conjugates of those above and are left out.
 !>
-!> The integrals as they stand lose digits for large u, where E_{a,1}(-u) ~ 1/(u Gamma(1 - a)) is
-!> small for a near 1. What cancels there is what a = 1 leaves, of which the integral is known:
+!> Evaluated directly, the integral loses digits for large u, where E_{a,1}(-u) ~ 1/(u Gamma(1 - a))
+!> is small for a near 1. What cancels is the integrand for a = 1, whose integral is known:
 !>
 !>     1/(2 pi i) int exp(w) [w^(a-1)/(w^a + u) - 1/(w + u)] dw = E_a(-u) - exp(-u),
 !>
-!> and the bracket is u (w^(a-1) - 1)/((w^a + u)(w + u)), in which w^(a-1) - 1 is of the order of
-!> 1 - a and is computed without a difference.
+!> The bracket is u (w^(a-1) - 1)/((w^a + u)(w + u)), in which w^(a-1) - 1, of the order of 1 - a,
+!> is computed without a difference.
 module vcor_numeric_mittag_leffler
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
@@ -27,15 +27,15 @@ module vcor_numeric_mittag_leffler
 
    public :: mittag_leffler_rule_t, new_mittag_leffler_rule
 
-   !> Nodes above the axis
+   !> Number of nodes above the axis
    integer, parameter :: n = 26
-   !> Distance of the nodes in y: the rule is off by exp(-2 pi/step) = 6e-19, times 1e3 at most
+   !> Step of the nodes in y: the error of the rule is exp(-2 pi/step) = 6e-19, times 1e3 at most
    real(wp), parameter :: step = 0.15_wp
-   !> Vertex of the parabola: exp(w) falls to exp(-36.8) at the last node, and the largest term is
-   !> four times the sum only
+   !> Vertex of the parabola: exp(w) is exp(-36.8) at the last node, and the largest term is only
+   !> four times the sum
    real(wp), parameter :: mu = 2.6_wp
 
-   !> Rule for one exponent
+   !> Rule for one exponent a
    type :: mittag_leffler_rule_t
       private
       !> Exponent a
@@ -60,7 +60,7 @@ contains
 
    !> Build the rule for an exponent
    pure function new_mittag_leffler_rule(exponent) result(self)
-      !> Exponent a, 0 < a <= 1, which is not checked
+      !> Exponent a, 0 < a <= 1, not checked
       real(wp), intent(in) :: exponent
       type(mittag_leffler_rule_t) :: self
 
@@ -94,7 +94,7 @@ contains
       parts = [real(z, wp), aimag(z)]
    end function parts
 
-   !> E_a(-u), which falls from 1 to 0: exp(-u) in the limit a = 1, 1/(1 + u) in the limit a = 0
+   !> E_a(-u), which falls from 1 to 0: exp(-u) for a = 1, 1/(1 + u) in the limit a = 0
    elemental function value(self, u) result(y)
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite
@@ -105,7 +105,7 @@ contains
       real(wp) :: f, g, p(2), term(n)
       integer :: k
 
-      ! divided by 1 + u once and for all: no u is too large
+      ! numerator and denominator are divided by powers of 1 + u: no u overflows
       f = 1.0_wp/(1.0_wp + u)
       g = u*f
       do k = 1, n
@@ -115,12 +115,12 @@ contains
       y = exp(-u) + f*g*sum(term)
    end function value
 
-   !> u E_{a,a}(-u) = -x d/dx E_a(-x^a) with u = x^a, by the derivative of the integral of `value`
-   !> with respect to u. In
+   !> u E_{a,a}(-u) = -x d/dx E_a(-x^a), u = x^a, from the derivative of the integral of `value` by
+   !> u. In
    !>
    !>     u/(w^a + u)^2 w^(a-1) - u/(w + u)^2 = (w^(a-1) - 1)(u^2 - w^(a+1)) u/((w^a + u)(w + u))^2
    !>
-   !> nothing cancels either, and the factor a that is left keeps the digits for small a
+   !> nothing cancels either, and the factor a = `exponent` preserves relative accuracy for small a
    elemental function slope(self, u) result(y)
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite
@@ -144,8 +144,8 @@ contains
       y = self%exponent*(u*exp(-u) + f*g*sum(term))
    end function slope
 
-   !> E_{a,2}(-u), the mean of E_a(-x^a) from 0 to x with u = x^a. It falls like 1/u, for which
-   !> the integral as it stands is right
+   !> E_{a,2}(-u), the mean of E_a(-x^a) from 0 to x with u = x^a. It falls like 1/u, and its
+   !> integral loses no digits
    elemental function mean(self, u) result(y)
       class(mittag_leffler_rule_t), intent(in) :: self
       !> Argument, >= 0 and finite

@@ -1,5 +1,4 @@
-!> Monotone interpolation: piecewise cubics that fall where the data fall and are flat where they
-!> are flat
+!> Monotone interpolation by piecewise cubics, which rise, fall and are constant where the data are
 module vcor_numeric_monotone
    use vcor_kinds, only : wp
    implicit none
@@ -9,9 +8,9 @@ module vcor_numeric_monotone
 
 contains
 
-   !> Slopes at the points that make Hermite's cubics between them monotone: F. N. Fritsch and J.
-   !> Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021. Third order where the
-   !> data are smooth
+   !> Slopes at the points for which Hermite's cubics between them are monotone: F. N. Fritsch and
+   !> J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, doi:10.1137/0905021. Third order for
+   !> smooth data
    pure function monotone_slopes(x, y) result(slope)
       !> Points, strictly increasing, shape (n), n >= 2
       real(wp), intent(in) :: x(:)
@@ -30,7 +29,7 @@ contains
          slope(i) = 0.0_wp
          if (.not. (min(secant(i - 1), secant(i)) > 0.0_wp .or. &
              max(secant(i - 1), secant(i)) < 0.0_wp)) cycle
-         ! the harmonic mean, the nearer secant with more weight
+         ! weighted harmonic mean, with the larger weight on the secant of the shorter interval
          a = (h(i - 1) + 2.0_wp*h(i))/(3.0_wp*(h(i - 1) + h(i)))
          b = 1.0_wp - a
          slope(i) = secant(i - 1)*(secant(i)/(a*secant(i) + b*secant(i - 1)))
@@ -43,16 +42,16 @@ contains
       end if
    end function monotone_slopes
 
-   !> Slope at an end: that of the parabola through three points, within what keeps the cubic
+   !> Slope at an end: that of the parabola through three points, limited so that the cubic stays
    !> monotone
    pure function end_slope(h, further_h, secant, further_secant) result(slope)
       !> Length of the interval at the end
       real(wp), intent(in) :: h
-      !> Length of the one next to it
+      !> Length of the next interval
       real(wp), intent(in) :: further_h
       !> Secant of the interval at the end
       real(wp), intent(in) :: secant
-      !> Secant of the one next to it
+      !> Secant of the next interval
       real(wp), intent(in) :: further_secant
       real(wp) :: slope
 
@@ -64,11 +63,11 @@ contains
       end if
    end function end_slope
 
-   !> The interval that holds a point, by bisection
+   !> Interval that contains a point, by bisection
    pure function piece(x, at) result(i)
       !> Ends of the intervals, increasing, shape (n), n >= 2
       real(wp), intent(in) :: x(:)
-      !> The point; beyond the ends the first or the last interval is taken
+      !> The point; if outside, the first or the last interval is returned
       real(wp), intent(in) :: at
       !> x(i) <= at < x(i + 1)
       integer :: i
@@ -89,23 +88,23 @@ contains
 
    !> Hermite's cubic between two points
    elemental subroutine cubic(x0, x1, y0, y1, slope0, slope1, x, y, slope)
-      !> First point
+      !> First abscissa
       real(wp), intent(in) :: x0
-      !> Second point, > x0
+      !> Second abscissa, > x0
       real(wp), intent(in) :: x1
-      !> Value at the first
+      !> Value at x0
       real(wp), intent(in) :: y0
-      !> Value at the second
+      !> Value at x1
       real(wp), intent(in) :: y1
-      !> Slope at the first
+      !> Slope at x0
       real(wp), intent(in) :: slope0
-      !> Slope at the second
+      !> Slope at x1
       real(wp), intent(in) :: slope1
-      !> Where it is wanted
+      !> Argument
       real(wp), intent(in) :: x
-      !> Value there
+      !> Value at x
       real(wp), intent(out) :: y
-      !> Slope there
+      !> Slope at x
       real(wp), intent(out) :: slope
 
       real(wp) :: h, u, secant, c2, c3

@@ -2,13 +2,14 @@
 !>
 !> The active-set method of C. L. Lawson and R. J. Hanson, "Solving Least Squares Problems" (1974),
 !> chapter 23, on LAPACK's QR factorisation. All columns of A, in use or not, and b are kept
-!> multiplied by the same orthogonal matrix, such that the columns in use are triangular. So what
-!> stands before a column that comes or goes is not factorised again, and the gradient of the
-!> columns not in use is a scalar product each. No normal equations, which would halve the digits.
+!> All columns of A, in use (x > 0) or not, and b are kept multiplied by one orthogonal matrix that
+!> makes the columns in use triangular. When a column enters or leaves, only those after it are
+!> factorised again, and the gradient of an unused column is one scalar product. Normal equations,
+!> which would halve the digits, are not formed.
 !>
-!> It ends whatever the columns are. A column that is dependent on those in use is not taken in; nor
-!> is one whose coefficient rounding makes negative; the residual must fall from one feasible
-!> solution to the next; and the changes are counted.
+!> The iteration ends for any columns: a column is not taken in if it depends linearly on those in
+!> use, or if rounding makes its coefficient negative; the residual must fall from one feasible
+!> solution to the next; and the number of changes is limited.
 module vcor_numeric_nnls
    use vcor_kinds, only : wp
    use vcor_numeric_lapack, only : dgeqrf, dormqr, dtrtrs
@@ -17,9 +18,9 @@ module vcor_numeric_nnls
 
    public :: solve_nnls
 
-   !> A column is dependent on others if no more than this part of its length is orthogonal to them
+   !> Part of a column's length orthogonal to those in use below which it counts as dependent
    real(wp), parameter :: independent = 1.0e-11_wp
-   !> Part of |b| below which a gradient, for columns of length 1, is rounding
+   !> Gradient, over |b| and for columns of length 1, that is rounding
    real(wp), parameter :: rounding = 1.0e-14_wp
 
 contains
@@ -30,13 +31,13 @@ contains
       real(wp), intent(in) :: a(:, :)
       !> Right-hand side, finite, shape (m)
       real(wp), intent(in) :: b(:)
-      !> Solution, shape (n); exactly 0 where the bound holds
+      !> Solution, shape (n); exactly 0 where the bound is active
       real(wp), intent(out) :: x(:)
-      !> Columns that are likely in use, a guess that saves time; shape (n)
+      !> Columns that are probably in use, a guess that saves time; shape (n)
       logical, intent(in), optional :: start(:)
 
-      ! columns of length 1 and b as the last one, multiplied; their lengths; numbers of those in
-      ! use; those that are not to be taken
+      ! `q`: columns of length 1, then b, all times the orthogonal matrix; `set`: columns in use;
+      ! `blocked`: columns not to be taken in
       real(wp) :: q(size(b), size(x) + 1), length(size(x)), z(size(x))
       integer, allocatable :: set(:)
       logical :: blocked(size(x))
@@ -79,17 +80,17 @@ contains
       x = x/length
    end subroutine solve_nnls
 
-   !> Column not in use with the steepest descent
+   !> Unused column with the steepest descent
    pure function steepest(q, count, blocked, least) result(column)
       !> The columns, shape (m, n + 1)
       real(wp), intent(in) :: q(:, :)
-      !> Number of those in use
+      !> Number of columns in use
       integer, intent(in) :: count
-      !> Columns that are not to be taken, shape (n)
+      !> Columns that must not be taken in, shape (n)
       logical, intent(in) :: blocked(:)
-      !> Descent that counts as none
+      !> Smallest descent that counts
       real(wp), intent(in) :: least
-      !> Column; 0: none goes down
+      !> Column; 0 if the residual falls along none
       integer :: column
 
       real(wp) :: descent(size(blocked))
@@ -98,11 +99,11 @@ contains
       column = maxloc(descent, dim=1, mask=descent > least .and. .not. blocked)
    end function steepest
 
-   !> Take a column in, unless it depends on those in use
+   !> Take a column in, unless it depends linearly on those in use
    pure subroutine take_in(q, set, column)
       !> The columns, shape (m, n + 1)
       real(wp), intent(inout) :: q(:, :)
-      !> Numbers of those in use
+      !> Numbers of the columns in use
       integer, allocatable, intent(inout) :: set(:)
       !> Number of the column
       integer, intent(in) :: column
@@ -113,15 +114,15 @@ contains
       if (.not. abs(q(size(set), column)) > independent) set = set(:size(set) - 1)
    end subroutine take_in
 
-   !> Make the columns in use triangular from one of them on: QR of their lower rows
+   !> Make the columns in use triangular from a given one on, by QR of their lower rows
    pure subroutine make_triangular(q, set, first, last)
       !> The columns, shape (m, n + 1)
       real(wp), intent(inout) :: q(:, :)
-      !> Numbers of those in use
+      !> Numbers of the columns in use
       integer, intent(in) :: set(:)
-      !> Place in `set` of the first one that is not yet triangular
+      !> Place in `set` of the first column that is not yet triangular
       integer, intent(in) :: first
-      !> Last row in which they are not zero
+      !> Last row that is not zero in these columns
       integer, intent(in) :: last
 
       real(wp) :: used(first:last, first:size(set)), rows(first:last, size(q, 2))
@@ -138,13 +139,13 @@ contains
       q(first:last, :) = rows
    end subroutine make_triangular
 
-   !> Least squares with the columns in use
+   !> Least-squares solution with the columns in use
    pure function solution(q, set) result(z)
       !> The columns, shape (m, n + 1)
       real(wp), intent(in) :: q(:, :)
-      !> Numbers of those in use
+      !> Numbers of the columns in use
       integer, intent(in) :: set(:)
-      !> Solution, 0 for other columns, shape (n)
+      !> Solution, 0 for unused columns, shape (n)
       real(wp) :: z(size(q, 2) - 1)
 
       real(wp) :: triangle(size(set), size(set)), right(size(set))
@@ -159,16 +160,16 @@ contains
       z(set) = right
    end function solution
 
-   !> Go from a feasible solution towards least squares with the columns in use, and let go those
-   !> whose bound is in the way, until it is reached
+   !> Move from a feasible solution to the least-squares solution with the columns in use, and
+   !> remove the columns whose bounds stop it on the way
    pure subroutine make_feasible(q, set, x, z)
       !> The columns, shape (m, n + 1)
       real(wp), intent(inout) :: q(:, :)
-      !> Numbers of those in use
+      !> Numbers of the columns in use
       integer, allocatable, intent(inout) :: set(:)
-      !> A feasible solution, on return the one of least squares with the columns that are left
+      !> A feasible solution, on return the least-squares solution with the remaining columns
       real(wp), intent(inout) :: x(:)
-      !> Least squares with the columns in use
+      !> Least-squares solution with the columns in use
       real(wp), intent(inout) :: z(:)
 
       real(wp) :: part(size(x)), step
@@ -176,7 +177,7 @@ contains
       integer :: last
 
       do while (any(.not. z(set) > 0.0_wp))
-         ! part of the way to z that leaves each x >= 0; both may be 0
+         ! part of the way to z along which each x stays >= 0; x and z may both be 0
          part = 1.0_wp
          where (.not. z > 0.0_wp) part = x/max(x - z, tiny(1.0_wp))
          step = minval(part(set))

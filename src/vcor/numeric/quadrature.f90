@@ -1,5 +1,5 @@
-!> Quadrature rules for the integrands of relaxation moduli; Legendre polynomials and the nodes made
-!> from them
+!> Quadrature rules for integrals of relaxation moduli; Legendre polynomials, nodes of Gauss and
+!> Radau
 module vcor_numeric_quadrature
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
@@ -71,7 +71,7 @@ contains
       end do
    end subroutine gauss_nodes
 
-   !> Right Radau nodes on (0, 1]: the zeros of P_n - P_{n-1}, the last of them at 1
+   !> Right Radau nodes on (0, 1]: the zeros of P_n - P_{n-1}, of which the last is 1
    pure subroutine radau_nodes(node)
       !> Nodes in increasing order, shape (n), n >= 2
       real(wp), intent(out) :: node(:)
@@ -93,7 +93,7 @@ contains
       node(n) = 1.0_wp
    end subroutine radau_nodes
 
-   !> Rule on (0, 1) for integrands with a singularity at 0, integrable, of unknown kind: the
+   !> Rule on (0, 1) for integrands with an integrable singularity of unknown kind at 0: the
    !> double-exponential substitution of Takahasi and Mori, Publ. RIMS 9 (1974) 721,
    !> doi:10.2977/prims/1195192451
    pure subroutine endpoint_rule(node, weight)
@@ -110,27 +110,27 @@ contains
       allocate (node(-half:half), weight(-half:half))
       do i = -half, half
          y = h*real(i, wp)
-         ! the node is 1/(1 + exp(-pi sinh y)), tiny near 0 but never lost there
+         ! the node is 1/(1 + exp(-pi sinh y)): tiny near 0, but with full relative accuracy
          e = exp(-pi*sinh(y))
          node(i) = 1.0_wp/(1.0_wp + e)
          weight(i) = h*pi*cosh(y)*node(i)*(e*node(i))
       end do
    end subroutine endpoint_rule
 
-   !> Rule on (0, 1) for integrands that may be singular at 0 as above, and change at any time on
-   !> the logarithmic scale: the endpoint rule up to the first of some ends, Gauss-Legendre in the
-   !> logarithm between them
+   !> Rule from 0 to the last of some ends, for integrands that may be singular at 0 and may vary at
+   !> any scale of the logarithm: the endpoint rule up to the first end, Gauss-Legendre in the
+   !> logarithm between the others
    pure subroutine graded_rule(ends, node, weight, last)
-      !> Ends, > 0, increasing by factors of some 3, shape (m)
+      !> Ends, > 0, increasing by factors of about 3, shape (m)
       real(wp), intent(in) :: ends(:)
       !> Nodes in increasing order, shape (n)
       real(wp), allocatable, intent(out) :: node(:)
       !> Weights, shape (n)
       real(wp), allocatable, intent(out) :: weight(:)
-      !> Number of nodes up to each of the ends, shape (m)
+      !> Number of nodes below each end, shape (m)
       integer, intent(out), optional :: last(:)
 
-      ! of exp(-t) over a factor of 3.3 fourteen digits, of 1/(1 + c exp(-t)) nine at least
+      ! over a factor of 3.3 in t: fourteen digits of exp(-t), at least nine of 1/(1 + c exp(-t))
       integer, parameter :: order = 12
       real(wp), allocatable :: first_node(:), first_weight(:)
       real(wp) :: x(order), w(order), t(order), length
@@ -153,9 +153,9 @@ contains
       end do
    end subroutine graded_rule
 
-   !> Rules for int_0^inf f(x) sin(x) dx and int_0^inf f(x) cos(x) dx with f smooth on the
-   !> logarithmic scale and slowly decaying: T. Ooura and M. Mori, J. Comput. Appl. Math. 112
-   !> (1999) 229, doi:10.1016/S0377-0427(99)00223-X
+   !> Rules for int_0^inf f(x) sin(x) dx and int_0^inf f(x) cos(x) dx with f smooth in log(x) and
+   !> slowly decaying: T. Ooura and M. Mori, J. Comput. Appl. Math. 112 (1999) 229,
+   !> doi:10.1016/S0377-0427(99)00223-X
    pure subroutine fourier_rule(sine_node, sine_weight, cosine_node, cosine_weight)
       !> Nodes of the sine rule, shape (n)
       real(wp), allocatable, intent(out) :: sine_node(:)
@@ -166,8 +166,8 @@ contains
       !> Weights of the cosine rule, cos(x) included, shape (n)
       real(wp), allocatable, intent(out) :: cosine_weight(:)
 
-      ! towards x = 0 only phi itself falls, as exp(-b exp(-y)), and slowly: the cosine rule needs
-      ! nodes down to 1e-200 for a power law of exponent 0.9
+      ! towards x = 0 the terms fall only with phi, as exp(-a exp(-y)) with a small a: the cosine
+      ! rule needs nodes down to 1e-200 for a power law of exponent 0.9
       integer, parameter :: first = -110, last = 60
       real(wp), parameter :: h = 0.08_wp, m = pi/h
       real(wp) :: y, phi, slope, excess
@@ -179,7 +179,7 @@ contains
          y = h*real(i, wp)
          call substitution(y, m, phi, slope, excess)
          sine_node(i) = m*phi
-         ! m y is a multiple of pi: what is left of the sine at large x is that of the excess
+         ! m y is a multiple of pi, so the sine of a large x = m phi is +-that of m (phi - y)
          if (y > 0.0_wp) then
             sine_weight(i) = m*h*slope*real(1 - 2*modulo(i, 2), wp)*sin(m*excess)
          else
@@ -214,7 +214,7 @@ contains
       a = b/sqrt(1.0_wp + m*log(1.0_wp + m)/(4.0_wp*pi))
       g = 2.0_wp*y + a*(1.0_wp - exp(-y)) + b*(exp(y) - 1.0_wp)
       dg = 2.0_wp + a*exp(-y) + b*exp(y)
-      ! with exp(-|g|), which cannot overflow
+      ! only exp(-|g|) is computed: it cannot overflow
       if (abs(y) < 1.0e-8_wp) then
          phi = 1.0_wp/dg
          slope = 0.5_wp - 0.5_wp*(b - a)/dg**2

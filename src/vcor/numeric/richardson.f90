@@ -7,27 +7,28 @@ module vcor_numeric_richardson
 
    public :: richardson_t, richardson
 
-   !> What three values tell
+   !> What three values show
    type :: richardson_t
-      !> Order of convergence that they show; NaN where they show none, being equal or erratic
+      !> Observed order of convergence; NaN if they are equal or do not converge monotonically
       real(wp) :: order = 0.0_wp
-      !> Limit for steps of no length
+      !> Extrapolated limit for zero step
       real(wp) :: limit = 0.0_wp
-      !> Estimate of the error of the last value, on the safe side
+      !> Conservative estimate of the error of the last value
       real(wp) :: error = 0.0_wp
    end type richardson_t
 
 contains
 
-   !> Extrapolate. Orders outside of `lowest` and `highest` are chance: the limit is then taken with
-   !> the nearer of the two. The error is taken with an order between one and two, one where they
-   !> show none, times the safety factor for three grids of P. J. Roache, J. Fluids Eng. 116 (1994)
-   !> 405, doi:10.1115/1.2910291. It is not below what the larger steps say of it with order two,
-   !> as the last two values may agree by chance. Values that are not finite tell nothing: NaN
+   !> Extrapolate. The limit is taken with the observed order, limited to `lowest` and `highest`,
+   !> beyond which it is chance. The error is taken with the observed order limited to 1 and 2,
+   !> times P. J. Roache's safety factor for three grids, J. Fluids Eng. 116 (1994) 405,
+   !> doi:10.1115/1.2910291, and is at least what the first difference gives with order 2, as the
+   !> last two values may agree by chance. Without monotone convergence it is the last difference,
+   !> or an eighth of the first. Values that are not finite give NaN
    pure function richardson(value) result(found)
       !> Values with steps h, h/2 and h/4
       real(wp), intent(in) :: value(3)
-      !> What they tell
+      !> Order, limit and error
       type(richardson_t) :: found
 
       real(wp), parameter :: lowest = 0.5_wp, highest = 4.0_wp, best_ratio = 8.0_wp
@@ -45,7 +46,7 @@ contains
       found%order = ieee_value(found%order, ieee_quiet_nan)
       found%limit = value(3)
       found%error = max(abs(second), abs(first)/best_ratio)
-      ! differences of different signs, or one of them none at all, are no convergence
+      ! the differences have different signs, or one is zero: no convergence
       if (.not. min(first, second) > 0.0_wp .and. .not. max(first, second) < 0.0_wp) return
       ratio = min(max(first/second, linear), square)
       found%error = max(safety*abs(second)/(ratio - 1.0_wp), &

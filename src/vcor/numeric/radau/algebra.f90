@@ -1,18 +1,18 @@
-!> Linear algebra of the size of a collocation panel: dense matrices, and functions of them
+!> Linear algebra of a collocation panel: small dense matrices and their functions
 !>
-!> For the eight equations of a panel, solved some dozen times per impact, the call of a library
-!> routine would cost more than the elimination; loops over columns of a length that the compiler
-!> knows become a few hundred vector instructions. An inverse takes a half more operations than
-!> factors do, but substitution is a chain in which each of sixteen steps waits for the one before,
-!> a product with the inverse is none.
+!> The eight equations of a panel are solved some dozen times per impact. A call of a library
+!> routine would cost more than the elimination; loops over columns of a length known to the
+!> compiler become a few hundred vector instructions. An inverse takes more operations than a
+!> factorisation, but a product with it has no chain of dependent steps, while each of the sixteen
+!> steps of a substitution waits for the one before.
 !>
-!> Rows are not interchanged: the matrices are Jacobians of Newton's method, unit matrix plus
-!> collocation matrix, whose residuals are evaluated afresh in each iteration. That makes it an
-!> iterative refinement, to which some lost digits of the inverse do no harm.
+!> There is no pivoting. The matrices are Jacobians of Newton's method, unit matrix plus collocation
+!> matrix, and the residuals are evaluated anew in each iteration. This is an iterative refinement,
+!> which tolerates lost digits in the inverse.
 !>
-!> A function of a diagonalised matrix is one number a + b j per pair of its eigenvalues, with
-!> j^2 = -1 for complex and +1 for real ones, stored as a vector: the parts without j, then those
-!> with j (`panel_map_t` of `vcor_numeric_radau_collocation`).
+!> A function of a diagonalised matrix is one number a + b j per pair of eigenvalues, with j^2 = -1
+!> for complex pairs and +1 for real ones, stored as a vector: first all a, then all b
+!> (`panel_map_t` of `vcor_numeric_radau_collocation`).
 module vcor_numeric_radau_algebra
    use vcor_kinds, only : wp
    implicit none
@@ -21,11 +21,11 @@ module vcor_numeric_radau_algebra
    public :: width, pairs
    public :: invert, apply, apply_product, constant, times, ratio
 
-   !> Largest number of stages, and the length of all arrays over stages: those of a rule with fewer
-   !> are padded with zeros, so that the innermost loops have a length that the compiler knows.
-   !> The eigenvectors' condition grows tenfold per stage; with eight, they cost four digits
+   !> Largest number of stages, and the length of all arrays over stages: arrays of rules with fewer
+   !> stages are padded with zeros, so that the innermost loops have a length known to the compiler.
+   !> The condition of the eigenvectors grows tenfold per stage; with eight, it costs four digits
    integer, parameter :: width = 8
-   !> Number of pairs of eigenvalues of as many stages
+   !> Number of pairs of eigenvalues of `width` stages
    integer, parameter :: pairs = width/2
 
    integer :: i_row, i_column
@@ -35,7 +35,7 @@ module vcor_numeric_radau_algebra
 
 contains
 
-   !> Invert a matrix by the elimination of Gauss and Jordan
+   !> Invert a matrix by Gauss-Jordan elimination without pivoting
    pure subroutine invert(matrix, regular)
       !> The matrix, on return its inverse
       real(wp), intent(inout) :: matrix(width, width)
@@ -55,7 +55,7 @@ contains
          matrix(k, k) = 1.0_wp
          do j = 1, width
             factor = matrix(k, j)*pivot
-            ! row k becomes the factors
+            ! row k, with others = 0 and direction = 1, becomes the scaled pivot row
             do i = 1, width
                matrix(i, j) = matrix(i, j)*others(i, k) + direction(i)*factor
             end do
@@ -64,7 +64,7 @@ contains
       regular = .true.
    end subroutine invert
 
-   !> Product of matrix and vector, written out: so the sums stay in registers
+   !> Product of matrix and vector, written out so that the sums stay in registers
    pure function apply(a, x) result(y)
       !> Matrix
       real(wp), intent(in) :: a(width, width)
@@ -84,14 +84,14 @@ contains
    !> The same real number for all pairs
    pure function constant(value) result(c)
       real(wp), intent(in) :: value
-      !> Vector of it
+      !> The number of each pair
       real(wp) :: c(width)
 
       c(:pairs) = value
       c(pairs + 1:) = 0.0_wp
    end function constant
 
-   !> Products
+   !> Products of the numbers of pairs
    pure function times(square, a, b) result(c)
       !> j^2
       real(wp), intent(in) :: square(pairs)
@@ -112,9 +112,9 @@ contains
       end do
    end function times
 
-   !> Product of a matrix and the products of numbers of pairs
+   !> Product of a matrix with the products of two sets of numbers of pairs
    pure function apply_product(matrix, square, a, b) result(y)
-      !> Matrix, from numbers of pairs
+      !> Matrix that takes numbers of pairs
       real(wp), intent(in) :: matrix(width, width)
       !> j^2
       real(wp), intent(in) :: square(pairs)
@@ -128,13 +128,13 @@ contains
       y = apply(matrix, times(square, a, b))
    end function apply_product
 
-   !> Quotients
+   !> Quotients of the numbers of pairs
    pure function ratio(square, a, b) result(c)
       !> j^2
       real(wp), intent(in) :: square(pairs)
       !> Numerators
       real(wp), intent(in) :: a(width)
-      !> Denominators, the product of whose eigenvalues is not 0
+      !> Denominators, with nonzero eigenvalues
       real(wp), intent(in) :: b(width)
       !> Quotients
       real(wp) :: c(width)

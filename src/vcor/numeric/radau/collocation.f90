@@ -1,14 +1,14 @@
-!> Radau IIA collocation with the integration matrices diagonalised once and for all
+!> Radau IIA collocation with diagonalised integration matrices
 !>
 !> On a panel of time the independent variable is theta in [0, 1] with the quadratic map
 !>
 !>     t = t_n + scale*(slope*theta + bend*theta**2)
 !>
-!> so that an integral from the start of the panel to the stages is the product with scale*B,
-!> B = A diag(slope + 2 bend c), A the Radau IIA matrix and c its nodes. A step of length h in
-!> x = sqrt(t) from x = n h is scale = h^2, slope = 2 n, bend = 1; a step in t itself is slope = 1,
-!> bend = 0. Both families have few members, hence B = V diag(lambda) V^-1 is made in advance,
-!> and any function of scale*B costs a handful of scalar operations per eigenvalue.
+!> The integrals from the start of the panel to the stages are the product of scale*B and the
+!> integrand at the stages, B = A diag(slope + 2 bend c), with the Radau IIA matrix A and its nodes
+!> c. A step of length h in x = sqrt(t) from x = n h has scale = h^2, slope = 2 n, bend = 1; a step
+!> in t has slope = 1, bend = 0. There are few such matrices, so each B = V diag(lambda) V^-1 is
+!> diagonalised once, and any function of scale*B costs a few scalar operations per eigenvalue.
 !>
 !> Radau IIA: E. Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed. (1996),
 !> section IV.5.
@@ -25,21 +25,21 @@ module vcor_numeric_radau_collocation
    public :: collocation_t, panel_map_t, new_collocation
    public :: closing, linear, most_steps
 
-   !> Index of the map of a step in t
+   !> Index of the map for a step in t
    integer, parameter :: linear = -1
-   !> Index of the map of a step in the square root of the time that is left at its end
+   !> Index of the map for a step in the square root of the time left to the end of the panel
    integer, parameter :: closing = linear - 1
-   !> Most steps in x = sqrt(t), from x = 0, h, .. most_steps*h, then steps in t follow: each takes
-   !> 0.1 ms at the start of the program; of 7,000 panels of the tests nine would begin beyond 5 h
+   !> Steps in x = sqrt(t) may start at x = 0, h, .. most_steps*h; later steps are in t. Each map
+   !> takes 0.1 ms at the start of the program; of the 7,000 panels in the tests only nine would
+   !> start beyond 5 h
    integer, parameter :: most_steps = 5
 
    !> Integration matrix B = V diag(lambda) V^-1 of one map, diagonalised
    !>
    !> Eigenvalues are kept as pairs a + b j and a - b j: complex ones with j^2 = -1, real ones two
-   !> by two with j^2 = +1. So a function of B is one number f = a + b j per pair, stored as a
-   !> vector of `width`: the parts without j, then those with j. `right` and `left` are real
-   !> matrices: f(B) u is the product of `right` with the products, those of
-   !> `vcor_numeric_radau_algebra`, of f and the numbers `left` u
+   !> by two with j^2 = +1. A function f of B is then one number f = a + b j per pair, stored as a
+   !> vector of `width`: first all a, then all b. `right` and `left` are real matrices: f(B) u is
+   !> `right` times the pairwise product (`times` of `vcor_numeric_radau_algebra`) of f and `left` u
    type :: panel_map_t
       !> Linear coefficient of the map
       real(wp) :: slope = 0.0_wp
@@ -49,11 +49,11 @@ module vcor_numeric_radau_collocation
       real(wp) :: matrix(width, width) = 0.0_wp
       !> j^2 of each pair
       real(wp) :: square(pairs) = 1.0_wp
-      !> Eigenvalues; pairs beyond the stages are 1 and have no vectors
+      !> Eigenvalues; unused pairs are 1 and have no vectors
       real(wp) :: eigenvalue(width) = [spread(1.0_wp, 1, pairs), spread(0.0_wp, 1, pairs)]
-      !> From the numbers of the pairs to the stages
+      !> Matrix from the numbers of the pairs to the stages
       real(wp) :: right(width, width) = 0.0_wp
-      !> From the stages to the numbers of the pairs
+      !> Matrix from the stages to the numbers of the pairs
       real(wp) :: left(width, width) = 0.0_wp
       !> Row of `right` for the last stage
       real(wp) :: last(width) = 0.0_wp
@@ -69,21 +69,21 @@ module vcor_numeric_radau_collocation
       real(wp) :: node(width) = 0.0_wp
       !> Quadrature weights of the nodes
       real(wp) :: weight(width) = 0.0_wp
-      !> Nodes with the start of the panel before them
+      !> Start of the panel, 0, followed by the nodes
       real(wp) :: point(0:width) = 0.0_wp
       !> Barycentric weights of `point`
       real(wp) :: barycentric(0:width) = 0.0_wp
-      !> Extrapolation from the points before the last one to the end
+      !> Extrapolation to the end of the panel from all points but the last
       real(wp) :: end_weight(0:width) = 0.0_wp
-      !> From values at `point` to the coefficients of 1, theta, theta^2 ...; five digits are lost
+      !> From values at `point` to the coefficients of 1, theta, theta^2 ...; costs five digits
       real(wp) :: power(0:width, 0:width) = 0.0_wp
       !> Differentiation matrix on `point`
       real(wp) :: derivative(0:width, 0:width) = 0.0_wp
-      !> What settles at the end of the map `closing`
+      !> Exponentials at the end of a panel with the map `closing`
       type(settling_t) :: settling
-      !> Maps by index n >= 0, for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
-      !> `closing` for one in sqrt(time left). (Of two allocatable ones in a solver that is copied
-      !> gfortran 12 releases one.)
+      !> Maps by index: n >= 0 for a step in x = sqrt(t) from x = n h, `linear` for a step in t,
+      !> `closing` for one in sqrt(time left). (The size is fixed because gfortran 12, when it
+      !> copies a solver with two allocatable arrays of maps, releases only one of them.)
       type(panel_map_t) :: map(closing:most_steps)
    contains
       procedure :: times, interpolate, extend, slopes, crossing
@@ -92,7 +92,7 @@ module vcor_numeric_radau_collocation
 
 contains
 
-   !> Build a rule and the diagonalised maps
+   !> Build a rule and its diagonalised maps
    subroutine new_collocation(self, stages, error)
       type(collocation_t), intent(out) :: self
       !> Number of stages, 2 .. width
@@ -128,7 +128,7 @@ contains
       end do
    end subroutine new_collocation
 
-   !> Radau IIA matrix: A_ij = int_0^{c_i} l_j, through Legendre polynomials, whose integrals are
+   !> Radau IIA matrix, A_ij = int_0^{c_i} l_j, by way of Legendre polynomials, whose integrals are
    !> known: int_{-1}^{x} P_k = (P_{k+1} - P_{k-1})/(2k + 1)
    subroutine integration_matrix(node, matrix, error)
       !> Nodes in (0, 1], shape (n)
@@ -150,7 +150,7 @@ contains
             integral(k + 1, i) = 0.5_wp*(p(k + 1) - p(k - 1))/real(2*k + 1, wp)
          end do
       end do
-      ! A value^T = integral^T, with the transposes stored: value (A^T) = integral
+      ! A value^T = integral^T; the arrays hold the transposes, so solve value (A^T) = integral
       call dgesv(n, n, value, n, pivot, integral, n, info)
       if (info /= 0) then
          call raise(error, error_internal, 'collocation: the Radau matrix is singular')
@@ -204,7 +204,7 @@ contains
       other = 0
       do j = 1, n
          if (wi(j) > 0.0_wp) then
-            ! u = x Re v + y Im v is the real part of (x - i y) v
+            ! the real part of (x - i y) v is x Re v + y Im v
             m = m + 1
             map%square(m) = -1.0_wp
             map%eigenvalue([m, pairs + m]) = [wr(j), wi(j)]
@@ -221,7 +221,7 @@ contains
             other = 0
          end if
       end do
-      ! a real eigenvalue that is left over
+      ! an odd number of real eigenvalues leaves one over
       if (other > 0) then
          m = m + 1
          map%eigenvalue(m) = wr(other)
@@ -233,12 +233,12 @@ contains
 
    contains
 
-      !> Make a pair of two real eigenvalues a + b and a - b: x v + y w = (x + y)/2 (v + w)
-      !> + (x - y)/2 (v - w)
+      !> Combine two real eigenvalues into a pair a + b and a - b: x v + y w = (x + y)/2 (v + w) +
+      !> (x - y)/2 (v - w)
       subroutine join(first, second)
-         !> Number of one
+         !> Number of the first eigenvalue
          integer, intent(in) :: first
-         !> Number of the other one
+         !> Number of the second eigenvalue
          integer, intent(in) :: second
 
          m = m + 1
@@ -265,7 +265,7 @@ contains
       end do
    end function barycentric_weights
 
-   !> Coefficients of the powers in Lagrange's polynomials, one to a column
+   !> Coefficients of the Lagrange polynomials in powers of x, one polynomial per column
    pure function power_matrix(x) result(power)
       !> Nodes, all different, shape (0:n)
       real(wp), intent(in) :: x(0:)
@@ -283,7 +283,7 @@ contains
       end do
    end function power_matrix
 
-   !> Differentiation matrix: the derivative at node i of the polynomial with values y is row i . y
+   !> Differentiation matrix: row i times the values is the derivative of their polynomial at node i
    pure function differentiation_matrix(x, w) result(d)
       !> Nodes, shape (n)
       real(wp), intent(in) :: x(:)
@@ -319,19 +319,19 @@ contains
       end associate
    end function times
 
-   !> Value of the polynomial that takes the given values at the points
+   !> Value of the polynomial through given values at the points
    pure function interpolate(self, value, theta) result(y)
       class(collocation_t), intent(in) :: self
       !> Values at `point`, shape (0:stages)
       real(wp), intent(in) :: value(0:)
-      !> Argument, 0 .. 1, or somewhat beyond to extrapolate
+      !> Argument, in [0, 1], or somewhat beyond to extrapolate
       real(wp), intent(in) :: theta
       real(wp) :: y
 
       real(wp) :: before(0:width), after
       integer :: j
 
-      ! Lagrange's form: the products of all differences before and after a point
+      ! Lagrange's form, with the products of the differences before and after each point
       before(0) = 1.0_wp
       do j = 1, self%stages
          before(j) = before(j - 1)*(theta - self%point(j - 1))
@@ -344,8 +344,8 @@ contains
       end do
    end function interpolate
 
-   !> Values of the polynomial that takes the given values at the points, for many arguments and
-   !> to ten digits: a guess
+   !> Values of the polynomial through given values at the points, for many arguments and with ten
+   !> digits: an initial guess
    pure function extend(self, value, theta) result(y)
       class(collocation_t), intent(in) :: self
       !> Values at `point`
@@ -365,8 +365,7 @@ contains
       end do
    end function extend
 
-   !> Coefficients of 1, theta, theta^2 ... of the polynomial that takes the given values at the
-   !> points
+   !> Coefficients of 1, theta, theta^2 ... of the polynomial through given values at the points
    pure function powers(self, value) result(c)
       class(collocation_t), intent(in) :: self
       !> Values at `point`
@@ -377,7 +376,7 @@ contains
       c = combined(self%power, value)
    end function powers
 
-   !> Product of a matrix and a vector of values at the points, written out as in `apply`
+   !> Product of a matrix and values at the points, written out as in `apply`
    pure function combined(a, x) result(y)
       !> Matrix
       real(wp), intent(in) :: a(0:width, 0:width)
@@ -394,7 +393,7 @@ contains
       end do
    end function combined
 
-   !> Derivative by theta, at the points, of the polynomial that takes the given values there
+   !> Derivative by theta, at the points, of the polynomial through given values there
    pure function slopes(self, value) result(slope)
       class(collocation_t), intent(in) :: self
       !> Values at `point`
@@ -405,17 +404,17 @@ contains
       slope = combined(self%derivative, value)
    end function slopes
 
-   !> Zero of the polynomial with the given values between two arguments where its signs differ,
-   !> by the Illinois method, to ten digits; the upper one where they do not
+   !> Zero of the polynomial through given values, in an interval where it changes sign, by the
+   !> Illinois method, to ten digits; the upper end if the signs are equal
    pure function crossing(self, value, lower, upper, tolerance) result(theta)
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
-      !> Lower end of the bracket
+      !> Lower end of the interval
       real(wp), intent(in) :: lower
-      !> Upper end of the bracket
+      !> Upper end of the interval
       real(wp), intent(in) :: upper
-      !> Last step of the iteration, the error is less
+      !> Iteration ends with a step of this size; the error is smaller
       real(wp), intent(in) :: tolerance
       !> Zero
       real(wp) :: theta
@@ -448,7 +447,7 @@ contains
 
    contains
 
-      !> Value of the polynomial, by a scheme whose products do not wait for each other
+      !> Value of the polynomial; the order of the products leaves few dependent steps
       pure function at(x) result(y)
          !> Argument
          real(wp), intent(in) :: x

@@ -1,22 +1,23 @@
-!> What decaying exponentials remember at the end of a panel with a stretched time
+!> Decaying exponentials at the end of a panel whose map of time is stationary there
 !>
-!> On a panel with t = t_end - D y^2, y from 1 to 0, collocation says nothing about an exponential
-!> that settles in it: the map stands still at the end. So the integral
+!> On a panel with t = t_end - D y^2, y from 1 to 0, dt/dy = 0 at the end, so collocation does not
+!> resolve an exponential that decays within the panel. The integral
 !>
 !>     w = w_start exp(-a) + int exp(-l (t_end - t)) x'(t) dt
 !>       = w_start exp(-a) - int_0^1 exp(-a y^2) dx/dy dy,   a = l D
 !>
-!> is taken of the polynomial x(y) itself, by the moments m_k = int_0^1 exp(-a y^2) y^k dy, for
-!> which integration by parts gives 2 a m_(k+2) = (k + 1) m_k - exp(-a). That is a stable recursion
-!> upwards where a is large, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards where it is small,
-!> from series of positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
+!> is taken exactly for the collocation polynomial x(y), with the moments m_k = int_0^1 exp(-a y^2)
+!> y^k dy. Integration by parts gives 2 a m_(k+2) = (k + 1) m_k - exp(-a), which is stable upwards
+!> for large a, from m_0 = sqrt(pi/a)/2 erf(sqrt(a)), and downwards for small a, from series of
+!> positive terms, m_k = exp(-a) sum_i (2 a)^i/((k + 1)(k + 3) .. (k + 1 + 2 i)).
 !>
-!> As time stands still at the end, so does x: dx/dy = 0 at y = 0, and collocation has it so. What
-!> the values leave of that slope is rounding. Fast exponentials, whose m_0 falls as a^(-1/2) only,
-!> would feel it most of all; it is left out.
+!> As dt/dy = 0 at the end, dx/dy = 0 at y = 0, in collocation too. What the values give for this
+!> slope is rounding. It is left out, because fast exponentials, whose m_0 falls only as a^(-1/2),
+!> would feel it most.
 !>
-!> The powers of y come from Legendre polynomials. In one step from the values they would have
-!> errors of their own, five digits of the 16; so they have those of a polynomial next to this one.
+!> The powers of y come from an expansion in Legendre polynomials. Computed from the values in one
+!> step, their coefficients would have independent errors, five digits of 16; this way they belong
+!> to a polynomial that differs from x(y) by rounding.
 module vcor_numeric_radau_settling
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
@@ -26,16 +27,16 @@ module vcor_numeric_radau_settling
 
    public :: settling_t, new_settling
 
-   !> Highest degree of a polynomial's derivative
+   !> Highest degree of dx/dy
    integer, parameter :: highest = 7
 
-   !> Rule for polynomials that are given at some points
+   !> Rule for polynomials given by their values at fixed points
    type :: settling_t
       private
-      !> From the values at the points to the coefficients of -dx/dy in Legendre polynomials
-      !> P_k(2 y - 1); zero beyond the points
+      !> From the values at the points to the coefficients of -dx/dy in Legendre polynomials P_k,
+      !> k < n, of 2 y - 1
       real(wp) :: legendre(0:highest, 0:highest + 1) = 0.0_wp
-      !> Coefficients of y^k in them, shape (k, polynomial)
+      !> Coefficient of y^k in P_j(2 y - 1), shape (k, j)
       real(wp) :: power(0:highest, 0:highest) = 0.0_wp
    contains
       procedure :: total, total_of_pairs
@@ -72,11 +73,11 @@ contains
       end do
    end subroutine new_settling
 
-   !> Derivative of one of Lagrange's polynomials
+   !> Derivative of a Lagrange polynomial
    pure function slope_of_basis(point, i, y) result(slope)
       !> Points, shape (0:n)
       real(wp), intent(in) :: point(0:)
-      !> Index of the one at which it is 1
+      !> Index of the point at which the polynomial is 1
       integer, intent(in) :: i
       !> Argument
       real(wp), intent(in) :: y
@@ -97,7 +98,7 @@ contains
       end do
    end function slope_of_basis
 
-   !> Sum of G_k w_k at the end
+   !> Sum of G_k w_k at the end of the panel
    pure function total(self, moduli, rates, scale, start, x)
       class(settling_t), intent(in) :: self
       !> Moduli G_k, shape (modes)
@@ -127,7 +128,7 @@ contains
       end do
    end function total
 
-   !> Sum of Re(G_k w_k) at the end
+   !> Sum of Re(G_k w_k) at the end of the panel
    pure function total_of_pairs(self, moduli, rates, scale, start, x) result(total)
       class(settling_t), intent(in) :: self
       !> One modulus G_k of each pair, shape (pairs)
@@ -183,12 +184,12 @@ contains
       !> a, >= 0
       real(wp), intent(in) :: a
       real(wp), intent(out) :: moment(0:highest)
-      !> exp(-a), 0 where that is nothing
+      !> exp(-a), or 0 where it is below rounding
       real(wp), intent(out) :: decay
 
-      ! least a for the recursion upwards, which then loses no digit, and largest one for exp(-a)
+      ! upwards no digit is lost from `smallest` on; exp(-a) is rounding from `largest` on
       real(wp), parameter :: smallest = 1.0_wp, largest = 40.0_wp
-      ! terms of the series for as many digits at `smallest`
+      ! terms that the series needs up to a = `smallest` for full accuracy
       integer, parameter :: terms = 15
       real(wp), parameter :: half_root_of_pi = 0.5_wp*sqrt(pi)
       integer :: number
@@ -227,8 +228,8 @@ contains
       end if
    end subroutine find_moments
 
-   !> The same moments for a complex a: from series where it is small, else upwards from m_0 with
-   !> Laplace's continued fraction of erfc
+   !> The same moments for a complex a: downwards from series where |a| is small, else upwards from
+   !> m_0 by Laplace's continued fraction of erfc
    pure subroutine find_complex_moments(a, moment, decay)
       !> a, real part >= 0
       complex(wp), intent(in) :: a
@@ -236,8 +237,8 @@ contains
       !> exp(-a)
       complex(wp), intent(out) :: decay
 
-      ! where the fraction takes over, and as many terms of both as give 12 digits: those of the
-      ! series are a^i/i!, the fraction gains by the root of their number times a
+      ! |a| from which the fraction is used. Both have the terms that 12 digits need: one of the
+      ! series is about a^i/i!, and the fraction converges with the root of number times |a|
       real(wp), parameter :: smallest = 6.0_wp
       complex(wp) :: series(2), fraction, root
       integer :: i, k
