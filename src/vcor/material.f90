@@ -1,5 +1,5 @@
-!> Materials by the name of their model. A new model is a file of its own under material/ and its
-!> lines here: its name, its parameters, and how it is built from values
+!> Factory of materials by the name of their model. A new model is a file under material/ and its
+!> lines here: name, parameters, and how it is built from values
 module vcor_material
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
@@ -24,9 +24,9 @@ module vcor_material
    !> Names of the models, separated by blanks
    character(len=*), parameter :: models = &
       'rigid elastic sls prony power_law cerf mittag_leffler table'
-   !> Those that can be fitted to data
+   !> Models that can be fitted to data
    character(len=*), parameter :: identifiable_models = 'prony sls power_law cerf mittag_leffler'
-   !> Those whose times a temperature can shift
+   !> Models whose times depend on temperature
    character(len=*), parameter :: relaxing_models = identifiable_models//' table'
 
    !> A parameter and its model
@@ -50,10 +50,10 @@ module vcor_material
       (model_parameter_t('table', table_parameters(i)), i=1, size(table_parameters)), &
       (model_parameter_t('rigid', rigid_parameters(i)), i=1, size(rigid_parameters))]
 
-   !> Most values of a description: more than there are names
+   !> Maximum number of values: at least the number of different names
    integer, parameter :: most_values = size(model_parameters) + size(shift_parameters) + 1
 
-   !> A value, or a list of them
+   !> A value: a number or a list
    type :: value_t
       !> Name of the parameter
       character(len=len(density%name)) :: name = ''
@@ -63,25 +63,25 @@ module vcor_material
       real(wp), allocatable :: list(:)
    end type value_t
 
-   !> What describes a material of any model: values by the names of its parameters
+   !> Description of a material of any model: values by the names of parameters
    type :: material_data_t
-      !> Name that cases call it by
+      !> Name in the case
       character(len=:), allocatable :: name
       !> One of `models`
       character(len=:), allocatable :: model
-      !> Whether the moduli are shear moduli G, of which E = 2 (1 + nu) G is made
+      !> Whether the moduli are shear moduli G, converted to E = 2 (1 + nu) G
       logical :: is_shear = .false.
-      !> What a temperature does to it; the constants of its law are values
+      !> Effect of temperature; the constants of its law are among the values
       type(shift_t) :: shift
       !> Temperature [K]; 0: the reference temperature
       real(wp) :: temperature = 0.0_wp
-      !> The first name that no model has a parameter of; not allocated if there is none
+      !> First name that is no parameter of any model; not allocated if there is none
       character(len=:), allocatable, private :: unknown
       !> Number of values
       integer, private :: n = 0
       !> The values
       type(value_t), private :: value(most_values)
-      !> The points of a table as a material, once they were fitted
+      !> Material made from the points of a table, once they have been fitted
       type(tabulated_t), allocatable, private :: fitted
    contains
       procedure :: set
@@ -100,18 +100,18 @@ contains
    pure function parameters_of(model) result(parameters)
       !> Name of the model
       character(len=*), intent(in) :: model
-      !> Its parameters; none where there is no such model
+      !> Its parameters; empty for an unknown model
       type(parameter_t), allocatable :: parameters(:)
 
       allocate (parameters, source=pack(model_parameters%parameter, &
          model_parameters%model == model))
    end function parameters_of
 
-   !> Place of a value
+   !> Index of a value
    pure function place_of(self, name) result(place)
       class(material_data_t), intent(in) :: self
       character(len=*), intent(in) :: name
-      !> Place, 0 where there is none
+      !> Index, 0 if it has not been set
       integer :: place
 
       do place = self%n, 1, -1
@@ -119,11 +119,11 @@ contains
       end do
    end function place_of
 
-   !> Find the place of a value, a new one where there is none yet
+   !> Find the index of a value; a name that is new gets one
    pure subroutine find(self, name, place)
       class(material_data_t), intent(inout) :: self
       character(len=*), intent(in) :: name
-      !> Place, 0 where no model has such a parameter
+      !> Index, 0 if no model has such a parameter
       integer, intent(out) :: place
 
       place = self%place_of(name)
@@ -141,7 +141,7 @@ contains
    !> Set a number by the name of its parameter
    pure subroutine set(self, name, value)
       class(material_data_t), intent(inout) :: self
-      !> `density`, or a parameter of any model; otherwise `new_material` fails
+      !> `density`, or a parameter of any model; for other names `new_material` fails
       character(len=*), intent(in) :: name
       !> Its value, in the unit of the parameter
       real(wp), intent(in) :: value
@@ -155,14 +155,14 @@ contains
    !> Set a list by the name of its parameter; the points of a table are lists `times` and `moduli`
    pure subroutine set_list(self, name, list)
       class(material_data_t), intent(inout) :: self
-      !> A parameter of any model; otherwise `new_material` fails
+      !> A parameter of any model; for other names `new_material` fails
       character(len=*), intent(in) :: name
       !> Its values, shape (n)
       real(wp), intent(in) :: list(:)
 
       integer :: place
 
-      ! the fit of a table's points stands where they are the same again
+      ! the fit of a table remains valid if its points do not change
       if (allocated(self%fitted)) then
          if (is_same(self%list(name), list)) return
          deallocate (self%fitted)
@@ -173,9 +173,9 @@ contains
 
    !> Whether two lists are the same
    pure function is_same(one, other) result(same)
-      !> One, shape (n)
+      !> First list, shape (n)
       real(wp), intent(in) :: one(:)
-      !> The other, shape (m)
+      !> Second list, shape (m)
       real(wp), intent(in) :: other(:)
       logical :: same
 
@@ -183,8 +183,8 @@ contains
       if (same) same = .not. any(abs(one - other) > 0.0_wp)
    end function is_same
 
-   !> Fit the points of a table once for all temperatures; without this `new_material` fits them
-   !> each time. Where they make no table it says why
+   !> Fit the points of a table once for all temperatures; otherwise `new_material` fits them each
+   !> time. If the points are invalid, `new_material` reports why
    pure subroutine fit_points(self)
       class(material_data_t), intent(inout) :: self
 
@@ -200,7 +200,7 @@ contains
    pure function number(self, name)
       class(material_data_t), intent(in) :: self
       character(len=*), intent(in) :: name
-      !> Its value, 0 where none was set
+      !> Its value, 0 if it was not set
       real(wp) :: number
 
       integer :: place
@@ -214,7 +214,7 @@ contains
    pure function list(self, name)
       class(material_data_t), intent(in) :: self
       character(len=*), intent(in) :: name
-      !> Its values, none where it was not set
+      !> Its values, empty if it was not set
       real(wp), allocatable :: list(:)
 
       integer :: place
@@ -226,7 +226,7 @@ contains
       if (.not. allocated(list)) allocate (list(0))
    end function list
 
-   !> Whether two descriptions are of one and the same modulus, whatever their names and densities
+   !> Whether two descriptions give the same modulus; names and densities do not matter
    pure function deforms_as(self, other) result(yes)
       class(material_data_t), intent(in) :: self
       class(material_data_t), intent(in) :: other
@@ -241,7 +241,7 @@ contains
          .and. is_same(self%shift%logarithms, other%shift%logarithms)
    end function deforms_as
 
-   !> Whether a description has all values of another but its density
+   !> Whether a description has all values of another except its density
    pure function has_all_of(self, other) result(yes)
       class(material_data_t), intent(in) :: self
       class(material_data_t), intent(in) :: other
@@ -259,7 +259,7 @@ contains
       end do
    end function has_all_of
 
-   !> Build a material of tensile moduli at its temperature
+   !> Build a material at its temperature, with tensile moduli
    subroutine new_material(material, data, error)
       !> The material; not allocated on failure
       class(material_t), allocatable, intent(out) :: material
@@ -272,7 +272,7 @@ contains
       type(mittag_leffler_t) :: mittag_leffler
       type(tabulated_t) :: table
       real(wp), allocatable :: rates(:)
-      !> What times and moduli are multiplied by
+      !> Factors of times and of moduli
       real(wp) :: a, b
       real(wp) :: exponent, time
       integer :: i
@@ -337,7 +337,7 @@ contains
 
    contains
 
-      !> A number at the temperature, a modulus as tensile modulus
+      !> A number at the temperature, shear moduli converted to tensile ones
       pure function value(name)
          !> A parameter of the model
          character(len=*), intent(in) :: name
@@ -346,17 +346,17 @@ contains
          value = factor(name)*data%number(name)
       end function value
 
-      !> A list at the temperature, moduli as tensile moduli
+      !> A list at the temperature, shear moduli converted to tensile ones
       pure function values(name)
          !> A parameter of the model
          character(len=*), intent(in) :: name
-         !> Its values, none where it was not set
+         !> Its values, empty if it was not set
          real(wp), allocatable :: values(:)
 
          values = factor(name)*data%list(name)
       end function values
 
-      !> What shear and temperature multiply a parameter by, which follows from its unit
+      !> Factor of a parameter due to shear modulus and temperature, from its unit
       pure function factor(name)
          character(len=*), intent(in) :: name
          real(wp) :: factor
@@ -382,7 +382,7 @@ contains
          end if
       end function factor
 
-      !> Take a finished material over
+      !> Take over a finished material
       subroutine accept(built)
          class(material_t), intent(in) :: built
 

@@ -1,5 +1,5 @@
-!> Fractional Zener solid of order 1/2, whose relaxation is the exponentially scaled complementary
-!> error function CERF(x) = exp(x^2) erfc(x), the intrinsic erfc_scaled
+!> Fractional Zener solid of order 1/2: E(t) = E_0 + E_1 CERF(b sqrt(t)) with the exponentially
+!> scaled complementary error function CERF(x) = exp(x^2) erfc(x), the intrinsic erfc_scaled
 module vcor_material_cerf
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
    use vcor_constants, only : pi, sqrt_pi
@@ -50,7 +50,7 @@ contains
       self%equilibrium = equilibrium
       self%relaxing = relaxing
       self%beta = beta
-      ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet, and the next one far from it
+      ! Q = E_0 + E_1 sqrt(s)/(sqrt(s) + b) has no pole on this sheet; the nearest is far from it
       self%peak = 2.0_wp*log(beta)
       self%distance = pi
    end subroutine new_cerf
@@ -66,8 +66,7 @@ contains
       value = self%equilibrium + self%relaxing*erfc_scaled(self%beta*sqrt(t))
    end function relaxation
 
-   !> Rate of relaxation: with x = b sqrt(t), E_1 b^2 (CERF(x) - 1/(x sqrt(pi))), minus infinity
-   !> at t = 0
+   !> Rate of relaxation E_1 b^2 (CERF(x) - 1/(x sqrt(pi))), x = b sqrt(t); minus infinity at t = 0
    elemental function rate(self, t) result(value)
       class(cerf_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
@@ -105,8 +104,8 @@ contains
       value = self%equilibrium*t + self%relaxing*integral_of_cerf(x)/self%beta**2
    end function integral
 
-   !> CERF(x) - 1 + 2 x/sqrt(pi), by its power series sum_{n>=2} (-x)^n/Gamma(n/2 + 1) where the
-   !> terms cancel
+   !> CERF(x) - 1 + 2 x/sqrt(pi); for small x, where the terms cancel, by its power series
+   !> sum_{n>=2} (-x)^n/Gamma(n/2 + 1)
    elemental function integral_of_cerf(x) result(y)
       !> Argument, >= 0
       real(wp), intent(in) :: x

@@ -1,9 +1,9 @@
-!> Sum of exponentials fitted to samples of a falling modulus
+!> Fit of a sum of exponentials to samples of a non-increasing modulus
 !>
-!> With the rates on a grid the moduli are a problem of non-negative least squares, relative to the
-!> modulus, and few of them are not zero. A single relaxation time shows up as two neighbours of the
-!> grid, so the grid is refined about the rates in use as long as that pays; what stands close
-!> together is merged at last.
+!> With the rates on a grid, the moduli follow from non-negative least squares of the relative
+!> misfit, and most of them are zero. A single relaxation time appears as two neighbours on the
+!> grid, so the grid is refined around the rates in use as long as that reduces the misfit enough;
+!> rates that are close together are merged at the end.
 module vcor_material_exponential_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -19,18 +19,18 @@ contains
 
    !> Fit E(t) = E_0 + sum E_k exp(-l_k t), E_0 and E_k >= 0
    pure subroutine fit_exponentials(time, modulus, terms)
-      !> Times of the samples [s], increasing, > 0, about evenly on the logarithmic scale, shape (m)
+      !> Times of the samples [s], increasing, > 0, about equally spaced in the logarithm, shape (m)
       real(wp), intent(in) :: time(:)
       !> Modulus at these times [Pa], > 0, not increasing, shape (m)
       real(wp), intent(in) :: modulus(:)
-      !> The sum; its `error` is the largest relative misfit at the samples
+      !> The sum; `terms%error` is the largest relative misfit at the samples
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp), allocatable :: grid(:), rate(:), weight(:), finer(:), better(:)
       real(wp) :: spacing, residual, misfit, new_residual, new_misfit, bound, width
       integer :: i, n
 
-      ! u = ln l
+      ! the variable is the logarithm of the rate
       associate (lower => log(slowest_of_data/time(size(time))), &
                  upper => log(fastest_of_data/time(1)))
          n = 1 + ceiling((upper - lower)/log(10.0_wp)*rates_per_decade)
@@ -79,15 +79,15 @@ contains
       real(wp), intent(in) :: time(:)
       !> Modulus [Pa], shape (m)
       real(wp), intent(in) :: modulus(:)
-      !> Logarithms of rates; on return those in use only, increasing
+      !> Logarithms of rates; on return those with positive weight, increasing
       real(wp), allocatable, intent(inout) :: rate(:)
-      !> Weights in units of the first modulus, that of the equilibrium modulus first, shape (0:n)
+      !> Weights over the first modulus, that of the equilibrium modulus first, shape (0:n)
       real(wp), allocatable, intent(out) :: weight(:)
       !> Square root of the sum of squares of the relative misfits
       real(wp), intent(out) :: residual
       !> Largest relative misfit
       real(wp), intent(out) :: misfit
-      !> Rates among the given ones that are likely in use, increasing
+      !> Those of the given rates that are probably in use, increasing
       real(wp), intent(in), optional :: guess(:)
 
       real(wp) :: a(size(time), 0:size(rate)), x(0:size(rate)), ones(size(time))
@@ -120,11 +120,11 @@ contains
       weight(1:) = pack(x(1:), x(1:) > 0.0_wp)
    end subroutine fit
 
-   !> Rates in use, their neighbours at a distance to both sides, and the grid
+   !> Rates in use, a neighbour on either side of each, and the grid
    pure function refined(rate, width, grid) result(finer)
       !> Logarithms of the rates in use, increasing, shape (n)
       real(wp), intent(in) :: rate(:)
-      !> Distance of the neighbours
+      !> Distance of the neighbours in the logarithm
       real(wp), intent(in) :: width
       !> Logarithms of the rates of the first grid, increasing
       real(wp), intent(in) :: grid(:)
@@ -141,14 +141,14 @@ contains
       finer = all(:n)
    end function refined
 
-   !> Insert numbers into a list unless they are out of bounds or there already
+   !> Insert numbers into an increasing list unless they are out of bounds or already there
    pure subroutine insert(numbers, lower, upper, same, list, n)
       real(wp), intent(in) :: numbers(:)
       !> Lower bound
       real(wp), intent(in) :: lower
       !> Upper bound
       real(wp), intent(in) :: upper
-      !> Distance at which two numbers are the same
+      !> Distance below which two numbers count as the same
       real(wp), intent(in) :: same
       !> The list, increasing, shape (>= n + size(numbers))
       real(wp), intent(inout) :: list(:)
@@ -167,13 +167,13 @@ contains
       end do
    end subroutine insert
 
-   !> Neighbours that are close to each other become one at their mean
+   !> Replace pairs of close neighbours by their weighted mean
    pure function merged(rate, weight, width) result(fewer)
       !> Logarithms of the rates, increasing, shape (n)
       real(wp), intent(in) :: rate(:)
       !> Their weights, > 0, shape (n)
       real(wp), intent(in) :: weight(:)
-      !> Distance that is close
+      !> Largest distance of close neighbours
       real(wp), intent(in) :: width
       !> Logarithms of rates, increasing
       real(wp), allocatable :: fewer(:)

@@ -1,5 +1,5 @@
-!> Sum of decaying exponentials: the form of a modulus that turns the hereditary integral into
-!> internal variables
+!> Sum of decaying exponentials: the form of a modulus for which the hereditary integral becomes a
+!> set of internal variables
 module vcor_material_exponential_sum
    use vcor_kinds, only : wp
    use vcor_numeric_interlacing, only : zeros_between_poles
@@ -8,13 +8,13 @@ module vcor_material_exponential_sum
 
    public :: exponential_sum_t, same_rate
 
-   !> Relative difference of rates that are the same but for rounding
+   !> Relative difference up to which two rates are the same but for rounding
    real(wp), parameter :: same_rate = 1.0e-13_wp
 
    !> E(t) = equilibrium + sum_k moduli(k) exp(-rates(k) t) + viscosity delta(t),
    !> Eq. (17) of Green's paper with a dashpot beside the Maxwell elements
    type :: exponential_sum_t
-      !> What is left after all relaxation [Pa], >= 0
+      !> Equilibrium modulus [Pa], >= 0
       real(wp) :: equilibrium = 0.0_wp
       !> Moduli of the Maxwell elements [Pa], > 0, shape (n)
       real(wp), allocatable :: moduli(:)
@@ -22,10 +22,10 @@ module vcor_material_exponential_sum
       real(wp), allocatable :: rates(:)
       !> Viscosity of the dashpot in parallel [Pa s], >= 0
       real(wp) :: viscosity = 0.0_wp
-      !> One of each pair of conjugate terms, of which the real part counts: moduli [Pa] and rates
-      !> [1/s], shape (m); not allocated where nothing rings
+      !> Pairs of conjugate terms, of which only the real part of the sum counts: one of each,
+      !> moduli [Pa] and rates [1/s], shape (m); not allocated without oscillating terms
       complex(wp), allocatable :: pair_moduli(:), pair_rates(:)
-      !> Largest relative error against the modulus that it stands for [-]; 0: it is that modulus
+      !> Estimated largest relative error of the sum as an approximation of a modulus [-]; 0: exact
       real(wp) :: error = 0.0_wp
    contains
       procedure :: scale
@@ -60,7 +60,7 @@ contains
       self%viscosity = factor*self%viscosity
    end subroutine scale
 
-   !> Value at t > 0; pairs are left out
+   !> Value at t > 0, without pairs
    elemental function value(self, t) result(modulus)
       class(exponential_sum_t), intent(in) :: self
       !> Time [s], >= 0
@@ -82,7 +82,7 @@ contains
       real(wp) :: half, relaxed
       integer :: k
 
-      ! 1 - exp(-l t) = 2 h/(1 + h), h = tanh(l t/2), to all digits where l t is small
+      ! 1 - exp(-l t) = 2 h/(1 + h), h = tanh(l t/2), which keeps all digits for small l t
       relaxed = 0.0_wp
       do k = 1, size(self%rates)
          half = tanh(0.5_wp*self%rates(k)*t)
@@ -91,7 +91,7 @@ contains
       value = self%viscosity + self%equilibrium*t + relaxed
    end function integral
 
-   !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s; pairs are left out
+   !> Complex modulus E_0 + sum E_k s/(s + l_k) + viscosity s, without pairs
    elemental function complex_modulus(self, s) result(modulus)
       class(exponential_sum_t), intent(in) :: self
       !> Laplace variable [1/s], not at -l_k
@@ -102,19 +102,19 @@ contains
       modulus = self%equilibrium + self%viscosity*s + sum(self%moduli*(s/(s + self%rates)))
    end function complex_modulus
 
-   !> Poles and zeros of the complex modulus at s = -x, -x (viscosity + sum w_j/(d_j - x)) with the
-   !> equilibrium modulus at d = 0: each zero lies between two poles, with a dashpot one more beyond
-   !> the last one. Pairs are left out
+   !> Poles and zeros, at s = -x, of the complex modulus without pairs, -x (viscosity + sum w_j/(d_j
+   !> - x)), with the equilibrium modulus as a pole d = 0. One zero lies between two adjacent poles,
+   !> and with a dashpot one beyond the last
    pure subroutine find_zeros(self, pole, weight, near, offset)
       class(exponential_sum_t), intent(in) :: self
-      !> Poles d [1/s], increasing: 0 where there is an equilibrium modulus, and the rates, equal
-      !> ones but for rounding as one
+      !> Poles d [1/s], increasing: 0 if there is an equilibrium modulus, then the rates; rates that
+      !> differ by rounding are one pole
       real(wp), allocatable, intent(out) :: pole(:)
-      !> Weights w: their moduli [Pa]
+      !> Weights w: the moduli [Pa]
       real(wp), allocatable, intent(out) :: weight(:)
-      !> Number of the pole that each zero is counted from
+      !> Number of the pole from which each zero is measured
       integer, allocatable, intent(out) :: near(:)
-      !> Distance of the zero from it [1/s]
+      !> Distance of the zero from that pole [1/s]
       real(wp), allocatable, intent(out) :: offset(:)
 
       integer :: i, k, zeros

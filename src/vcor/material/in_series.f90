@@ -1,12 +1,12 @@
-!> Two materials in series: they bear the same force and their deformations add, so it is the creep
-!> compliances that add, in the Laplace domain
+!> Two materials in series: the force is the same in both and the deformations add, so the creep
+!> compliances add in the Laplace domain
 !>
 !>     1/Q = 1/Q_a + 1/Q_b,   Q = s L{E}(s)
 !>
-!> Two Prony series make a Prony series. Its rates are the zeros of P = Q_a + Q_b, one between each
-!> rate of both and the next, with those that both have, and the modulus that belongs to the rate l
-!> is Q_a^2/(l P') at s = -l.
-!> All other moduli are known by their transform, and as exponentials through their spectrum.
+!> Two Prony series in series are a Prony series. Its rates are the zeros of P = Q_a + Q_b, one
+!> between any two adjacent rates of both, and the rates that both have in common; the modulus of a
+!> rate l is Q_a^2/(l P') at s = -l. Other pairs are evaluated by inversion of the transform, and
+!> their sum of exponentials follows from the spectrum.
 module vcor_material_in_series
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_t
@@ -24,15 +24,16 @@ module vcor_material_in_series
    !> Two materials in series of which at least one is no Prony series
    type, extends(transform_t) :: in_series_t
       private
-      !> One of them
+      !> The first material
       class(material_t), allocatable :: first
-      !> The other one
+      !> The second material
       class(material_t), allocatable :: second
       !> Factor of the first modulus
       real(wp) :: first_factor = 1.0_wp
       !> Factor of the second modulus
       real(wp) :: second_factor = 1.0_wp
-      !> The sum of exponentials that represents two moduli that are represented by such sums
+      !> Sum of exponentials of the pair if both moduli are represented by such sums, else
+      !> unallocated
       type(exponential_sum_t), allocatable :: terms
    contains
       procedure :: complex_modulus
@@ -45,13 +46,13 @@ contains
 
    !> Put two materials in series
    pure subroutine new_in_series(self, first, first_factor, second, second_factor, error)
-      !> The two; not allocated on entry, nor on failure
+      !> The pair; not allocated on entry, nor on failure
       class(material_t), allocatable, intent(inout) :: self
-      !> One material, not rigid
+      !> First material, not rigid
       class(material_t), intent(in) :: first
       !> Factor of its modulus, > 0
       real(wp), intent(in) :: first_factor
-      !> The other material, not rigid
+      !> Second material, not rigid
       class(material_t), intent(in) :: second
       !> Factor of its modulus, > 0
       real(wp), intent(in) :: second_factor
@@ -91,11 +92,11 @@ contains
       call move_alloc(series, self)
    end subroutine new_in_series
 
-   !> a b/(a + b), also where one of them is infinite, or both are zero
+   !> a b/(a + b), also if one is infinite or both are zero
    pure function in_series(a, b) result(value)
-      !> One
+      !> First number, >= 0
       real(wp), intent(in) :: a
-      !> The other
+      !> Second number, >= 0
       real(wp), intent(in) :: b
       real(wp) :: value
 
@@ -103,17 +104,17 @@ contains
       if (min(a, b) > 0.0_wp) value = 1.0_wp/(1.0_wp/a + 1.0_wp/b)
    end function in_series
 
-   !> Two Prony series in series
+   !> Prony series of two Prony series in series
    pure subroutine combine(a, b, prony, error)
-      !> One
+      !> First series
       type(exponential_sum_t), intent(in) :: a
-      !> The other
+      !> Second series
       type(exponential_sum_t), intent(in) :: b
-      !> The Prony series that they make
+      !> The resulting series
       type(prony_t), intent(out) :: prony
       type(error_t), allocatable, intent(out) :: error
 
-      ! moduli of terms that nothing can feel, over the glassy modulus
+      ! moduli over the glassy modulus that are too small to matter
       real(wp), parameter :: nothing = 1.0e-30_wp
       type(exponential_sum_t) :: both
       real(wp), allocatable :: pole(:), weight(:), offset(:), of_a(:), of_b(:), distance(:)
@@ -135,12 +136,13 @@ contains
       do k = 1, zeros
          rate(k) = pole(near(k)) + offset(k)
          distance = (pole - pole(near(k))) - offset(k)
-         ! Q_a = -Q_b = -l part: where the two parts differ by rounding, the smaller one is right
+         ! Q_a = -l part_a = -Q_b: both parts are equal but for sign and rounding; the smaller is
+         ! right
          part_a = a%viscosity + sum(of_a/distance)
          part_b = b%viscosity + sum(of_b/distance)
          modulus(k) = min(part_a**2, part_b**2)/sum(weight/distance**2)
       end do
-      ! a rate that both have stays one
+      ! a rate that both have remains a rate
       do k = 1, size(pole)
          if (.not. (pole(k) > 0.0_wp .and. min(of_a(k), of_b(k)) > 0.0_wp)) cycle
          zeros = zeros + 1
@@ -153,12 +155,12 @@ contains
          in_series(a%viscosity, b%viscosity), error)
    end subroutine combine
 
-   !> Moduli of a series at given rates, its equilibrium modulus at 0
+   !> Moduli of a series at given rates, and its equilibrium modulus at rate 0
    pure function moduli_at(series, rates) result(moduli)
       type(exponential_sum_t), intent(in) :: series
       !> Rates [1/s], shape (n)
       real(wp), intent(in) :: rates(:)
-      !> Moduli [Pa], 0 for a rate that the series has not, shape (n)
+      !> Moduli [Pa], 0 at rates that the series does not have, shape (n)
       real(wp) :: moduli(size(rates))
 
       integer :: k
@@ -182,7 +184,7 @@ contains
          + 1.0_wp/(self%second_factor*self%second%complex_modulus(s)))
    end function complex_modulus
 
-   !> Glassy modulus; a dashpot beside one of the moduli makes it rigid at first
+   !> Glassy modulus without the dashpot; a body with a dashpot is rigid at first
    pure function glassy(self) result(modulus)
       class(in_series_t), intent(in) :: self
       !> Modulus [Pa]
@@ -193,7 +195,7 @@ contains
       a = self%first_factor*self%first%glassy()
       b = self%second_factor*self%second%glassy()
       if (self%viscosity > 0.0_wp) then
-         ! what is left of Q - viscosity*s at s -> infinity
+         ! limit of Q - viscosity*s for s -> infinity
          associate (eta_a => self%first_factor*self%first%viscosity, &
                     eta_b => self%second_factor*self%second%viscosity)
             modulus = a*(eta_b/(eta_a + eta_b))**2 + b*(eta_a/(eta_a + eta_b))**2

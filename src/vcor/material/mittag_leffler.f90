@@ -1,5 +1,5 @@
-!> Fractional Zener solid: a spring beside a spring and a fractional dashpot in series. CERF is
-!> the one of exponent 1/2, the standard linear solid its limit of exponent 1
+!> Fractional Zener solid, a spring beside a spring and a fractional dashpot in series: E(t) = E_0 +
+!> E_1 E_a(-(t/tau)^a). For a = 1/2 it is `cerf`, for a = 1 the standard linear solid
 module vcor_material_mittag_leffler
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_value
    use vcor_constants, only : pi
@@ -28,7 +28,7 @@ module vcor_material_mittag_leffler
       real(wp) :: exponent = 0.5_wp
       !> Relaxation time tau [s]
       real(wp) :: time = 1.0_wp
-      !> The function E_a, its derivative and its integral
+      !> Rule for E_a, its derivative and its integral
       type(mittag_leffler_rule_t) :: rule
    contains
       procedure :: relaxation
@@ -48,8 +48,8 @@ contains
       real(wp), intent(in) :: equilibrium
       !> Relaxing modulus E_1 [Pa], > 0
       real(wp), intent(in) :: relaxing
-      !> Exponent a, 0 < a < 1; for a = 1 the material is a Prony series of one term, and is built
-      !> as one by `new_material` of module vcor_material
+      !> Exponent a, 0 < a < 1; `new_material` of vcor_material builds a = 1 as a Prony series of
+      !> one term
       real(wp), intent(in) :: exponent
       !> Relaxation time tau [s], > 0
       real(wp), intent(in) :: time
@@ -67,7 +67,7 @@ contains
       self%exponent = exponent
       self%time = time
       self%rule = new_mittag_leffler_rule(exponent)
-      ! Q has its poles where (s tau)^a = -1
+      ! Q has poles where (s tau)^a = -1, at this distance from the peak in ln(s)
       self%peak = -log(time)
       self%distance = pi*(1.0_wp - exponent)/exponent
    end subroutine new_mittag_leffler
@@ -80,7 +80,7 @@ contains
       !> Argument of the Mittag-Leffler function [-]
       real(wp) :: u
 
-      ! where t/tau would overflow nothing is left to relax
+      ! limited so that t/tau does not overflow; the modulus has relaxed long before
       u = (min(t, 0.5_wp*huge(t)*min(self%time, 1.0_wp))/self%time)**self%exponent
    end function power
 
@@ -106,7 +106,7 @@ contains
       real(wp) :: fall
 
       fall = self%relaxing*self%rule%slope(self%power(t))
-      ! a quotient that would overflow is infinite as well
+      ! a quotient that overflows is minus infinity too
       if (fall < huge(t)*min(t, 1.0_wp)) then
          value = -fall/t
       else
@@ -126,18 +126,18 @@ contains
    end function integral
 
    !> Relaxation spectrum (E_1/(4 pi)) sin(phi)/(sinh(a x/2)^2 + sin(phi/2)^2), phi = pi (1 - a), at
-   !> the rate exp(x)/tau: for a near 1 a peak about as narrow as 1 - a, of which a rate keeps too
-   !> few digits
+   !> the rate exp(x)/tau. For a near 1 it is a peak of a width of about 1 - a, for which x computed
+   !> from the rate has too few digits
    elemental function spectrum(self, rate, beyond_peak) result(density)
       class(mittag_leffler_t), intent(in) :: self
       !> Rate [1/s], > 0
       real(wp), intent(in) :: rate
-      !> x
+      !> x, the logarithm of the rate times tau
       real(wp), intent(in) :: beyond_peak
       !> Spectrum per logarithm of the rate [Pa]
       real(wp) :: density
 
-      ! where sinh would overflow there is nothing left
+      ! the spectrum is zero long before sinh overflows
       real(wp), parameter :: far = 600.0_wp
       real(wp) :: phi
 
@@ -150,21 +150,22 @@ contains
 
    !> Complex modulus E_0 + E_1 p/(1 + p) with p = (s tau)^a = q exp(i phi)
    !>
-   !> On the upper side of the negative real axis its imaginary part is pi times rate times the
-   !> relaxation spectrum. That is small for a near 0 or 1, as sin(phi) is, and for a near 1 it has
-   !> a narrow peak at q = 1, where 1 + p is small. To keep the digits, phi is measured from the
-   !> nearest half axis, and p or 1/p taken, whichever is smaller: both have the same |1 + p|^2/|p|
+   !> On the upper side of the negative real axis its imaginary part is pi times the rate times the
+   !> relaxation spectrum. It is small for a near 0 or 1, as sin(phi) is, and for a near 1 has a
+   !> narrow peak at q = 1, where 1 + p is small. To keep the digits, phi is measured from the
+   !> nearer real half axis, and the smaller of p and 1/p is used: |1 + p|^2/|p| is the same for
+   !> both
    elemental function complex_modulus(self, s) result(modulus)
       class(mittag_leffler_t), intent(in) :: self
-      !> Laplace variable [1/s]; on the negative real axis the sign of the imaginary part, which
-      !> may be a zero, says which side
+      !> Laplace variable [1/s]; on the negative real axis the sign of its imaginary part, which may
+      !> be a signed zero, selects the side
       complex(wp), intent(in) :: s
       !> Complex modulus [Pa]
       complex(wp) :: modulus
 
       real(wp) :: x, y, r, q, h, angle, sine, cosine, shifted, square, storage
 
-      ! the conjugate of a value above the real axis is that below it
+      ! computed in the upper half plane; the value below is its conjugate
       x = real(s, wp)
       y = abs(aimag(s))
       r = min(abs(s), 0.5_wp*huge(r)/max(self%time, 1.0_wp))*self%time

@@ -1,4 +1,4 @@
-!> Moduli of materials over time and frequency: what Figs. 1 and 5 show
+!> Moduli of materials over time and frequency, the data of Figs. 1 and 5
 module vcor_material_moduli
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_positive_inf, &
       ieee_quiet_nan, ieee_value
@@ -14,24 +14,24 @@ module vcor_material_moduli
    public :: moduli_t, curves_t, time_range_t, specimen_t
    public :: compute_moduli, sampled_times, usual_range, loss_tangent
 
-   !> Points per decade unless a number of points is given
+   !> Points per decade by default
    integer, parameter :: per_decade = 50
-   !> Decades before and after the contact time that are shown at least
+   !> Fewest decades shown before and after the contact time
    integer, parameter :: least_before = 3, least_after = 1
-   !> Decades that are shown at most, to find the plateaus of the modulus
+   !> Most decades added on either side to reach the plateaus of the modulus
    integer, parameter :: most_before = 10, most_after = 8
-   !> The same where there is no plateau to be found
+   !> Decades added where there is no plateau
    integer, parameter :: singular_before = 5, fluid_after = 3
-   !> Distance from a plateau, relative to it, at which it counts as reached
+   !> Relative distance from a plateau at which it counts as reached
    real(wp), parameter :: near = 0.05_wp
 
-   !> Times at which a modulus is taken, equally spaced on the logarithmic scale
+   !> Times at which a modulus is evaluated, equally spaced in the logarithm
    type :: time_range_t
-      !> First time [s]; 0: to be chosen
+      !> First time [s]; 0: chosen automatically
       real(wp) :: first = 0.0_wp
-      !> Last time [s]; 0: to be chosen
+      !> Last time [s]; 0: chosen automatically
       real(wp) :: last = 0.0_wp
-      !> Number of points, >= 2; 0: 50 to the decade
+      !> Number of points, >= 2; 0: 50 per decade
       integer :: points = 0
    end type time_range_t
 
@@ -41,19 +41,19 @@ module vcor_material_moduli
       character(len=:), allocatable :: name
       !> Its model
       character(len=:), allocatable :: model
-      !> Whether it does not deform: then it has no curves
+      !> Whether the material is rigid; it then has no curves
       logical :: rigid = .false.
-      !> Mass density [kg/m3]; 0: not known
+      !> Mass density [kg/m3]; 0 if unknown
       real(wp) :: density = 0.0_wp
       !> Poisson's ratio [-]
       real(wp) :: poisson_ratio = 0.0_wp
-      !> Viscosity of the dashpot in parallel [Pa s]; relaxation leaves it out
+      !> Viscosity of the dashpot in parallel [Pa s]; not part of `relaxation`
       real(wp) :: viscosity = 0.0_wp
       !> Glassy modulus [Pa]
       real(wp) :: glassy = 0.0_wp
       !> Rubbery modulus [Pa]
       real(wp) :: rubbery = 0.0_wp
-      !> Relaxation modulus at the contact time [Pa]; this and the next two NaN where there is none
+      !> Relaxation modulus at the contact time [Pa]; this and the next two are NaN if there is none
       real(wp) :: at_contact_time = 0.0_wp
       !> Storage modulus at the lowest frequency of interest [Pa]
       real(wp) :: storage_at_min = 0.0_wp
@@ -69,9 +69,9 @@ module vcor_material_moduli
 
    !> Moduli of materials over the times of one range
    type :: moduli_t
-      !> Contact time t0 of the impact [s]; 0: it has none
+      !> Contact time t0 of the impact [s]; 0 if it does not end
       real(wp) :: contact_time = 0.0_wp
-      !> Lowest frequency of interest 2 pi/t0 [rad/s]; 0: there is none
+      !> Lowest frequency of interest 2 pi/t0 [rad/s]; 0 without a contact time
       real(wp) :: min_frequency = 0.0_wp
       !> Times [s], increasing, shape (points)
       real(wp), allocatable :: times(:)
@@ -81,7 +81,7 @@ module vcor_material_moduli
       type(curves_t), allocatable :: materials(:)
    end type moduli_t
 
-   !> A material whose moduli are asked for
+   !> A material whose moduli are computed
    type :: specimen_t
       !> Its model
       character(len=:), allocatable :: model
@@ -96,12 +96,12 @@ contains
       type(moduli_t), intent(out) :: self
       !> The materials, shape (n)
       type(specimen_t), intent(in) :: materials(:)
-      !> Contact time of their impact [s]; 0: it has none
+      !> Contact time of the impact [s]; 0 if it does not end
       real(wp), intent(in) :: contact_time
-      !> Time about which the range is chosen [s], > 0: the contact time, or the time scale of a
+      !> Time around which the range is chosen [s], > 0: the contact time, or the time scale of a
       !> contact that does not end
       real(wp), intent(in) :: reference
-      !> Times to be taken
+      !> Times requested
       type(time_range_t), intent(in) :: range
       !> Error of code `error_usage` if the range is empty, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -159,7 +159,7 @@ contains
       curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
       curves%storage_at_min = curves%at_contact_time
       curves%loss_at_min = curves%at_contact_time
-      ! gfortran 12 does not make room for the result of an elemental function of a class
+      ! gfortran 12 does not allocate the result of an elemental type-bound function
       allocate (curves%relaxation(size(moduli%times)))
       curves%relaxation = material%relaxation(moduli%times)
       modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
@@ -178,7 +178,7 @@ contains
       real(wp), intent(in) :: storage
       !> Loss modulus [Pa], >= 0
       real(wp), intent(in) :: loss
-      !> Their ratio; infinite for a fluid without elasticity
+      !> The ratio; infinite for a fluid without elasticity
       real(wp) :: tangent
 
       if (ieee_is_nan(loss)) then
@@ -192,11 +192,11 @@ contains
       end if
    end function loss_tangent
 
-   !> Whole decades from the glassy plateau of a material to the rubbery one, as far as they are
-   !> within reach of a time, and that time
+   !> Whole decades from the glassy plateau to the rubbery one, as far as they are within reach of a
+   !> reference time, which is included
    pure function usual_range(material, reference) result(range)
       class(material_t), intent(in) :: material
-      !> The time [s], > 0
+      !> Reference time [s], > 0
       real(wp), intent(in) :: reference
       type(time_range_t) :: range
 

@@ -1,6 +1,6 @@
-!> Ranges of numbers, values spread over them, and what a model of a material states of its
-!> parameters: once, in the file of the model. The keys of `&material`, the checks of its
-!> constructor and the bounds of a fit are made from it
+!> Ranges of numbers, spaced values, and the parameters of material models. Each model states its
+!> parameters once, in its own file; the keys of `&material`, the checks of its constructor and the
+!> bounds of a fit follow from them
 module vcor_material_parameter
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_t, raise
@@ -15,15 +15,15 @@ module vcor_material_parameter
    public :: positive, not_negative, between_0_and_1
    public :: density, poisson_ratio, equilibrium_modulus, relaxing_modulus
 
-   !> Largest magnitude of a number that is read
+   !> Largest magnitude that is accepted on input
    real(wp), parameter :: largest = 1.0e300_wp
-   !> Smallest magnitude of a number that is read and is not zero
+   !> Smallest nonzero magnitude that is accepted on input
    real(wp), parameter :: smallest = 1.0e-300_wp
-   !> Magnitudes of the numbers of a case; nothing physical comes near, and products of some stay
+   !> Magnitudes of the numbers of a case: nothing physical is beyond, and products of several are
    !> finite
    real(wp), parameter :: most = 1.0e60_wp, least = 1.0e-60_wp
 
-   !> Spacing of values: equal steps of the logarithm; any other word: of the values themselves
+   !> Spacing with equal steps of the logarithm; any other word means equal steps of the value
    character(len=*), parameter :: log_spacing = 'log'
 
    !> Range of a number
@@ -38,53 +38,53 @@ module vcor_material_parameter
       logical :: upper_open = .false.
    end type interval_t
 
-   !> Scale of a parameter that may be 0: a term of a sum
+   !> Scale of a parameter that may be 0, such as a term of a sum
    integer, parameter :: linear = 1
-   !> Scale of one that is a factor
+   !> Scale of a parameter that is a factor
    integer, parameter :: logarithmic = 2
 
-   !> A parameter of a model, or a list of them
+   !> A parameter of a model, a number or a list
    type :: parameter_t
-      !> Name, that of the key in &material
+      !> Name, which is the key in &material
       character(len=26) :: name = ''
-      !> What it means, one line
+      !> Meaning, one line
       character(len=72) :: meaning = ''
       !> Unit, blank for none
       character(len=8) :: unit = ''
-      !> Range, in this unit
+      !> Range, in the unit above
       type(interval_t) :: range = interval_t()
-      !> Whether it must be given
+      !> Whether it is required
       logical :: required = .true.
       !> Default as in a namelist; blank: none
       character(len=12) :: default = ''
       !> `linear` or `logarithmic`
       integer :: scale = logarithmic
-      !> Whether a fit to data finds it
+      !> Whether `vcor fit` determines it
       logical :: fitted = .false.
       !> Whether it is a list of numbers
       logical :: is_list = .false.
-      !> Parameter that may be given in its place, and not beside it; blank: none
+      !> Parameter that may be given instead, but not in addition; blank: none
       character(len=26) :: instead = ''
    end type parameter_t
 
-   !> Ranges
+   !> Common ranges
    type(interval_t), parameter :: positive = interval_t(lower=0.0_wp, lower_open=.true.)
    type(interval_t), parameter :: not_negative = interval_t(lower=0.0_wp)
    type(interval_t), parameter :: between_0_and_1 = &
       interval_t(lower=0.0_wp, lower_open=.true., upper=1.0_wp, upper_open=.true.)
 
-   !> Of every material
+   !> Parameter of every material
    type(parameter_t), parameter :: density = parameter_t('density', &
       'Density; for a sphere without mass, and for a plate with waves', 'kg/m3', positive, &
       required=.false.)
-   !> Of every material that deforms
+   !> Parameter of every material that deforms
    type(parameter_t), parameter :: poisson_ratio = parameter_t('poisson_ratio', &
       "Poisson's ratio", '', interval_t(lower=-1.0_wp, lower_open=.true., upper=0.5_wp))
-   !> Of every model that need not relax to nothing
+   !> Parameter of every model that may have an equilibrium modulus
    type(parameter_t), parameter :: equilibrium_modulus = parameter_t('equilibrium_modulus', &
       'Long-time modulus', 'Pa', not_negative, required=.false., default='0.0', &
       scale=linear, fitted=.true.)
-   !> Of the fractional models with a glassy modulus
+   !> Parameter of the fractional models with a finite glassy modulus
    type(parameter_t), parameter :: relaxing_modulus = parameter_t('relaxing_modulus', &
       'Part of the modulus that relaxes', 'Pa', positive, fitted=.true.)
 
@@ -92,7 +92,7 @@ contains
 
    !> Check values against the ranges of their parameters
    pure subroutine check_values(what, parameters, values, error)
-      !> What they describe, for the message
+      !> Material model, for the message
       character(len=*), intent(in) :: what
       !> The parameters, shape (n)
       type(parameter_t), intent(in) :: parameters(:)
@@ -115,7 +115,7 @@ contains
       end do
    end subroutine check_values
 
-   !> Power of the time that a time, a rate or a root of them is, by its unit; 0 for others
+   !> Power of time in a unit of times, rates or their roots; 0 for others
    elemental function power_of_time(unit) result(power)
       character(len=*), intent(in) :: unit
       real(wp) :: power
@@ -131,7 +131,8 @@ contains
       type(interval_t), intent(in) :: range
       !> The number, finite or not
       real(wp), intent(in) :: number
-      !> True if it is within; false for NaN, infinity and magnitudes beyond what can be computed
+      !> True if it is within; false for NaN, infinity and magnitudes that are too large or too
+      !> small
       logical :: yes
 
       yes = is_within(range, number)
@@ -145,7 +146,7 @@ contains
       real(wp), intent(in) :: number
       logical :: yes
 
-      ! On its own, since comparing a NaN traps in a debug build
+      ! separate statement: comparing a NaN traps in a debug build
       yes = ieee_is_finite(number)
       if (.not. yes) return
       yes = (number >= range%lower .or. range%lower <= -largest) &
@@ -154,7 +155,7 @@ contains
       if (range%upper_open) yes = yes .and. number < range%upper
    end function is_within
 
-   !> Whether a finite number is zero or of a magnitude that can be computed with
+   !> Whether a finite number is zero or of a magnitude that computations can handle
    pure function is_computable(number) result(yes)
       real(wp), intent(in) :: number
       logical :: yes
@@ -162,7 +163,7 @@ contains
       yes = abs(number) <= most .and. (abs(number) >= least .or. .not. abs(number) > 0.0_wp)
    end function is_computable
 
-   !> A range as text: `> 0`, `in (-1, 0.5]`; empty where it has no bounds
+   !> A range as text: `> 0`, `in (-1, 0.5]`; empty without bounds
    pure function interval_text(range) result(text)
       type(interval_t), intent(in) :: range
       character(len=:), allocatable :: text
@@ -179,7 +180,7 @@ contains
       end if
    end function interval_text
 
-   !> A bound as text, without a fraction where there is none
+   !> A bound as text; whole numbers without a fraction
    pure function bound_text(bound) result(text)
       real(wp), intent(in) :: bound
       character(len=:), allocatable :: text
@@ -190,13 +191,13 @@ contains
       if (abs(bound - anint(bound)) <= 0.0_wp) text = integer_text(nint(bound))
    end function bound_text
 
-   !> Values between two ends, which are met exactly
+   !> Values between two ends, which are included exactly
    pure function spaced(start, stop, count, spacing) result(values)
       !> First value; > 0 with logarithmic spacing
       real(wp), intent(in) :: start
       !> Last value, which may be below the first one; > 0 with logarithmic spacing
       real(wp), intent(in) :: stop
-      !> Number of values, > 0; where it is 1, the value is `start`
+      !> Number of values, > 0; a single value is `start`
       integer, intent(in) :: count
       !> `linear` or `log`
       character(len=*), intent(in) :: spacing
@@ -205,7 +206,7 @@ contains
 
       integer :: i
 
-      ! both forms are exact where the values are whole numbers or decades
+      ! both forms are exact for whole numbers and decades
       do i = 2, count - 1
          if (spacing == log_spacing) then
             values(i) = 10.0_wp**between(log10(start), log10(stop))
@@ -218,7 +219,7 @@ contains
 
    contains
 
-      !> Value i of so many in equal steps
+      !> Value i of `count` in equal steps
       pure function between(a, b)
          !> First value
          real(wp), intent(in) :: a

@@ -1,5 +1,5 @@
-!> Fractional Kelvin-Voigt solid: a spring beside a fractional dashpot, the model that Bagley and
-!> Torvik fitted to BUTYL B252
+!> Fractional Kelvin-Voigt solid, a spring beside a fractional dashpot: E(t) = E_0 + C t^-a/Gamma(1
+!> - a). Bagley and Torvik fitted it to BUTYL B252
 module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
    use vcor_error, only : error_t
@@ -102,7 +102,7 @@ contains
          + self%factor*t**(1.0_wp - self%exponent)/(1.0_wp - self%exponent)
    end function integral
 
-   !> Complex modulus E_0 + C s^a, the transform of Eq. (23)
+   !> Complex modulus E_0 + C s^a, transform of Eq. (23)
    elemental function complex_modulus(self, s) result(modulus)
       class(power_law_t), intent(in) :: self
       !> Laplace variable [1/s], not on the negative real axis

@@ -1,6 +1,6 @@
-!> Generalised Maxwell solid: a Prony series with an optional dashpot in parallel. The elastic
-!> solid (no Maxwell element) and the standard linear solid (one) are members of it, and so is
-!> the rigid body, the elastic solid without deformation
+!> Generalised Maxwell solid, a Prony series with an optional dashpot in parallel: E(t) = E_0 +
+!> sum_i E_i exp(-b_i t) + viscosity delta(t). The elastic solid has no exponential, the standard
+!> linear solid one; a rigid body is an elastic solid of infinite modulus
 module vcor_material_prony
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
    use vcor_error, only : error_input, error_t, raise
@@ -19,16 +19,16 @@ module vcor_material_prony
    type(parameter_t), parameter :: rigid_parameters(*) = [ &
       parameter_t('poisson_ratio', "Poisson's ratio (has no effect)", '', poisson_ratio%range, &
       required=.false.)]
-   !> Of model `elastic`
+   !> Parameters of model `elastic`
    type(parameter_t), parameter :: elastic_parameters(*) = [poisson_ratio, &
       parameter_t('modulus', "Young's modulus", 'Pa', positive)]
-   !> Of model `sls`
+   !> Parameters of model `sls`
    type(parameter_t), parameter :: sls_parameters(*) = [poisson_ratio, &
       parameter_t('glassy_modulus', 'Modulus at time zero', 'Pa', positive, fitted=.true.), &
       parameter_t('alpha', 'Rate; rubbery modulus = glassy_modulus*alpha/beta', '1/s', &
       not_negative, scale=linear, fitted=.true.), &
       parameter_t('beta', 'Rate of relaxation', '1/s', not_negative, fitted=.true.)]
-   !> Of model `prony`; a fit finds `times`
+   !> Parameters of model `prony`; a fit determines `times`
    type(parameter_t), parameter :: prony_parameters(*) = [poisson_ratio, equilibrium_modulus, &
       parameter_t('moduli', 'Moduli of the relaxing terms', 'Pa', positive, required=.false., &
       fitted=.true., is_list=.true.), &
@@ -93,8 +93,8 @@ contains
       self%discrete = .true.
    end subroutine new_prony
 
-   !> Build the standard linear solid of Eq. (13): E_g (a/b + (1 - a/b) exp(-b t)). With b = 0 it
-   !> is the elastic solid E_g, the limit by which the paper checks its scheme
+   !> Build the standard linear solid of Eq. (13): E_g (a/b + (1 - a/b) exp(-b t)). For b = 0 it is
+   !> the elastic solid E_g, the limit with which the paper checks its scheme
    pure subroutine new_sls(self, glassy_modulus, alpha, beta, error)
       type(prony_t), intent(out) :: self
       !> Glassy modulus E_g [Pa], > 0
@@ -137,7 +137,7 @@ contains
       call new_prony(self, modulus, none, none, 0.0_wp, error)
    end subroutine new_elastic
 
-   !> Build a rigid body: every modulus is infinite
+   !> Build a rigid body: all moduli are infinite
    pure subroutine new_rigid(self)
       type(prony_t), intent(out) :: self
 
@@ -157,7 +157,7 @@ contains
       value = self%terms%value(t)
    end function relaxation
 
-   !> Relaxation modulus E(t) at many times: the exponentials of one term are vector instructions
+   !> Relaxation modulus E(t) at many times; the loop over times is vectorised for each term
    pure subroutine relaxation_at(self, t, value)
       class(prony_t), intent(in) :: self
       !> Times since the strain step [s], t >= 0
@@ -210,7 +210,7 @@ contains
       modulus = self%terms%complex_modulus(s) + self%viscosity*s
    end function complex_modulus
 
-   !> Glassy modulus E_0 + sum E_i, the dashpot left out
+   !> Glassy modulus E_0 + sum E_i, without the dashpot
    pure function glassy(self) result(modulus)
       class(prony_t), intent(in) :: self
       !> Modulus [Pa]
@@ -228,7 +228,7 @@ contains
       modulus = self%terms%equilibrium
    end function rubbery
 
-   !> The series itself, whatever the window and the accuracy
+   !> The series itself; window and accuracy have no effect
    pure subroutine exponentials(self, window, accuracy, terms)
       class(prony_t), intent(in) :: self
       !> Time up to which the sum is to hold [s]

@@ -1,14 +1,14 @@
-!> Time-temperature superposition. At another temperature all times of a material are a_T times as
-!> long as at its reference temperature, and its moduli b_T times as large
+!> Time-temperature superposition: at temperature T all times of a material are a_T times those at
+!> its reference temperature, and its moduli are b_T times as large
 !>
 !>     E(t; T) = b_T E(t/a_T; T_ref),   Q(s; T) = b_T Q(a_T s; T_ref),   b_T = T/T_ref or 1
 !>
 !>     wlf         log10 a_T = -C1 (T - T_ref)/(C2 + T - T_ref)
 !>     arrhenius   ln a_T = (E_a/R) (1/T - 1/T_ref)
-!>     table       log10 a_T between given points
+!>     table       log10 a_T interpolated in given points
 !>
 !> M. L. Williams, R. F. Landel, J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
-!> doi:10.1021/ja01619a008. Their b_T has the ratio of the densities too, which is left out.
+!> doi:10.1021/ja01619a008. The ratio of densities in their b_T is left out.
 module vcor_material_shift
    use vcor_constants, only : gas_constant
    use vcor_error, only : error_input, error_t, raise
@@ -32,20 +32,20 @@ module vcor_material_shift
       parameter_t('activation_energy', 'Activation energy of the Arrhenius law', 'J/mol', &
       positive, required=.false.)]
 
-   !> Keys beside `shift`
+   !> Keys that belong to `shift`
    character(len=*), parameter :: shift_keys(*) = [character(len=26) :: shift_parameters%name, &
       'shift_file', 'vertical_shift', 'valid_temperature_from', 'valid_temperature_to']
-   !> So many of them must be given to the laws they are for
+   !> The first so many keys are required by the laws to which they belong
    integer, parameter :: keys_needed = size(shift_parameters) + 1
-   !> The laws that each of them is for
+   !> Laws to which each key belongs
    character(len=*), parameter :: key_laws(*) = [character(len=len(shift_laws)) :: shift_laws, &
       'wlf', 'wlf', 'arrhenius', 'table', shift_laws, shift_laws, shift_laws]
 
-   !> What a material does when the temperature changes
+   !> Effect of temperature on a material
    type :: shift_t
-      !> One of `shift_laws`; empty: nothing
+      !> One of `shift_laws`; empty: none
       character(len=9) :: law = ''
-      !> Whether moduli grow as the temperature does
+      !> Whether the moduli are proportional to the absolute temperature
       logical :: vertical = .false.
       !> Temperatures of the table [K], increasing, shape (n)
       real(wp), allocatable :: temperatures(:)
@@ -58,13 +58,13 @@ module vcor_material_shift
 
 contains
 
-   !> a_T and b_T at a temperature; both are 1, to the last bit, at the reference temperature and
-   !> without a law
+   !> a_T and b_T at a temperature; both are exactly 1 at the reference temperature and without a
+   !> law
    pure subroutine find_factors(self, temperature, constants, a, b, error)
       class(shift_t), intent(in) :: self
       !> Temperature [K], > 0; 0: the reference temperature
       real(wp), intent(in) :: temperature
-      !> Values of `shift_parameters`, 0 for those that the law has not
+      !> Values of `shift_parameters`, 0 for those that the law does not have
       real(wp), intent(in) :: constants(size(shift_parameters))
       !> a_T [-]
       real(wp), intent(out) :: a
@@ -73,9 +73,9 @@ contains
       !> Error of code `error_input` where the law does not hold, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
-      ! beyond that nothing can be computed
+      ! largest |log10 a_T|: no computation is possible beyond
       real(wp), parameter :: farthest = 60.0_wp
-      ! whatever finite numbers a file may have
+      ! long enough for any two finite numbers
       character(len=640) :: reach
       real(wp) :: decades, distance
 

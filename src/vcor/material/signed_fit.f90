@@ -1,15 +1,15 @@
-!> Sum of exponentials with moduli of either sign, fitted to a modulus over a window of time
+!> Fit of a sum of exponentials with moduli of either sign to a modulus over a window of time
 !>
-!> By Eq. (1) of Green's paper the modulus of a pair is no completely monotone function even where
-!> both of its bodies have one: an elastic body beside an SLS gives powers of exp(-b t) with
-!> alternating signs. Its sum is found by least squares with rates on a grid fine enough for any
-!> mixture of exponentials; a coarser one misses single relaxation times between its rates.
+!> By Eq. (1) of Green's paper the modulus of a pair is not completely monotone even if those of
+!> both bodies are: an elastic body beside an SLS gives powers of exp(-b t) with alternating signs.
+!> The sum is found by linear least squares with rates on a fixed grid, fine enough for any mixture
+!> of exponentials; a coarser grid misses single relaxation times between its rates.
 !>
-!> In units of the window and of the mean modulus everything but the modulus is the same for all
-!> fits: samples, weights, rates, and so the factors Q R of the matrix. They take some milliseconds
-!> and are made once; a fit is the product with Q^T, and R solved for. Columns are exchanged so that
-!> each is the one that depends least on those before it: with more of them the misfit falls and the
-!> moduli grow, and a fit takes as many as pay.
+!> In units of the window and of the mean modulus the samples, weights and rates are the same for
+!> all fits, and so is the QR factorisation of the matrix. It takes a few milliseconds and is made
+!> once; a fit is a product with Q^T and a triangular solution. By column pivoting each column is
+!> the one that depends least on those before it. With more columns the misfit falls and the moduli
+!> grow; a fit takes the number that minimises their combined cost.
 module vcor_material_signed_fit
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -23,17 +23,18 @@ module vcor_material_signed_fit
 
    public :: signed_fit_t, new_signed_fit
 
-   !> Times over the window up to which the integral of a modulus is found. The modulus may be
-   !> singular at the beginning, and is smooth on the logarithmic scale afterwards
+   !> Times over the window up to which the modulus is integrated. The modulus may be singular at 0
+   !> and is smooth in the logarithm of time afterwards
    real(wp), parameter :: ends(*) = [1.0e-4_wp, 3.0e-4_wp, 1.0e-3_wp, 3.0e-3_wp, 0.01_wp, 0.03_wp, &
       0.1_wp, 0.3_wp, 1.0_wp]
-   !> Place of the time from which on the fit is to hold value by value: before, its integral is
+   !> Index in `ends` of the time from which the fit is judged value by value; before, by its
+   !> integral
    integer, parameter :: checked = 5
 
-   !> Columns that depend on those before them to this part are left out, one choice after the other
+   !> Relative diagonal of R below which columns are left out as dependent; the best choice is taken
    real(wp), parameter :: dependent(*) = [1.0e-13_wp, 1.0e-12_wp, 1.0e-11_wp, 1.0e-10_wp]
 
-   !> What all fits have in common, in units of the window
+   !> Data that all fits share, in units of the window
    type :: signed_fit_t
       private
       !> Times of the samples, then the nodes of the integrals, shape (samples + nodes)
@@ -42,19 +43,19 @@ module vcor_material_signed_fit
       integer :: samples = 0
       !> Weights of the samples, shape (samples)
       real(wp), allocatable :: weight(:)
-      !> Number of rates for each of `dependent`
+      !> Number of rates for each threshold in `dependent`
       integer :: ranks(size(dependent)) = 0
       !> Rates, the first is 0, shape (n)
       real(wp), allocatable :: rate(:)
       !> exp(-rate time) for the samples, shape (samples, n)
       real(wp), allocatable :: decay(:, :)
-      !> Q^T of the weighted columns, pivoted and made of unit length, shape (n, samples)
+      !> Q^T of the weighted, normalised and pivoted columns, shape (n, samples)
       real(wp), allocatable :: q(:, :)
       !> R, shape (n, n)
       real(wp), allocatable :: r(:, :)
-      !> Length of the columns, shape (n)
+      !> Lengths of the weighted columns, shape (n)
       real(wp), allocatable :: length(:)
-      !> Number of nodes up to each of `ends`
+      !> Number of nodes below each of `ends`
       integer :: last(size(ends)) = 0
       !> Weights of the nodes, shape (nodes)
       real(wp), allocatable :: share(:)
@@ -64,16 +65,16 @@ module vcor_material_signed_fit
 
 contains
 
-   !> Make what all fits have in common
+   !> Compute the data that all fits share
    pure subroutine new_signed_fit(self)
-      !> It; without factors, if LAPACK fails, the error of every sum is huge
+      !> The data; without factors if LAPACK fails, and then the error of every sum is huge
       type(signed_fit_t), intent(out) :: self
 
       call set_nodes(self)
       call set_factors(self)
    end subroutine new_signed_fit
 
-   !> Samples, and nodes of the integrals
+   !> Set samples and nodes of the integrals
    pure subroutine set_nodes(self)
       type(signed_fit_t), intent(inout) :: self
 
@@ -96,9 +97,9 @@ contains
       self%time = [time, node]
    end subroutine set_nodes
 
-   !> Factors of the matrix
+   !> Factorise the matrix
    pure subroutine set_factors(self)
-      !> The rule, its nodes set
+      !> The data, its nodes set
       type(signed_fit_t), intent(inout) :: self
 
       real(wp), allocatable :: matrix(:, :), work(:)
@@ -106,14 +107,14 @@ contains
       integer :: pivot(size(self%rate)), i, j, n, info
 
       n = size(self%rate)
-      ! LAPACK's blocks of 64 columns need no more than this
+      ! LAPACK's blocks of 64 columns need no more
       allocate (matrix(self%samples, n), work(70*n))
       do j = 1, n
          matrix(:, j) = self%weight*exp(-self%rate(j)*self%time(:self%samples))
          length(j) = norm2(matrix(:, j))
          matrix(:, j) = matrix(:, j)/length(j)
       end do
-      ! the constant is the first column in any case
+      ! the constant is always the first column
       pivot = 0
       pivot(1) = 1
       call dgeqp3(self%samples, n, matrix, self%samples, pivot, tau, work, size(work), info)
@@ -140,10 +141,10 @@ contains
       class(signed_fit_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Modulus at the times `time` of the window [Pa], >= 0, shape (n)
+      !> Modulus at `time` times the window [Pa], >= 0, shape (n)
       real(wp), intent(in) :: modulus(:)
-      !> The sum, its moduli of either sign; its error is that which an impact feels, see
-      !> `error_of_integral`, or that of the integral at earlier times
+      !> The sum; its moduli may be negative. Its error is the larger of that which an impact feels,
+      !> see `error_of_integral`, and that of the integral at earlier times
       type(exponential_sum_t), intent(out) :: terms
 
       real(wp) :: moduli(size(self%rate)), integrals(size(ends)), excess(checked), mean
@@ -166,27 +167,28 @@ contains
       terms%equilibrium = mean*moduli(1)
       terms%rates = [self%rate(2:n), faster_term*maxval(self%rate)]/window
       terms%moduli = mean*[moduli(2:n), 0.0_wp]
-      ! the fastest term makes the integral up to the time from which on values count
+      ! the fastest term corrects the integral up to the time from which values count
       do i = 1, checked
          excess(i) = terms%integral(ends(i)*window) - integrals(i)*window
       end do
       terms%moduli(n) = -excess(checked)*terms%rates(n)
-      ! what the impulse feels of the early error
+      ! what the impulse feels of the error at earlier times
       excess = abs(excess - excess(checked))/(integrals(checked)*window)
       terms%error = max(terms%error, maxval(excess))
    end subroutine fit
 
-   !> Error that an impact feels: the force is the integral of the modulus with a rate that is
-   !> smooth, and the error oscillates, so it is that of the integral from the time on from which
-   !> values count. Loading and unloading may feel it with different signs: three times that one was
-   !> never exceeded by more than a factor of two where it was above the rounding
+   !> Error that an impact feels. The force is the integral of the modulus with a smooth rate, and
+   !> the error of the modulus oscillates, so what counts is the error of the integral since the
+   !> time from which values count. Loading and unloading may feel it with different signs, hence
+   !> the factor `integral_felt`; the error measured was never more than twice this estimate where
+   !> it was above rounding
    pure function error_of_integral(self, deviation, sample, early) result(error)
       type(signed_fit_t), intent(in) :: self
       !> Error at the samples, over the mean modulus, shape (samples)
       real(wp), intent(in) :: deviation(:)
       !> Modulus at the samples, over the mean, shape (samples)
       real(wp), intent(in) :: sample(:)
-      !> Integral of the modulus up to that time, over the mean
+      !> Integral of the modulus up to that time, over the mean modulus
       real(wp), intent(in) :: early
       !> Relative error
       real(wp) :: error
@@ -206,16 +208,16 @@ contains
       end do
    end function error_of_integral
 
-   !> Moduli of the rates, of as many as pay
+   !> Moduli of the rates, with the number of rates of the least cost
    pure subroutine find_moduli(self, sample, early, moduli, n, error)
       type(signed_fit_t), intent(in) :: self
       !> Modulus at the samples over its mean, shape (samples)
       real(wp), intent(in) :: sample(:)
-      !> Its integral up to the time from which on values count, over the mean
+      !> Integral of the modulus up to the time from which values count, over the mean modulus
       real(wp), intent(in) :: early
       !> Moduli over the mean, shape (rates)
       real(wp), intent(out) :: moduli(:)
-      !> Number of those that are not zero
+      !> Number of rates used
       integer, intent(out) :: n
       !> Error that an impact feels
       real(wp), intent(out) :: error

@@ -1,18 +1,16 @@
-!> Materials with a continuous spectrum of relaxation as sums of exponentials
+!> Sums of exponentials for materials with a continuous relaxation spectrum
 !>
-!> A completely monotone modulus is E(t) = E_0 + int_0^inf H(l) exp(-l t) dl, and its complex
-!> modulus Q gives the spectrum at once: H(l) = Im Q(-l + i0)/(pi l). In y = ln(l) the trapezoidal
-!> rule of step h converges exponentially, as exp(-pi^2/h), since the integrand is analytic for
-!> |Im y| < pi/2. It is applied in x, with
+!> A completely monotone modulus is E(t) = E_0 + int_0^inf H(l) exp(-l t) dl, with the spectrum H(l)
+!> = Im Q(-l + i0)/(pi l) from its complex modulus Q. In y = ln(l) the integrand is analytic for |Im
+!> y| < pi/2, so the trapezoidal rule of step h converges as exp(-pi^2/h). It is applied in x, with
 !>
 !>     y + c asinh((y - y_p)/d) = x - exp(x_a - x) + exp(x - x_b),   x = 0, +-h, +-2 h ..
 !>
-!> The right-hand side runs away doubly exponentially below x_a and above x_b, where exp(-l t) has
-!> become 1 - l t + .. and (delta(t) - ..)/l on the window: few nodes cover what would be
-!> many decades (H. Takahasi and M. Mori, Publ. RIMS 9 (1974) 721). The left-hand side is y but for
-!> spectra with a peak at y_p so narrow that their poles, at y_p +- i d, lie inside the strip; with
-!> c = 1 - 2 d/pi they move out to its edge.
-!> What lies below all nodes is a constant, what lies above them a dashpot.
+!> Below x_a and above x_b the right-hand side grows double-exponentially. There, exp(-l t) acts on
+!> the window as 1 - l t + .. and as (delta(t) - ..)/l, and a few nodes cover many decades (H.
+!> Takahasi and M. Mori, Publ. RIMS 9 (1974) 721). The left-hand side is y unless the spectrum has a
+!> peak at y_p so narrow that its poles y_p +- i d lie inside the strip; c = 1 - 2 d/pi moves them
+!> to the edge. Rates below all nodes are lumped into a constant, those above them into a dashpot.
 module vcor_material_spectrum
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
@@ -25,19 +23,20 @@ module vcor_material_spectrum
 
    public :: fractional_t, sum_of_resolved_spectrum, rule_for_spectrum
 
-   !> A rate this small against that of the window is a constant, its inverse a dashpot
+   !> Rate times window below which a term is lumped into the constant, above its inverse into the
+   !> dashpot
    real(wp), parameter :: constant = 1.0e-14_wp
 
-   !> A material with a continuous spectrum that is a power of the rate, or has one peak: that of a
-   !> model with a fractional derivative
+   !> A model with fractional derivatives: its spectrum is continuous, and either a power of the
+   !> rate or a single peak
    type, abstract, extends(material_t) :: fractional_t
       !> Equilibrium modulus E_0 [Pa]
       real(wp) :: equilibrium = 0.0_wp
       !> Relaxing modulus E_1 [Pa], infinite for a power
       real(wp) :: relaxing = 0.0_wp
-      !> ln of the rate [1/s] at which the spectrum has its peak; not allocated for a power
+      !> ln of the rate [1/s] at the peak of the spectrum; not allocated for a power
       real(wp), allocatable :: peak
-      !> Distance of the poles from the peak in ln(l), > 0
+      !> Distance d of the poles from the peak in ln(l), > 0
       real(wp), allocatable :: distance
    contains
       procedure :: glassy
@@ -72,14 +71,14 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum; its error is the largest one found at some times of the window
+      !> The sum; `terms%error` is the largest relative error at some times of the window
       type(exponential_sum_t), intent(out) :: terms
 
       call rule_for_spectrum(self, window, accuracy, terms, self%peak, self%distance)
       terms%error = largest_error(self, window, terms)
    end subroutine exponentials
 
-   !> The rule by itself, its error not known
+   !> The quadrature rule as a sum; `terms%error` is not set
    pure subroutine rule_for_spectrum(material, window, accuracy, terms, peak, distance, finer, &
                                      below, above)
       !> The material; its rubbery modulus is E_0
@@ -89,18 +88,19 @@ contains
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
-      !> ln of the rate [1/s] at which the spectrum has its peak; absent: it is a power of the rate
+      !> ln of the rate [1/s] at the peak of the spectrum; absent: the spectrum is a power of the
+      !> rate
       real(wp), intent(in), optional :: peak
       !> Distance d of the poles from the peak in ln(l), > 0
       real(wp), intent(in), optional :: distance
-      !> What the step is divided by; absent: 1
+      !> Factor by which the step is reduced; absent: 1
       real(wp), intent(in), optional :: finer
-      !> How much farther out the run to slow rates begins, as ln of the rate; absent: 0
+      !> Shift of x_a towards slow rates; absent: 0
       real(wp), intent(in), optional :: below
-      !> The same for the run to fast rates
+      !> Shift of x_b towards fast rates; absent: 0
       real(wp), intent(in), optional :: above
 
-      ! beyond all rates that can be computed with
+      ! y| beyond which rates cannot be computed
       real(wp), parameter :: farthest = 600.0_wp
       real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
       real(wp) :: ratio, run_low, run_high, beyond_peak
@@ -119,7 +119,7 @@ contains
       y_p = 0.0_wp
       if (present(peak) .and. present(distance)) then
          y_p = peak - shift
-         ! the runs are to begin where the spectrum has become a power of the rate
+         ! x_a and x_b must lie where the spectrum is a power of the rate
          turn_low = min(turn_low, y_p - below_peak)
          turn_high = max(turn_high, y_p + above_peak)
          d = distance
@@ -165,16 +165,15 @@ contains
       end do
       allocate (terms%moduli, source=moduli(:n))
       allocate (terms%rates, source=rates(:n))
-      ! an exponent next to 1 has a part of its dashpot beyond all rates: the integral tells it
+      ! for an exponent near 1 part of the dashpot lies beyond all rates; the integral of E gives it
       if (tail > negligible_tail*accuracy*terms%viscosity) terms%viscosity = terms%viscosity &
          + (material%integral(window) - terms%integral(window))
    end subroutine rule_for_spectrum
 
-   !> Sum of exponentials for a material whose spectrum has its features where it pleases: refined
-   !> until the modulus and its integral are met. Where that does not happen the best sum is
-   !> returned, and its error tells
+   !> Sum of exponentials for a spectrum with features at unknown rates, refined until modulus and
+   !> integral are accurate. If they never are, the best sum is returned, with its error
    pure subroutine sum_of_resolved_spectrum(material, window, accuracy, terms)
-      !> The material; its rubbery modulus is E_0, and its dashpot is not in the sum
+      !> The material; its rubbery modulus is E_0, and its dashpot is not part of the sum
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
@@ -203,8 +202,8 @@ contains
       end do
    end subroutine sum_of_resolved_spectrum
 
-   !> Solve sinh(w) + b w = x by Newton's method: sinh is convex on the side of the root, so from an
-   !> upper bound of |w| it descends
+   !> Solve sinh(w) + b w = x by Newton's method, which converges monotonically from an upper bound
+   !> of |w|, as the left-hand side is convex there
    pure function spread_over_peak(x, b) result(w)
       !> Right-hand side
       real(wp), intent(in) :: x
@@ -224,8 +223,8 @@ contains
       end do
    end function spread_over_peak
 
-   !> Largest relative error of a sum at some times of the window. For shorter times the error may
-   !> be larger; what counts there are the integrals of the modulus, which are kept
+   !> Largest relative error of a sum at some times of the window. At shorter times it may be
+   !> larger; there only integrals of the modulus count, which the rule preserves
    pure function largest_error(material, window, terms) result(error)
       class(material_t), intent(in) :: material
       !> Time up to which the sum is to hold [s]
@@ -233,7 +232,7 @@ contains
       type(exponential_sum_t), intent(in) :: terms
       real(wp) :: error
 
-      ! the window in parts of equal length: one exponential tells a term at the ends of them all
+      ! in parts of equal length, one exponential per term gives all values
       integer, parameter :: parts = 5
       real(wp) :: value(parts), decay, term
       integer :: i, k

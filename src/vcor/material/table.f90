@@ -1,4 +1,4 @@
-!> Material given by points of its relaxation modulus
+!> Material given by points of its relaxation modulus, interpolated in logarithms
 module vcor_material_table
    use vcor_error, only : error_input, error_t, raise
    use vcor_kinds, only : wp
@@ -15,44 +15,44 @@ module vcor_material_table
    public :: tabulated_t, new_tabulated, modulus_rounding, smallest_value, largest_value
    public :: table_parameters
 
-   !> Parameters of model `table` beside its points
+   !> Parameters of model `table`, besides its points
    type(parameter_t), parameter :: table_parameters(*) = [poisson_ratio]
 
-   !> Growth of the modulus from one point to the next, relative, that counts as rounding
+   !> Relative growth of the modulus between two points that counts as rounding
    real(wp), parameter :: modulus_rounding = 1.0e-10_wp
-   !> Smallest time [s] and modulus [Pa]; beyond these bounds products leave the range of numbers
+   !> Smallest time [s] and modulus [Pa]; outside these bounds products may over- or underflow
    real(wp), parameter :: smallest_value = 1.0e-30_wp
    !> Largest time [s] and modulus [Pa]
    real(wp), parameter :: largest_value = 1.0e30_wp
 
-   !> Nodes of the quadrature over a panel, on which E t changes by a factor of 50 at most: 1e-13
+   !> Quadrature nodes per panel: E t changes by a factor of 50 at most, and the error is 1e-13
    integer, parameter :: order = 8
    !> Largest change of ln t, and of ln E, over a panel
    real(wp), parameter :: longest_panel = 1.0_wp
 
-   !> E(t) through given points: ln E is a monotone piecewise cubic of ln t, exact for a power law;
-   !> constant before the first point and after the last. With x = ln(t/t_1) and y = ln(E/E_1)
+   !> E(t) through given points: with x = ln(t/t_1) and y = ln(E/E_1), y is a monotone piecewise
+   !> cubic of x, exact for a power law; E is constant before the first point and after the last
    type, extends(material_t) :: tabulated_t
       private
       !> Time of the first point t_1 [s]
       real(wp) :: first_time = 1.0_wp
-      !> Modulus there E_1 [Pa]
+      !> Modulus of the first point E_1 [Pa]
       real(wp) :: first_modulus = 0.0_wp
-      !> Ends of the panels: x at the points, and between them where they are far apart, shape (n)
+      !> Ends of the panels: x at the points, and between points that are far apart, shape (n)
       real(wp), allocatable :: x(:)
-      !> y there, shape (n)
+      !> y at `x`, shape (n)
       real(wp), allocatable :: y(:)
-      !> dy/dx there, shape (n)
+      !> dy/dx at `x`, shape (n)
       real(wp), allocatable :: slope(:)
-      !> Integral of E up to there, in units of E_1 t_1, shape (n)
+      !> Integral of E from 0 to `x`, in units of E_1 t_1, shape (n)
       real(wp), allocatable :: area(:)
       !> Nodes of the quadrature on (0, 1)
       real(wp) :: node(order) = 0.0_wp
-      !> Their weights
+      !> Weights of the quadrature
       real(wp) :: weight(order) = 0.0_wp
-      !> The sum of exponentials fitted to it
+      !> Sum of exponentials fitted to the points
       type(exponential_sum_t) :: terms
-      !> What the integral of the sum is more than that of E up to the first point [Pa s]
+      !> Integral up to the first point, of the sum less that of E [Pa s]
       real(wp) :: early_excess = 0.0_wp
    contains
       procedure :: relaxation
@@ -72,11 +72,11 @@ contains
       type(tabulated_t), intent(out) :: self
       !> Times [s], > 0, strictly increasing, shape (n), n >= 2
       real(wp), intent(in) :: times(:)
-      !> Moduli at these times [Pa], > 0, not increasing but for rounding, shape (n)
+      !> Moduli at these times [Pa], > 0, not increasing except by rounding, shape (n)
       real(wp), intent(in) :: moduli(:)
       type(error_t), allocatable, intent(out) :: error
 
-      ! the logarithm is to tell two times apart
+      ! relative difference below which the logarithms of two times could not be told apart
       real(wp), parameter :: rounding = 1.0e-12_wp
       real(wp) :: falling(size(moduli))
       integer :: i, n
@@ -107,7 +107,7 @@ contains
       self%discrete = .true.
    end subroutine new_tabulated
 
-   !> Cut the intervals between the points into panels, and integrate over them
+   !> Divide the intervals between the points into panels, and integrate over each
    pure subroutine set_panels(self, x, y)
       type(tabulated_t), intent(inout) :: self
       !> x at the points, shape (n)
@@ -163,15 +163,15 @@ contains
       end associate
       time = self%first_time*exp([(real(i, wp)*step, i=0, n)])
       call fit_exponentials(time, self%relaxation(time), self%terms)
-      ! the misfit between the samples counts too, and at the points
+      ! the misfit between the samples and at the points counts too
       time = self%first_time*exp([[(0.25_wp*real(i, wp)*step, i=1, 4*n)], self%x])
       self%early_excess = self%terms%integral(self%first_time) &
          - self%first_modulus*self%first_time
       self%terms%error = maxval(abs(self%terms%value(time)/self%relaxation(time) - 1.0_wp))
    end subroutine set_terms
 
-   !> Multiply all times and all moduli, without another fit: for the one who has built the
-   !> material, before others share it
+   !> Multiply all times and all moduli without a new fit; only while the material is being built,
+   !> before threads share it
    pure subroutine rescale(self, times_by, moduli_by)
       class(tabulated_t), intent(inout) :: self
       !> Factor of the times, > 0
@@ -203,11 +203,11 @@ contains
          self%slope(i + 1), x, y, slope)
    end subroutine interpolate
 
-   !> Integral of E over a panel from its start to x, in units of E_1 t_1: that of exp(y + x)
+   !> Integral of E, that is of exp(y + x), over a panel from its start to x, in units of E_1 t_1
    pure function area_of(self, panel, x) result(area)
       class(tabulated_t), intent(in) :: self
       integer, intent(in) :: panel
-      !> End of the integral, in the panel
+      !> Upper limit, within the panel
       real(wp), intent(in) :: x
       !> Integral
       real(wp) :: area
@@ -245,7 +245,7 @@ contains
       end if
    end function relaxation
 
-   !> Rate of relaxation dE/dt = (E/t) d ln E/d ln t, 0 outside of the data
+   !> Rate of relaxation dE/dt = (E/t) d ln E/d ln t, 0 outside the data
    elemental function rate(self, t) result(value)
       class(tabulated_t), intent(in) :: self
       !> Time since the strain step [s], t >= 0
@@ -301,7 +301,7 @@ contains
       modulus = self%terms%complex_modulus(s)
    end function complex_modulus
 
-   !> Glassy modulus: that of the first point
+   !> Glassy modulus, that of the first point
    pure function glassy(self) result(modulus)
       class(tabulated_t), intent(in) :: self
       !> Modulus [Pa]
@@ -310,7 +310,7 @@ contains
       modulus = self%first_modulus
    end function glassy
 
-   !> Rubbery modulus: that of the last point
+   !> Rubbery modulus, that of the last point
    pure function rubbery(self) result(modulus)
       class(tabulated_t), intent(in) :: self
       !> Modulus [Pa]
@@ -319,16 +319,16 @@ contains
       modulus = self%first_modulus*exp(self%y(size(self%y)))
    end function rubbery
 
-   !> The sum of exponentials fitted to the data, whatever the window and the accuracy
+   !> The sum of exponentials fitted to the data
    pure subroutine exponentials(self, window, accuracy, terms)
       class(tabulated_t), intent(in) :: self
       !> Time up to which the sum is to hold [s]
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy: has no effect, as the sum says all that the data say
+      !> Relative accuracy wanted: has no effect, as the sum represents all that the data contain
       real(wp), intent(in) :: accuracy
-      !> The sum; its `error` is the largest relative misfit from the first point to the last, or to
-      !> half of the window, where a contact is expected to end, and what the integral is off by at
-      !> the first point, over that of the window
+      !> The sum; `terms%error` is the largest relative misfit from the first point to the last, or
+      !> to half the window, where the contact is expected to end, plus the error of the integral up
+      !> to the first point, over the integral of the window
       type(exponential_sum_t), intent(out) :: terms
 
       associate (not_needed => accuracy)

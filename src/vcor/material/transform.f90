@@ -1,20 +1,20 @@
-!> Moduli that are known by their transform only: everything in time follows from the complex
-!> modulus Q(s) = s L{E}(s) by inverting Laplace's transform numerically
+!> Moduli known only by their transform, the complex modulus Q(s) = s L{E}(s). Functions of time are
+!> computed by numerical inversion of the Laplace transform
 !>
 !>     E = L^-1{Q/s},   dE/dt = L^-1{Q},   int_0^t E = L^-1{Q/s^2}
 !>
-!> to some units of the 15th digit of E t. What is left of Q at s -> infinity, a dashpot, belongs to
-!> the time 0 and is taken off the integral.
+!> with errors of a few units in the 15th digit of E t. A dashpot, the limit of Q/s at s ->
+!> infinity, acts at time 0 and is subtracted from the integral.
 !>
-!> The singularities of Q all lie on the negative real axis. On the parabola w = mu (1 + i y)^2 the
+!> All singularities of Q lie on the negative real axis. On the parabola w = mu (1 + i y)^2 the
 !> integrand of
 !>
 !>     f(t) = 1/(2 pi i) int exp(s t) F(s) ds,   s = w/t,
 !>
 !> is analytic for |Im y| < 1 and falls like exp(-mu y^2), so the midpoint rule converges
-!> exponentially, with the same nodes for every time: J. A. C. Weideman and L. N. Trefethen,
-!> Math. Comp. 76 (2007) 1341, doi:10.1090/S0025-5718-07-01945-X. The nodes below the axis are the
-!> conjugates of those above and are not needed.
+!> exponentially, with the same nodes for every time: J. A. C. Weideman and L. N. Trefethen, Math.
+!> Comp. 76 (2007) 1341, doi:10.1090/S0025-5718-07-01945-X. The nodes below the axis are conjugates
+!> of those above and are left out.
 module vcor_material_transform
    use vcor_constants, only : pi
    use vcor_kinds, only : wp
@@ -24,15 +24,15 @@ module vcor_material_transform
 
    public :: transform_t
 
-   !> Nodes above the axis
+   !> Number of nodes above the axis
    integer, parameter :: contour_nodes = 26
 
-   !> A modulus by its transform
+   !> A modulus given by its transform
    type, abstract, extends(material_t) :: transform_t
       private
-      !> Nodes of the inversion
+      !> Nodes w of the inversion
       complex(wp) :: node(contour_nodes) = (0.0_wp, 0.0_wp)
-      !> Its weights
+      !> Weights of the inversion
       complex(wp) :: weight(contour_nodes) = (0.0_wp, 0.0_wp)
    contains
       procedure :: prepare
@@ -43,13 +43,12 @@ module vcor_material_transform
 
 contains
 
-   !> Make the rule of the inversion: nodes w = s t and weights, exp(w) included, such that
-   !> f(t) = Im(sum(weight*F(w/t)))/t
+   !> Set nodes w = s t and weights, which include exp(w), such that f(t) = Im(sum(weight*F(w/t)))/t
    pure subroutine prepare(self)
       class(transform_t), intent(inout) :: self
 
-      ! the rule is off by exp(-2 pi/step) = 6e-19, times 1e3 at most; exp(w) falls to exp(-36.8) at
-      ! the last node, and the largest term is four times the sum only
+      ! the error of the rule is exp(-2 pi/step) = 6e-19, times 1e3 at most; exp(w) is exp(-36.8) at
+      ! the last node, and the largest term is only four times the sum
       real(wp), parameter :: step = 0.15_wp, mu = 2.6_wp
       complex(wp) :: root
       integer :: k
@@ -88,7 +87,7 @@ contains
       value = aimag(sum(self%weight*self%complex_modulus(self%node/t)))/t
    end function rate
 
-   !> Integral of E from 0 to t, the dashpot left out
+   !> Integral of E from 0 to t, without the dashpot
    elemental function integral(self, t) result(value)
       class(transform_t), intent(in) :: self
       !> Upper limit [s], t >= 0

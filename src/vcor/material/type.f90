@@ -1,4 +1,4 @@
-!> What a solver may ask of a linear viscoelastic material
+!> Abstract type of a linear viscoelastic material: all that solvers use of it
 module vcor_material_type
    use vcor_constants, only : pi
    use vcor_error, only : error_t
@@ -11,24 +11,23 @@ module vcor_material_type
 
    public :: material_t
 
-   !> A material; what its modulus is made of does not change once it is built, so that threads can
-   !> share it
+   !> A material. Its modulus does not change after construction, so threads can share it
    type, abstract :: material_t
-      !> Name that cases call it by
+      !> Name in the case
       character(len=:), allocatable :: name
-      !> Mass density [kg/m3]; 0 = not known
+      !> Mass density [kg/m3]; 0 if unknown
       real(wp), private :: mass_density = 0.0_wp
       !> Poisson's ratio [-]
       real(wp), private :: nu = 0.5_wp
-      !> Does not deform at all: the modulus is infinite
+      !> Whether it is rigid: the modulus is infinite
       logical :: rigid = .false.
-      !> Whether the modulus is a finite sum of exponentials, or is represented by one whatever the
-      !> window and the accuracy
+      !> Whether the modulus is a finite sum of exponentials, or is represented by the same one for
+      !> every window and accuracy
       logical :: discrete = .false.
       !> Viscosity of a dashpot in parallel: E(t) has a term viscosity*delta(t) [Pa s], >= 0,
       !> which `relaxation` and `integral` leave out
       real(wp) :: viscosity = 0.0_wp
-      !> What its temperature has multiplied all times by: a_T [-]
+      !> Factor a_T by which the temperature has multiplied all times [-]
       real(wp) :: time_factor = 1.0_wp
    contains
       !> Relaxation modulus E(t)
@@ -83,7 +82,7 @@ module vcor_material_type
          real(wp) :: modulus
       end function limit_i
 
-      !> The modulus as a sum of exponentials: itself where it is one, else an approximation
+      !> The modulus as a sum of exponentials: exact if it is one, else an approximation
       pure subroutine exponentials_i(self, window, accuracy, terms)
          import :: exponential_sum_t, material_t, wp
          class(material_t), intent(in) :: self
@@ -91,14 +90,14 @@ module vcor_material_type
          real(wp), intent(in) :: window
          !> Wanted relative accuracy, > 0
          real(wp), intent(in) :: accuracy
-         !> The sum, its `error` told
+         !> The sum; `terms%error` is its estimated relative error
          type(exponential_sum_t), intent(out) :: terms
       end subroutine exponentials_i
    end interface
 
 contains
 
-   !> Relaxation modulus E(t) at many times at once, for models that have a faster way to it
+   !> Relaxation modulus E(t) at many times, overridden by models with a faster way
    pure subroutine relaxation_at(self, t, value)
       class(material_t), intent(in) :: self
       !> Times since the strain step [s], t >= 0
@@ -109,14 +108,14 @@ contains
       value = self%relaxation(t)
    end subroutine relaxation_at
 
-   !> Relaxation spectrum l H(l) of E(t) = E_0 + int H(l) exp(-l t) dl: Im Q(-l + i0)/pi with the
-   !> complex modulus Q. A model with a narrow peak takes the distance from it, which it cannot know
-   !> from the rate to all digits
+   !> Relaxation spectrum l H(l) of E(t) = E_0 + int H(l) exp(-l t) dl, which is Im Q(-l + i0)/pi. A
+   !> model with a narrow peak uses the distance from it, which the rate alone does not give to all
+   !> digits
    elemental function spectrum(self, rate, beyond_peak) result(density)
       class(material_t), intent(in) :: self
       !> Rate l [1/s], > 0
       real(wp), intent(in) :: rate
-      !> ln of the rate over that of the peak of the spectrum, if it has a narrow one
+      !> ln of the rate over that of the peak of the spectrum, if there is a narrow one
       real(wp), intent(in) :: beyond_peak
       !> Spectrum per ln(l) [Pa]
       real(wp) :: density
@@ -138,7 +137,7 @@ contains
    !> Mass density
    elemental function density(self)
       class(material_t), intent(in) :: self
-      !> Density [kg/m3], > 0; 0 = not known
+      !> Density [kg/m3], > 0; 0 if unknown
       real(wp) :: density
 
       density = self%mass_density
@@ -153,16 +152,16 @@ contains
       poisson_ratio = self%nu
    end function poisson_ratio
 
-   !> Set density and Poisson's ratio, which do not take part in the relaxation modulus: for the one
-   !> who has built the material, before others share it
+   !> Set density and Poisson's ratio, which do not affect the relaxation modulus; only while the
+   !> material is being built, before threads share it
    pure subroutine set_constants(self, error, density, poisson_ratio)
       !> The material; unchanged on failure
       class(material_t), intent(inout) :: self
       !> Error of code `error_input`, unallocated if both are within their ranges
       type(error_t), allocatable, intent(out) :: error
-      !> Density [kg/m3], > 0; absent: as it was, at first not known
+      !> Density [kg/m3], > 0; absent: unchanged, initially unknown
       real(wp), intent(in), optional :: density
-      !> Poisson's ratio, in (-1, 0.5]; absent: as it was, at first 0.5
+      !> Poisson's ratio, in (-1, 0.5]; absent: unchanged, initially 0.5
       real(wp), intent(in), optional :: poisson_ratio
 
       if (present(density)) call check_values('material', [density_range], [density], error)
@@ -174,7 +173,7 @@ contains
       if (present(poisson_ratio)) self%nu = poisson_ratio
    end subroutine set_constants
 
-   !> Whether the modulus is constant: the material neither relaxes nor flows
+   !> Whether the modulus is constant: no relaxation, no flow
    pure function elastic(self)
       class(material_t), intent(in) :: self
       logical :: elastic
