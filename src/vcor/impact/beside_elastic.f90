@@ -1,16 +1,15 @@
-!> Contact modulus of an elastic body and one that is a sum of exponentials, Eq. (1) of Green's
-!> paper, as a sum of exponentials
+!> Contact modulus of an elastic body and a body whose modulus is a sum of exponentials, by Eq. (1)
+!> of Green's paper, as a sum of exponentials
 !>
-!> With A the modulus of the elastic body, B = B_0 + sum B_i exp(-l_i t) that of the other one and
-!> c = A + B_0
+!> With the elastic modulus A, the other modulus B = B_0 + sum B_i exp(-l_i t), and c = A + B_0,
 !>
 !>     E' = A B/(A + B) = A B_0/c - (A^2/c) (-X + X^2 - X^3 + ...),   X = sum (B_i/c) exp(-l_i t)
 !>
-!> a geometric series, whose powers are sums of exponentials again: of one rate l the rates l, 2 l,
-!> 3 l ... X is largest at t = 0, r = sum B_i/c; r^n is what n orders leave. A polymer beside steel
-!> has r of 1e-4 to 1e-2.
+!> is a geometric series whose powers are sums of exponentials again: a single rate l gives the
+!> rates l, 2 l, 3 l ... X is largest at t = 0, r = sum B_i/c, and n orders leave a remainder of
+!> r^n. A polymer beside steel has r of 1e-4 to 1e-2.
 !>
-!> Products of an order k add up to r^k, so what is left out is known to the last digit. Relative to
+!> All products of order k add up to r^k at t = 0, so what is left out is known exactly. Relative to
 !> E' it counts at most (1 + r) c/B(t) times.
 module vcor_impact_beside_elastic
    use vcor_kinds, only : wp
@@ -20,7 +19,7 @@ module vcor_impact_beside_elastic
 
    public :: sum_beside_elastic
 
-   !> Most exponentials: an impact takes 1 us for each, a fit of a hundred takes 6 ms
+   !> Maximum number of exponentials: each takes 1 us per impact; fitting a hundred takes 6 ms
    integer, parameter :: most = 400
 
 contains
@@ -29,18 +28,18 @@ contains
    pure subroutine sum_beside_elastic(elastic, other, window, tolerance, terms, is_found)
       !> Plane-strain modulus of the elastic body [Pa], > 0
       real(wp), intent(in) :: elastic
-      !> That of the other one, without dashpot
+      !> Plane-strain modulus of the other body [Pa], without dashpot
       type(exponential_sum_t), intent(in) :: other
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Largest relative error, > 0
       real(wp), intent(in) :: tolerance
-      !> The sum; its error includes that of the other body
+      !> The sum; `terms%error` includes the error of `other`
       type(exponential_sum_t), intent(out) :: terms
-      !> Whether there is a sum that is short and good enough
+      !> Whether a sum of at most `most` terms meets the tolerance
       logical, intent(out) :: is_found
 
-      ! products of the shares of X, that of none first; which share is the last factor, how often
+      ! products of the B_i/c, the empty one first; index of the last factor, and its power
       real(wp) :: product(0:most), rate(0:most), share(size(other%moduli))
       integer :: last(0:most), power(0:most)
       real(wp) :: unit, largest, least, lost, rest, part
@@ -50,7 +49,7 @@ contains
       unit = elastic + other%equilibrium
       share = other%moduli/unit
       largest = sum(share)
-      ! relative to E': B(t) is not less than at the end
+      ! relative to E': B(t) is smallest at the end of the window
       part = (other%equilibrium + sum(other%moduli*exp(-other%rates*window)))/unit &
          /(1.0_wp + largest)
       if (.not. (largest < 1.0_wp .and. part > 0.0_wp)) return
@@ -66,7 +65,7 @@ contains
       do order = 1, most
          first = final + 1
          final = n
-         ! every product once, its factors in order: as often as they can be arranged
+         ! each product once, with its factors in order, times the number of their arrangements
          do i = first, final
             do j = last(i), size(share)
                m = 1

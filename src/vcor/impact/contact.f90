@@ -1,4 +1,4 @@
-!> Contact modulus E'(t) of the two bodies, Eq. (1) of Green's paper
+!> Contact modulus E'(t) of two bodies, Eq. (1) of Green's paper
 module vcor_impact_contact
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_beside_elastic, only : sum_beside_elastic
@@ -15,36 +15,37 @@ module vcor_impact_contact
    public :: contact_modulus_t, new_contact_modulus
    public :: pair_eq1, pair_series
 
-   !> How two viscoelastic bodies combine: their moduli at the same time, Eq. (1) of the paper
+   !> Two viscoelastic bodies combine by their moduli at the same time, Eq. (1) of the paper
    integer, parameter :: pair_eq1 = 0
-   !> In series, their compliances add in the Laplace domain: exact
+   !> Two bodies in series, whose compliances add in the Laplace domain: exact
    integer, parameter :: pair_series = 1
 
-   !> E'(t) = E'_a E'_b/(E'_a + E'_b) with E'_i = E_i/(1 - nu_i^2), in time as the paper has it.
-   !> Where one body is rigid, or both are of one material or elastic, it is a multiple of one
-   !> modulus and inherits all closed forms (Cases 1 to 4 of the paper's Section III); two bodies in
-   !> series are one material; otherwise it is the pair
+   !> E'(t) = E'_a E'_b/(E'_a + E'_b) with E'_i = E_i/(1 - nu_i^2), as in the paper a function of
+   !> time. If one body is rigid, or both have the same material or are elastic, it is a multiple of
+   !> one modulus, with all its closed forms (Cases 1 to 4 of the paper's Section III). Two bodies
+   !> in series are one material. All other combinations are a pair
    type :: contact_modulus_t
       private
-      !> Whether it is that of two bodies in series
+      !> Whether the two bodies are in series
       logical :: series = .false.
-      !> The material, or the first of the pair
+      !> The only material, or the first of a pair
       class(material_t), allocatable :: first
-      !> The second material of a pair, otherwise not allocated
+      !> The second material of a pair, otherwise unallocated
       class(material_t), allocatable :: second
       !> Factor of the first modulus [-]
       real(wp) :: first_factor = 1.0_wp
       !> Factor of the second modulus [-]
       real(wp) :: second_factor = 1.0_wp
-      !> A pair as a sum of exponentials at all times, to twelve digits; not allocated where none is
+      !> The pair as a sum of exponentials for all times, to twelve digits; unallocated if there is
+      !> none
       type(exponential_sum_t), allocatable :: terms
-      !> Nodes on (0, 1) of the integral of a pair without such a sum, shape (n)
+      !> Nodes on (0, 1) for the integral of a pair without `terms`, shape (n)
       real(wp), allocatable :: node(:)
-      !> Their weights, shape (n)
+      !> Weights of the nodes, shape (n)
       real(wp), allocatable :: weight(:)
-      !> Rules of the transform of a pair, made once for the frequencies of all impacts, shape (n)
+      !> Rules for the Fourier integrals of a pair, shape (n)
       real(wp), dimension(:), allocatable :: sine_node, sine_weight, cosine_node, cosine_weight
-      !> What fits sums of exponentials to a pair; not allocated where they need not be fitted
+      !> Fits sums of exponentials to a pair; unallocated if no fit is needed
       type(signed_fit_t), allocatable :: fit
    contains
       procedure :: is_built
@@ -64,21 +65,21 @@ contains
 
    !> Combine the materials of sphere and plate
    pure subroutine new_contact_modulus(self, sphere, plate, same, error, pair)
-      !> Contact modulus; of an earlier one what fits its sums is kept, which takes longest to make
+      !> Contact modulus; `fit`, the most expensive part, is kept if there was one
       type(contact_modulus_t), intent(inout) :: self
       class(material_t), intent(in) :: sphere
       class(material_t), intent(in) :: plate
-      !> Whether both have one and the same modulus
+      !> Whether both bodies have the same modulus
       logical, intent(in) :: same
       type(error_t), allocatable, intent(out) :: error
       !> One of the `pair_*` constants; absent: pair_eq1
       integer, intent(in), optional :: pair
 
-      ! shares of the time of an integral, between which a pair is smooth on the logarithmic scale:
-      ! what relaxes before the first one has a millionth of it
+      ! a pair is smooth in the logarithm of time between these parts of the upper limit; the part
+      ! before the first is a millionth
       real(wp), parameter :: factor = 10.0_wp**0.5_wp
       integer, parameter :: parts = 12
-      ! error of a sum that holds at all times
+      ! error of a sum that holds for all times
       real(wp), parameter :: finest = 1.0e-12_wp
       integer :: i
       real(wp), parameter :: ends(0:parts) = [(factor**(i - parts), i=0, parts)]
@@ -143,12 +144,12 @@ contains
       end if
    end subroutine new_contact_modulus
 
-   !> Forget what a modulus was
+   !> Reset a contact modulus
    pure subroutine clear(self)
       type(contact_modulus_t), intent(out) :: self
    end subroutine clear
 
-   !> Whether there is a modulus
+   !> Whether the contact modulus has been built
    elemental function is_built(self)
       class(contact_modulus_t), intent(in) :: self
       logical :: is_built
@@ -179,11 +180,11 @@ contains
          value = combined(value, self%second_factor*self%second%relaxation(t))
    end function relaxation
 
-   !> Modulus of two bodies by Eq. (1), in which one or both may be infinite, or nothing
+   !> Modulus of two bodies by Eq. (1); either may be infinite or zero
    elemental function combined(one, other) result(modulus)
-      !> Modulus of a body [Pa], >= 0
+      !> Modulus of the first body [Pa], >= 0
       real(wp), intent(in) :: one
-      !> The other one's [Pa], >= 0
+      !> Modulus of the second body [Pa], >= 0
       real(wp), intent(in) :: other
       !> Modulus [Pa]
       real(wp) :: modulus
@@ -213,7 +214,7 @@ contains
       end if
    end function rate
 
-   !> Integral of E' from 0 to t, the dashpot left out; for a pair by quadrature
+   !> Integral of E' from 0 to t without the dashpot; for a pair by quadrature
    elemental function integral(self, t) result(value)
       class(contact_modulus_t), intent(in) :: self
       !> Upper limit [s], >= 0
@@ -230,8 +231,8 @@ contains
       end if
    end function integral
 
-   !> Mean over 0 .. t of the integral of E' from 0, the dashpot left out. By parts it is that of
-   !> (t - x) E'(x): one sum for a pair, whose integral is a sum itself
+   !> Mean over (0, t) of the integral of E' from 0, without the dashpot. Integration by parts makes
+   !> it the integral of (1 - x/t) E'(x), a single sum for a pair
    pure function mean_integral(self, t) result(value)
       class(contact_modulus_t), intent(in) :: self
       !> Time [s], > 0
@@ -244,13 +245,13 @@ contains
       if (allocated(self%second)) then
          value = t*sum(self%weight*(1.0_wp - self%node)*self%relaxation(t*self%node))
       else
-         ! the modulus may be singular, its integral is not
+         ! the modulus may be singular, but its integral is not
          call endpoint_rule(node, weight)
          value = sum(weight*self%integral(t*node))
       end if
    end function mean_integral
 
-   !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, the dashpot left out
+   !> Integrals of E' over the steps from i dt to (i + 1) dt, i = 0 .. n - 1, without the dashpot
    pure function step_integrals(self, dt, n) result(value)
       class(contact_modulus_t), intent(in) :: self
       !> Length of the steps [s], > 0
@@ -260,8 +261,8 @@ contains
       !> Integrals [Pa s], shape (0:n-1)
       real(wp) :: value(0:n - 1)
 
-      ! The kernel's branch point lies a step or more away from all steps but the first: eight
-      ! Gauss nodes converge there as 5.8^-16
+      ! the branch point of the kernel is at least one step away from all steps but the first: eight
+      ! Gauss nodes have an error of 5.8^-16 there
       integer, parameter :: order = 8
       real(wp) :: node(order), weight(order), upper, lower
       integer :: i
@@ -282,7 +283,7 @@ contains
       end if
    end function step_integrals
 
-   !> Storage and loss modulus of the contact, Eq. (7): for a pair from the transform of E'(t),
+   !> Storage and loss modulus of the contact, Eq. (7); for a pair from the transform of E'(t),
    !> E*(omega) = E_r + omega int_0^inf (E'(t) - E_r) (sin(omega t) + i cos(omega t)) dt
    pure function dynamic_modulus(self, omega) result(modulus)
       class(contact_modulus_t), intent(in) :: self
@@ -346,11 +347,11 @@ contains
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum, its `error` told
+      !> The sum; `terms%error` is its estimated relative error
       type(exponential_sum_t), intent(out) :: terms
 
-      ! what is far from the accuracy asked for, and the part of the window by whose end what is
-      ! fastest is over
+      ! error over the requested accuracy from which a fit is tried, and the part of the window
+      ! within which its fastest term has decayed
       real(wp), parameter :: far = 30.0_wp, early = 0.01_wp
       type(exponential_sum_t) :: one
       logical :: is_found
@@ -362,10 +363,11 @@ contains
       else
          call self%first%exponentials(window, accuracy, terms)
          call terms%scale(self%first_factor)
-         ! a spectrum with peaks that no rule resolves
+         ! the spectrum has peaks that the rule does not resolve
          if (self%series .and. .not. self%first%discrete .and. terms%error > far*accuracy) then
             call fit_values(one)
-            ! what relaxes before the first of the values, its integral knows
+            ! the fastest term stands for all relaxation before the first sample; the integral gives
+            ! it
             n = size(one%rates)
             if (n > 0) one%moduli(n) = one%moduli(n) + one%rates(n) &
                *(self%integral(early*window) - one%integral(early*window))
@@ -385,15 +387,14 @@ contains
          if (allocated(self%fit)) then
             call self%fit%fit(window, self%relaxation(window*self%fit%time), terms)
          else
-            ! seldom: an expansion that is too long, or a spectrum that no rule resolves
+            ! rare: the expansion is too long, or the rule does not resolve the spectrum
             call new_signed_fit(other)
             call other%fit(window, self%relaxation(window*other%time), terms)
          end if
       end subroutine fit_values
    end subroutine exponentials
 
-   !> Sum of exponentials for a pair of an elastic body and one that is itself such a sum, in powers
-   !> of what relaxes
+   !> Expand a pair of an elastic body and a sum of exponentials in powers of its relaxing part
    pure subroutine expand_pair(self, window, accuracy, terms, is_found)
       !> Contact modulus of a pair
       class(contact_modulus_t), intent(in) :: self
@@ -402,10 +403,11 @@ contains
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
-      !> Whether it is such a pair, and has a short sum
+      !> Whether it is such a pair and the sum is short enough
       logical, intent(out) :: is_found
 
-      ! a digit costs little; rounding
+      ! accuracy of the expansion over that requested, since digits cost little; lower bound by
+      ! rounding
       real(wp), parameter :: finer = 1.0e-2_wp, finest = 1.0e-13_wp
       type(exponential_sum_t) :: other
       real(wp) :: elastic

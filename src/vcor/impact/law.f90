@@ -1,20 +1,18 @@
-!> Contact law: how the force follows the indentation s, through u(s) = s^n in
+!> Contact law: the force as a function of the history of the indentation s, by way of u(s) = s^n,
 !>
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    k(t) = K E'(t)
 !>
-!> All that depends on the exponent n is asked of this object. A sphere has n = 3/2 (Hertz), a body
-!> of revolution z = C r^p has n = 1 + 1/p and with kappa = sqrt(pi) Gamma(p/2 + 1)/Gamma((p + 1)/2)
+!> All that depends on the exponent n is in this module. A sphere has n = 3/2 (Hertz). A body of
+!> revolution z = C r^p has n = 1 + 1/p and, with kappa = sqrt(pi) Gamma(p/2 + 1)/Gamma((p + 1)/2)
 !> (L. A. Galin 1946; I. N. Sneddon, Int. J. Eng. Sci. 3 (1965) 47,
-!> doi:10.1016/0020-7225(65)90019-4)
+!> doi:10.1016/0020-7225(65)90019-4),
 !>
 !>     s = C kappa a^p,   F = 2 p/(p + 1) E' a s,   K = 2 p/(p + 1) (C kappa)^(-1/p)
 !>
-!> at the contact radius a: p = 1 is a cone, a flat punch has n = 1. With a = K u'(s)/2 a step of s
-!> is one of a flat punch of the radius a, whatever the shape. Units are written out for n = 3/2,
-!> such as [m^1.5] for u and [N/m^1.5] for k.
-!>
-!> Past the end of an elastic contact s is negative and the force with it, so u is odd:
-!> u(s) = s |s|^(n-1).
+!> with the contact radius a; p = 1 is a cone, a flat punch has n = 1. For all shapes a = K u'(s)/2:
+!> an increment of s acts like a flat punch of radius a. Units are given for n = 3/2, such as
+!> [m^1.5] for u and [N/m^1.5] for k. Beyond the end of an elastic contact s and the force are
+!> negative, so u is continued as an odd function, u(s) = s |s|^(n-1).
 module vcor_impact_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_constants, only : pi
@@ -26,18 +24,18 @@ module vcor_impact_law
    public :: contact_law_t, new_contact_law, sphere_factor, cone_factor, punch_factor, &
       profile_factor
 
-   !> Exponent of Hertz's contact of curved surfaces [-]
+   !> Exponent of Hertzian contact of curved surfaces [-]
    real(wp), parameter :: hertz = 1.5_wp
 
-   !> A contact law: by default Hertz's, its force the hereditary integral over all the past, which
-   !> is exact while the contact grows; immutable once built
+   !> A contact law, by default Hertz's with the hereditary integral over all the past, which is
+   !> exact while the contact grows; immutable once built
    type :: contact_law_t
       !> Exponent n of u = s^n [-], >= 1
       real(wp) :: exponent = hertz
       !> Duration of an elastic impact in units of `time_scale` [-]
       real(wp) :: contact_time = 3.2180654597190435_wp
-      !> Whether the integral ends where the contact was as small as it is now and growing: exact
-      !> while the contact shrinks too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
+      !> Whether the integral ends at the time when the growing contact was as small as now: exact
+      !> while the contact shrinks, too (T. C. T. Ting, J. Appl. Mech. 33 (1966) 845,
       !> doi:10.1115/1.3625192)
       logical :: receding = .false.
    contains
@@ -51,12 +49,12 @@ module vcor_impact_law
 
 contains
 
-   !> Build the law of an exponent
+   !> Build the law for an exponent
    pure subroutine new_contact_law(self, exponent, receding, error)
       type(contact_law_t), intent(out) :: self
       !> Exponent n [-], >= 1: 3/2 for spheres, 2 for cones, 1 for flat punches
       real(wp), intent(in) :: exponent
-      !> Whether the force of a shrinking contact is Ting's
+      !> Whether the force of a shrinking contact follows Ting
       logical, intent(in) :: receding
       type(error_t), allocatable, intent(out) :: error
 
@@ -73,7 +71,7 @@ contains
       if (allocated(error)) return
       self%receding = receding
       if (.not. abs(exponent - hertz) > 0.0_wp) return
-      ! twice the way to the largest indentation, where k s^(n+1)/(n+1) is the energy
+      ! twice the time to the largest indentation, from the elastic energy k s^(n+1)/(n+1)
       part = 1.0_wp/(exponent + 1.0_wp)
       self%exponent = exponent
       self%contact_time = 2.0_wp*(0.5_wp/part)**part &
@@ -84,7 +82,7 @@ contains
    pure subroutine sphere_factor(radius, surface_radius, factor, error)
       !> Radius of the sphere r [m], > 0
       real(wp), intent(in) :: radius
-      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
+      !> Radius of curvature of the plate at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
       !> K [m^0.5]
       real(wp), intent(out) :: factor
@@ -110,7 +108,7 @@ contains
 
    !> Factor K of a cone, n = 2
    pure function cone_factor(half_angle) result(factor)
-      !> Angle between its axis and its side [deg], in (0, 90)
+      !> Angle between axis and side [deg], in (0, 90)
       real(wp), intent(in) :: half_angle
       !> K [-]
       real(wp) :: factor
@@ -166,7 +164,7 @@ contains
       slope = self%exponent*self%secant(s)
    end function slope
 
-   !> u/s = |s|^(n-1); for Hertz by a square root, which costs a tenth of a power
+   !> u/s = |s|^(n-1); for Hertz a square root, which costs a tenth of a power
    elemental function secant(self, s)
       class(contact_law_t), intent(in) :: self
       !> Indentation [m]
@@ -181,7 +179,7 @@ contains
       end if
    end function secant
 
-   !> u/s at many indentations in one call, for inner loops: u is s times it, the slope n times it
+   !> u/s at many indentations, for inner loops: u = s (u/s), du/ds = n (u/s)
    pure subroutine secants(self, n, s, secant)
       class(contact_law_t), intent(in) :: self
       !> Number of indentations
@@ -198,8 +196,8 @@ contains
       end if
    end subroutine secants
 
-   !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz:
-   !> no iteration waits for a root
+   !> Solve s + c u(s) + d u(s)^2 = r by Newton's method for y = sqrt(|s|), which is u/s for Hertz,
+   !> so that no iteration takes a root
    pure subroutine solve(self, c, d, r, guess, s, secant)
       class(contact_law_t), intent(in) :: self
       !> Coefficient [m^-0.5], >= 0
@@ -208,11 +206,11 @@ contains
       real(wp), intent(in) :: d
       !> Right-hand side [m]
       real(wp), intent(in) :: r
-      !> Guess at s [m]
+      !> Guess of s [m]
       real(wp), intent(in) :: guess
       !> Indentation [m]
       real(wp), intent(out) :: s
-      !> u/s there [m^0.5]
+      !> u/s at the solution [m^0.5]
       real(wp), intent(out) :: secant
 
       real(wp), parameter :: least_guess = 1.0e-3_wp
@@ -222,10 +220,10 @@ contains
       s = 0.0_wp
       secant = self%secant(s)
       if (.not. abs(r) > 0.0_wp) return
-      ! with d = 0 the root lies below sqrt(|r|), and from above Newton's method descends to it
+      ! with d = 0 the root y is below sqrt(|r|), and Newton's method descends to it monotonically
       e = sign(d, r)
       y = sqrt(abs(r))
-      ! from far below, next to zero, the first step would leave the range of the numbers
+      ! from a guess too close to zero the first step would overflow
       if (abs(guess) > 0.0_wp) y = min(y, max(sqrt(abs(guess)), least_guess*y))
       do iteration = 1, 60
          secant = y
@@ -235,14 +233,14 @@ contains
          correction = ((s - abs(r)) + u*(c + e*u)) &
             /(2.0_wp*(y + self%exponent*secant*y*(c + 2.0_wp*e*u)))
          y = y - correction
-         ! what is left is about its square
+         ! the remaining error is about the square of the correction
          if (abs(correction) <= 1.0e-9_wp*y) exit
       end do
       s = sign(y*y, r)
       secant = self%secant(s)
    end subroutine solve
 
-   !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of the impact on an elastic contact, F = k u
+   !> Time scale T = (m/(k v0^(n-1)))^(1/(n+1)) of an impact on an elastic contact, F = k u
    pure function time_scale(self, mass, firmness, velocity) result(time)
       class(contact_law_t), intent(in) :: self
       !> Mass [kg], > 0

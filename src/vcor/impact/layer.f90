@@ -1,16 +1,16 @@
-!> Compliance of a plate by linear elastodynamics: a layer with free faces, or a half space
+!> Compliance of a plate by linear elastodynamics, as a layer with free faces or as a half space
 !>
-!> A normal load F on the disc of radius a, the footprint, moves the loaded face by U(s) = C(s) F(s)
-!> beyond the dent of Hertz' static half space. With k the wavenumber, mu(s) the shear modulus,
-!> q = rho s^2/mu, p = q (1 - 2 nu)/(2 (1 - nu)) and H the thickness,
+!> A normal force F on a disc of radius a, the footprint, moves the loaded face by U(s) = C(s) F(s),
+!> not counting the dent of Hertz' static half space. With the wavenumber k, the shear modulus
+!> mu(s), q = rho s^2/mu, p = q (1 - 2 nu)/(2 (1 - nu)) and the thickness H,
 !>
 !>     C(s) = 1/(2 pi) int_0^oo [k G(k, s) - (1 - nu)/mu] (sin(k a)/(k a))^2 dk
 !>
 !>     G = al q/(2 mu) [ta tb/(S tb - T ta) + 1/(S ta - T tb)],   al^2 = k^2 + p,  be^2 = k^2 + q,
 !>     S = (k^2 + be^2)^2,  T = 4 k^2 al be,  ta = tanh(al H/2),  tb = tanh(be H/2)
 !>
-!> the symmetric and the antisymmetric motions of a layer (Rayleigh 1888, Lamb 1917), and
-!> G = al q/(mu (S - T)) for a half space. S - T and tb - ta are formed without cancellation:
+!> for the symmetric and the antisymmetric motions of a layer (Rayleigh 1888, Lamb 1917), and
+!> G = al q/(mu (S - T)) for a half space. S - T and tb - ta are computed without cancellation:
 !>
 !>     S - T = [16 k^6 (q - p) + k^4 (24 q^2 - 16 p q) + 8 k^2 q^3 + q^4]/(S + T)
 !>     tb - ta = tanh((be - al) H/2) (1 - ta tb),   be - al = (q - p)/(al + be)
@@ -25,25 +25,25 @@ module vcor_impact_layer
 
    public :: layer_t, new_layer
 
-   !> Nodes of a panel of wavenumbers
+   !> Number of Gauss nodes of a panel of wavenumbers
    integer, parameter :: nodes = 12
 
    !> A layer or a half space
    type :: layer_t
-      !> Material, neither rigid nor without density
+      !> Material, not rigid and with a density
       class(material_t), allocatable, private :: material
-      !> Thickness H [m]; 0: a half space
+      !> Thickness H [m]; 0 for a half space
       real(wp) :: thickness = 0.0_wp
       !> Gauss' rule on (0, 1)
       real(wp), private :: node(nodes) = 0.0_wp, weight(nodes) = 0.0_wp
    contains
-      !> Compliance beyond Hertz' dent
+      !> Compliance C(s), without Hertz' dent
       procedure :: compliance
-      !> Hertz' dent by a flat punch
+      !> Compliance of Hertz' dent
       procedure :: dent
-      !> Compliance for what happens at once
+      !> Compliance at infinite s
       procedure :: instant
-      !> Way of a shear wave
+      !> Distance that a shear wave travels
       procedure :: way
    end type layer_t
 
@@ -55,7 +55,7 @@ contains
       type(layer_t), intent(out) :: self
       !> Material, with a density
       class(material_t), intent(in) :: material
-      !> Thickness [m], > 0; 0: a half space
+      !> Thickness [m], > 0; 0 for a half space
       real(wp), intent(in) :: thickness
 
       allocate (self%material, source=material)
@@ -63,24 +63,24 @@ contains
       call gauss_nodes(self%node, self%weight)
    end subroutine new_layer
 
-   !> Compliance C(s) beyond Hertz' dent for discs of many radii, which cost little more than one
+   !> Compliance C(s), without Hertz' dent, for discs of several radii, at little more cost than one
    pure function compliance(self, s, footprint, accuracy) result(c)
       class(layer_t), intent(in) :: self
       !> Laplace variable [1/s], real part > 0
       complex(wp), intent(in) :: s
-      !> Radii a of the disc that is loaded [m], > 0, shape (n)
+      !> Radii a of the loaded disc [m], > 0, shape (n)
       real(wp), intent(in) :: footprint(:)
-      !> Wanted error over C and the dent, >= 1e-9
+      !> Wanted error, relative to C plus the dent, >= 1e-9
       real(wp), intent(in) :: accuracy
       !> Compliances [m/N], shape (n)
       complex(wp) :: c(size(footprint))
 
-      ! Rayleigh's waves are slower than shear waves by this factor at most, and by the second part
-      ! where Poisson's ratio is -1; bending waves differ so much from those of a thin plate
+      ! largest wavenumber of Rayleigh waves over that of shear waves, for nu >= 0, and its growth
+      ! with -nu; range of the wavenumber of bending waves over that of a thin plate
       real(wp), parameter :: rayleigh(2) = [1.15_wp, 0.3_wp], bending(2) = [0.7_wp, 1.6_wp]
-      ! Poisson's ratio is 1/2 where shear waves over pressure waves have this speed
+      ! smallest c_s/c_p that is resolved; below, Poisson's ratio is practically 1/2
       real(wp), parameter :: fastest = 0.03_wp
-      ! The integrand is its asymptote beyond these, over radius, shear wave and thickness
+      ! the asymptote holds beyond these, over 1/radius, shear wavenumber and 1/thickness
       real(wp), parameter :: far_footprint = 40.0_wp, far_wave = 0.37_wp, far_face = 30.0_wp
       real(wp), parameter :: order = 2.0_wp*real(nodes, wp)
       complex(wp) :: modulus, shear, p, q, g(nodes)
@@ -95,9 +95,10 @@ contains
       q = self%material%density()*s**2/shear
       p = share*q
 
-      ! Gauss' rule with n nodes is as accurate as asked for on a panel that is `reach` times its
-      ! distance from the poles of G, which leaves out an ellipse around it: the sum of its half
-      ! axes over half the panel to the power -2 n. A sine is to have a panel of 1/k `widest`
+      ! Gauss' rule with n nodes has the error ellipse^(-2 n) for an integrand analytic in the
+      ! ellipse around the panel whose half axes add up to `ellipse` half panels. So a panel may be
+      ! `reach` times as long as its distance from the poles of G, and `widest`/a for the factor
+      ! sin(k a)
       ellipse = accuracy**(-1.0_wp/order)
       reach = 4.0_wp*ellipse/(ellipse**2 - 1.0_wp)
       widest = 2.0_wp*(gamma(order + 1.0_wp)*accuracy)**(1.0_wp/order)
@@ -116,8 +117,8 @@ contains
       c = (0.0_wp, 0.0_wp)
       low = 0.0_wp
       do while (low < last)
-         ! the groups of waves travel no faster than these do, nor than pressure waves; those of
-         ! bending waves twice as fast
+         ! poles lie off the real axis by the damping over the group speed, which does not exceed
+         ! the phase speed, twice that of bending waves, nor the speed of pressure waves
          step = reach*(damping*max(max(sqrt(share), fastest)*shear_wave, min(low, shear_wave)) &
             + max(0.0_wp, low - behind))
          if (low < bending(2)*bending_wave) step = min(step, &
@@ -132,7 +133,7 @@ contains
          low = low + step
       end do
 
-      ! k G mu = (1 - nu) (1 + zeta_1 q/k^2 + zeta_2 (q/k^2)^2 + ...) beyond
+      ! beyond, k G mu = (1 - nu) (1 + zeta_1 q/k^2 + zeta_2 (q/k^2)^2 + ...)
       zeta(1) = -(3.0_wp - 4.0_wp*share + 3.0_wp*share**2)/(4.0_wp*(1.0_wp - share))
       zeta(2) = (11.0_wp - 22.0_wp*share + 18.0_wp*share**2 - 2.0_wp*share**3 - share**4) &
          /(16.0_wp*(1.0_wp - share)**2)
@@ -143,7 +144,7 @@ contains
       c = c/(2.0_wp*pi*shear)
    end function compliance
 
-   !> Compliance of a flat punch on the static half space, what C(s) lacks to be passive
+   !> Compliance of a flat punch on a static half space; C(s) plus this is passive
    pure function dent(self, s, footprint) result(c)
       class(layer_t), intent(in) :: self
       !> Laplace variable [1/s], real part > 0
@@ -157,10 +158,10 @@ contains
          /(2.0_wp*self%material%complex_modulus(s)*footprint)
    end function dent
 
-   !> Compliance at s -> oo: minus that of the punch, glassy
+   !> Compliance at s -> oo: minus the glassy compliance of the punch
    pure function instant(self, footprint) result(c)
       class(layer_t), intent(in) :: self
-      !> Radius a of the disc that is loaded [m], > 0
+      !> Radius a of the loaded disc [m], > 0
       real(wp), intent(in) :: footprint
       !> Compliance [m/N], <= 0
       real(wp) :: c
@@ -173,12 +174,12 @@ contains
          c = -(1.0_wp - nu**2)/(2.0_wp*self%material%glassy()*footprint)
    end function instant
 
-   !> Way of a shear wave in a time
+   !> Distance that a shear wave travels in a time
    pure function way(self, time)
       class(layer_t), intent(in) :: self
       !> Time [s], > 0
       real(wp), intent(in) :: time
-      !> Way [m]
+      !> Distance [m]
       real(wp) :: way
 
       real(wp) :: shear
@@ -188,18 +189,18 @@ contains
       way = time*sqrt(shear/self%material%density())
    end function way
 
-   !> k mu G: deflection of the face by a load that varies as J_0(k r)
+   !> k mu G, the deflection of the face under a load that varies as J_0(k r)
    elemental function deflection(k, q, p, thickness) result(g)
       !> Wavenumber [1/m], > 0
       real(wp), intent(in) :: k
-      !> s^2 over the squares of the speeds of shear and pressure waves [1/m2]
+      !> s^2 over the squared speeds of shear and of pressure waves [1/m2]
       complex(wp), intent(in) :: q, p
-      !> Thickness [m]; 0: a half space
+      !> Thickness [m]; 0 for a half space
       real(wp), intent(in) :: thickness
       !> k mu G [-]
       complex(wp) :: g
 
-      ! where exp(-al H) and exp(-be H) are so close that their difference is taken by a series
+      ! |al - be| H below which the difference of exp(-al H) and exp(-be H) is taken by a series
       real(wp), parameter :: small = 0.1_wp
       integer, parameter :: terms = 8
       complex(wp) :: al, be, s, t, s_less_t, da, db, d, difference

@@ -1,19 +1,19 @@
-!> Response of a layer on the window of an impact as internal variables
+!> Response of a layer during an impact as internal variables
 !>
-!> U = instant F + sum_k c_k int_0^t exp(-l_k (t - x)) F(x) dx, some of the rates l_k in pairs of
-!> complex conjugates: waves between the faces ring. C(s) = instant + sum_k c_k/(s + l_k) is fitted
-!> by least squares. In units of the window the rates are the same for all layers: a Fourier series
-!> on a somewhat longer one can be anything on the window.
+!> U = instant F + sum_k c_k int_0^t exp(-l_k (t - x)) F(x) dx, in which some of the rates l_k are
+!> complex conjugate pairs, as waves between the faces oscillate. C(s) = instant + sum_k c_k/(s +
+!> l_k) is fitted by least squares. Over the window the rates are the same for all layers: like a
+!> Fourier series with a somewhat longer period, they can represent any response on the window.
 !>
-!> `instant` is the exact C(oo), not fitted. An impact on the sum stays stable as one on the layer
-!> is, if the sum leaves C and the dent of a flat punch together passive: the misfit counts over the
-!> size of both. What the fit leaves of it beyond its last point is too slow to grow within the
-!> window. Beyond the equidistant rates the points leave the line Re s = 2/window, as far as the
-!> rates do: there the response is damped, and what echoes do has no part in the motion.
+!> `instant` is the exact C(oo). The impact is stable with the sum, as it is with the layer, if C
+!> plus the dent of a flat punch remains passive; so the misfit is weighted by the size of both.
+!> Where it is not passive, beyond the last point, growth is too slow to matter within the window.
+!> Beyond the equidistant rates the points leave the line Re s = 2/window, as the rates do:
+!> responses there are damped, and echoes at such frequencies do not affect the motion.
 !>
-!> Impacts share windows and fits: a fit is one for a band of footprints, at some radii in it that
-!> its coefficients are interpolated between. Windows and bands are steps of ladders, so that an
-!> impact has the same sum whichever impacts come before it.
+!> Impacts share fits. A fit is for a window and a band of footprints: its coefficients are found at
+!> several radii in the band and interpolated between them. Windows and bands are steps of geometric
+!> ladders, so that the sum of an impact does not depend on the impacts before it.
 module vcor_impact_layer_sum
    use vcor_constants, only : pi
    use vcor_impact_layer, only : layer_t
@@ -25,85 +25,87 @@ module vcor_impact_layer_sum
 
    public :: layer_misfit_t, layer_sum_t, new_layer_sum
 
-   !> The band of footprints: from ladder**band to ladder**(band + 1) m, and radii in it at the
+   !> A band of footprints goes from ladder**band to ladder**(band + 1) m; the radii in it are the
    !> zeros of a Chebyshev polynomial of the logarithm
    real(wp), parameter :: ladder = 2.0_wp
    integer, parameter :: radii = 13
 
-   !> What a sum misses of C [m/N]
+   !> Misfits of C as an impact feels them [m/N]
    type :: layer_misfit_t
-      !> As the motion feels it, in all and of echoes alone
+      !> Of the motion: of all, and of echoes alone
       real(wp) :: motion = 0.0_wp, echo = 0.0_wp
-      !> As the velocity feels it at an end at which the force is smooth, and at one where it is not
+      !> Of the velocity, at an end where the force is smooth, and where it is a power of the time
+      !> left
       real(wp) :: smooth_end = 0.0_wp, power_end = 0.0_wp
    end type layer_misfit_t
 
-   !> Sums of a layer for the footprints of a band
+   !> Sums of a layer for a band of footprints
    type :: layer_sum_t
       private
-      !> Time up to which they hold [s]
+      !> Time up to which the sums hold [s]
       real(wp) :: window = 0.0_wp
       integer :: band = 0
-      !> Coefficients c_k at the radii, real terms, then real and imaginary parts of the pairs,
+      !> Coefficients c_k at the radii: real terms, then real and imaginary parts of the pairs,
       !> times the radius [m2/(N s)], shape (terms, radii)
       real(wp), allocatable :: coefficient(:, :)
-      !> Largest misfits of C at the radii as the motion feels it and as its rate does, times the
+      !> Largest misfits of C at the radii, weighted for the motion and for the velocity, times the
       !> radius [m2/N]
       real(wp) :: misfit(radii) = 0.0_wp, misfit_of_rate(radii) = 0.0_wp
-      !> The same of echoes alone, beyond the equidistant rates, and for the rate of all the rest
+      !> The same for echoes beyond the equidistant rates; for the velocity with all misfits up to
+      !> them
       real(wp) :: echo(radii) = 0.0_wp, echo_of_rate(radii) = 0.0_wp
    contains
-      !> Whether they are for a footprint and a window
+      !> Whether the sums are for a given footprint and window
       procedure :: holds
-      !> The sum for a footprint
+      !> Sum for a footprint
       procedure :: at
    end type layer_sum_t
 
-   !> Pairs of rates: equidistant ones for a period that is longer than the window, then a series
-   !> with the damping of its steps, up to `top`
+   !> Pairs of rates: equidistant ones with the same `damping`, for a period of 2.4 windows, then a
+   !> geometric series in which the damping is the distance of neighbours
    integer, parameter :: equidistant = 40, series = 11
    real(wp), parameter :: step = pi/1.2_wp, damping = 3.0_wp, ratio = 1.25_wp
-   !> Real rates, first that of a thin plate: it stays where an impulse has moved it
+   !> Real rates; the first, 0, is that of a thin plate, which stays where an impulse has moved it
    integer, parameter :: slow = 17
    real(wp), parameter :: slowest = 0.3_wp, fastest = 3000.0_wp
    integer :: i_rate
-   !> The last of the equidistant rates
+   !> Imaginary part of the last equidistant rate
    real(wp), parameter :: first = step*real(equidistant, wp)
-   !> Real rates, and one of each pair, times the window
+   !> Real rates, and one of each pair, over the inverse of the window
    real(wp), parameter :: rate(slow) = [0.0_wp, (slowest*(fastest/slowest)**(real(i_rate, wp) &
       /real(slow - 2, wp)), i_rate=0, slow - 2)]
    complex(wp), parameter :: pair_rate(equidistant + series) = [ &
       (cmplx(damping, -step*real(i_rate, wp), wp), i_rate=1, equidistant), &
       (first*ratio**i_rate*cmplx(1.0_wp - 1.0_wp/ratio, -1.0_wp, wp), i_rate=1, series)]
-   !> Terms and coefficients
+   !> Number of coefficients
    integer, parameter :: terms_of_fit = slow + 2*(equidistant + series)
 
-   !> Points times the window: on the line with this distance, then a series that leaves it with
-   !> this slope
+   !> Points s times the window: with real part `line` and spacing `dense`, then a geometric series
+   !> that departs from this line with the given slope
    real(wp), parameter :: line = 2.0_wp, dense = 0.6_wp, last = 3000.0_wp, slope = 0.1_wp
    integer, parameter :: near = floor(first/dense) + 1, sparse = 60, points = near + sparse
    real(wp), parameter :: omega(points) = [(dense*real(i_rate, wp), i_rate=0, near - 1), &
       (first*(last/first)**(real(i_rate, wp)/real(sparse, wp)), i_rate=1, sparse)]
    complex(wp), parameter :: point(points) = [(cmplx(line + slope*max(omega(i_rate) - first, &
       0.0_wp), omega(i_rate), wp), i_rate=1, points)]
-   !> Points on the line beyond the equidistant rates, in pairs that are a step apart: what they
-   !> differ by is an echo of about the window, the rest has no memory as long as that
+   !> Points on the line beyond the equidistant rates, in pairs one `step` apart: an echo delayed by
+   !> about the window makes them differ, a shorter memory does not
    integer, parameter :: beyond = 10
    complex(wp), parameter :: echo(2*beyond) = [ &
       (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp), wp), i_rate=1, beyond), &
       (cmplx(line, first*ratio**(real(i_rate, wp) - 0.5_wp) + step, wp), i_rate=1, beyond)]
 
-   !> Error of the rate beyond all rates, over what stands in for it elsewhere, measured
+   !> Error of the velocity by a dent that continues beyond all rates, over its estimate, measured
    real(wp), parameter :: beyond_rates = 5.0e-3_wp
 
-   !> F has parts of the frequency w as 1/(1 + (w window/bend)^power): its start and end are powers
-   !> 1.5 of time; for the velocity U' they count for more, and the fit stands between them
+   !> Spectrum of F over frequency w, 1/(1 + (w window/bend)^power), as F starts and ends with a
+   !> power 1.5 of time; exponents for the velocity U' and, between both, for the weights of the fit
    real(wp), parameter :: bend = 3.0_wp, power = 2.5_wp, power_of_rate = 1.5_wp, &
       power_of_fit = 2.0_wp
 
 contains
 
-   !> Band of a footprint
+   !> Index of the band that contains a footprint
    pure function band_of(footprint) result(band)
       !> Radius [m], > 0
       real(wp), intent(in) :: footprint
@@ -112,7 +114,7 @@ contains
       band = floor(log(footprint)/log(ladder))
    end function band_of
 
-   !> Whether the sums are for a footprint and a window
+   !> Whether the sums are for a given footprint and window
    elemental function holds(self, footprint, window)
       class(layer_sum_t), intent(in) :: self
       !> Radius [m], > 0
@@ -129,7 +131,7 @@ contains
       !> The sums; without coefficients if LAPACK fails
       type(layer_sum_t), intent(out) :: self
       type(layer_t), intent(in) :: layer
-      !> Radius of the disc that is loaded [m], > 0
+      !> Radius of the loaded disc [m], > 0
       real(wp), intent(in) :: footprint
       !> Time up to which the sums are to hold [s], > 0
       real(wp), intent(in) :: window
@@ -159,7 +161,7 @@ contains
          *(1.0_wp + (abs(point)/bend)**power_of_fit)), c, self%coefficient)
       if (.not. allocated(self%coefficient)) return
       size_of_force = abs([point, echo(:beyond)])/bend
-      ! a dent that goes on beyond all rates, as that of a power law, counts as the root of time
+      ! a dent that continues beyond all rates, as that of a power law, starts as the root of time
       tail = 0.0_wp
       if (.not. abs(at_once()) > 0.0_wp) tail = beyond_rates*radius(middle) &
          *abs(layer%dent(point(points)/window, radius(middle)))*sqrt(bend/abs(point(points)))
@@ -189,14 +191,14 @@ contains
 
    contains
 
-      !> What follows the force at once, times the radius [m2/N]: the same for all
+      !> Deflection that follows the force at once, times the radius [m2/N]; the same for all radii
       pure function at_once()
          real(wp) :: at_once
 
          at_once = radius(middle)*layer%instant(radius(middle))
       end function at_once
 
-      !> Accuracy of C at a point, where the force has less and less of the frequency
+      !> Accuracy of C at a point: the force contains less and less of higher frequencies
       pure function accuracy(i)
          integer, intent(in) :: i
          real(wp) :: accuracy
@@ -205,7 +207,7 @@ contains
       end function accuracy
    end subroutine new_layer_sum
 
-   !> Positions of the radii in their band, from -1 to 1
+   !> Positions of the radii in the band, from -1 to 1
    pure function node()
       real(wp) :: node(radii)
 
@@ -214,13 +216,13 @@ contains
       node = [(cos(pi*(real(i, wp) - 0.5_wp)/real(radii, wp)), i=1, radii)]
    end function node
 
-   !> What a coefficient adds to C at a point times the window
+   !> Contribution of a coefficient to C at a point times the window
    elemental function response(term, s) result(c)
       !> Number of the coefficient
       integer, intent(in) :: term
       !> The point
       complex(wp), intent(in) :: s
-      !> Part of C for a coefficient of 1
+      !> C for a coefficient of 1
       complex(wp) :: c
 
       if (term <= slow) then
@@ -236,19 +238,19 @@ contains
       end associate
    end function response
 
-   !> The sum for a footprint
+   !> Sum for a footprint
    pure subroutine at(self, footprint, terms, misfit)
       class(layer_sum_t), intent(in) :: self
-      !> Radius of the disc that is loaded [m], in the band
+      !> Radius of the loaded disc [m], in the band
       real(wp), intent(in) :: footprint
-      !> U' but for instant F': with c_k the viscosity is sum_k c_k and the moduli are -l_k c_k
+      !> U' without instant F', as a modulus: viscosity sum_k c_k, moduli -l_k c_k
       type(exponential_sum_t), intent(out) :: terms
       type(layer_misfit_t), intent(out) :: misfit
 
       real(wp) :: weight(radii), distance(radii), c(terms_of_fit)
       integer :: i
 
-      ! barycentric interpolation in ln a
+      ! barycentric interpolation in the logarithm of the radius
       distance = 2.0_wp*(log(footprint)/log(ladder) - real(self%band, wp)) - 1.0_wp - node()
       weight = [((-1.0_wp)**i*sin(pi*(real(i, wp) - 0.5_wp)/real(radii, wp)), i=1, radii)]
       if (any(.not. abs(distance) > 0.0_wp)) then
@@ -269,13 +271,13 @@ contains
       terms%pair_moduli = -terms%pair_rates*terms%pair_moduli
    end subroutine at
 
-   !> Weighted least squares with many right sides, as far as the columns are independent
+   !> Weighted least squares with several right-hand sides, on the independent columns
    pure subroutine least_squares(matrix, weight, right, x)
       !> Matrix, rows of real parts, then of imaginary ones, shape (2*n, m); on return its factors
       real(wp), intent(inout) :: matrix(:, :)
       !> Weights of the rows, shape (n)
       real(wp), intent(in) :: weight(:)
-      !> Right sides, shape (n, k)
+      !> Right-hand sides, shape (n, k)
       complex(wp), intent(in) :: right(:, :)
       !> Solutions, shape (m, k); not allocated if LAPACK fails
       real(wp), allocatable, intent(out) :: x(:, :)

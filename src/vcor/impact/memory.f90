@@ -1,15 +1,14 @@
-!> What a viscoelastic plate remembers of the force
+!> Memory psi of a viscoelastic thin plate: the dependence of its velocity on the force in the past
 !>
-!> The plate is linear, so the elastic deflection U' = A F/sqrt(E'_b) becomes by the correspondence
-!> principle, in the Laplace domain with Q_b = s L{E'_b},
+!> By the correspondence principle the elastic deflection, U' = A F/sqrt(E'_b), becomes in the
+!> Laplace domain, with Q_b = s L{E'_b},
 !>
 !>     s U = A F/sqrt(Q_b),   U'(t) = alpha F + int_0^t psi(t - x) F(x) dx
 !>
-!> and alpha = A/sqrt(Q_b(oo)).
-!>
-!> A s/sqrt(Q_b) has all that makes the complex modulus of a material, and as such it is built here:
-!> psi is its relaxation modulus, alpha its dashpot. 1/sqrt(Q_b) is a Stieltjes function, so
-!> psi = int w(l) exp(-l t) dl with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0)) >= 0.
+!> with alpha = A/sqrt(Q_b(oo)). A s/sqrt(Q_b) has all properties of the complex modulus of a
+!> material and is implemented as one, with relaxation modulus psi and dashpot alpha. 1/sqrt(Q_b) is
+!> a Stieltjes function, so psi = int w(l) exp(-l t) dl with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0))
+!> >= 0.
 module vcor_impact_memory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
    use vcor_constants, only : pi
@@ -24,26 +23,26 @@ module vcor_impact_memory
 
    public :: memory_t, new_memory
 
-   !> Zeros and poles of Q_b(-l) for a material that is a sum of exponentials: zero i lies between
-   !> pole i and pole i + 1, pole 1 = 0 being none of Q_b; with a dashpot there is one beyond the
-   !> last pole
+   !> Zeros and poles of Q_b(-l) if the material is a sum of exponentials: zero i lies between pole
+   !> i and pole i + 1, where pole 1 = 0 is not a pole of Q_b; with a dashpot the last zero is
+   !> beyond the last pole
    type :: gaps_t
       !> Poles d [1/s], and their weights w in Q_b(-l) = -l (viscosity + sum w_j/(d_j - l)) [Pa]
       real(wp), allocatable :: pole(:), weight(:)
-      !> Number of the pole that each zero is counted from
+      !> Number of the pole from which each zero is measured
       integer, allocatable :: near(:)
-      !> Distance of the zero from it [1/s]
+      !> Distance of each zero from that pole [1/s]
       real(wp), allocatable :: offset(:)
    end type gaps_t
 
-   !> Velocity of the plate per force as a modulus [m/(N s)], [m/(N s2)] in time
+   !> Velocity of the plate per force, as a modulus [m/(N s)], in time [m/(N s2)]
    type, extends(transform_t) :: memory_t
       private
       !> Material of the plate
       class(material_t), allocatable :: material
-      !> Coefficient A, the plane-strain factor in it [Pa^0.5 m/(N s)]
+      !> Coefficient A, including the plane-strain factor [Pa^0.5 m/(N s)]
       real(wp) :: coefficient = 0.0_wp
-      !> Zeros and poles where the material is a sum of exponentials
+      !> Zeros and poles if the material is a sum of exponentials
       type(gaps_t) :: gaps
    contains
       procedure :: complex_modulus
@@ -86,7 +85,7 @@ contains
 
       call material%find_zeros(gaps%pole, gaps%weight, gaps%near, gaps%offset)
       if (material%equilibrium > 0.0_wp) return
-      ! the factor l is a zero at 0
+      ! Q_b is proportional to l at 0: a zero
       gaps%near = [1, gaps%near + 1]
       gaps%offset = [0.0_wp, gaps%offset]
       gaps%pole = [0.0_wp, gaps%pole]
@@ -104,7 +103,7 @@ contains
       modulus = self%coefficient*s/sqrt(self%material%complex_modulus(s))
    end function complex_modulus
 
-   !> psi(0), which nothing needs: infinite for singular kernels, and taken so for all
+   !> psi(0): not used by any solver; set to infinity, which it is for singular kernels
    pure function glassy(self) result(modulus)
       class(memory_t), intent(in) :: self
       !> Infinite
@@ -122,8 +121,8 @@ contains
       modulus = 0.0_wp*self%coefficient
    end function rubbery
 
-   !> The memory as a sum of exponentials, alpha as its viscosity; its error is that of the velocity
-   !> under a constant force, over that velocity
+   !> The memory as a sum of exponentials, with alpha as its viscosity; `terms%error` is that of the
+   !> velocity under a constant force, over that velocity
    pure subroutine exponentials(self, window, accuracy, terms)
       class(memory_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
@@ -132,17 +131,17 @@ contains
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
 
-      ! the rule for gaps gets as many digits more with each, the other one a step so much shorter
+      ! most refinements: of accuracy for the rule over gaps, of the step for the rule for spectra
       integer, parameter :: most_for_gaps = 5, most_for_spectra = 18
-      ! what the numerical inversion leaves
+      ! accuracy of the numerical inversion
       real(wp), parameter :: rounding = 3.0e-12_wp
-      ! the square root has a strip of its own, narrower than that of the material, and what is slow
-      ! in the plate is no power of the rate: the step of the rule for powers is divided by this,
-      ! and the runs begin so much farther out, as ln of the rate
+      ! the square root narrows the strip in which the spectrum is analytic, and slow rates do not
+      ! follow a power law: the rule for spectra starts with a step divided by `finer`, and its slow
+      ! and fast ends `below` and `above` farther out in ln(l)
       real(wp), parameter :: finer = 1.25_wp, below = 5.0_wp, above = 1.0_wp
-      ! what comes to that with each refinement
+      ! the same for each refinement
       real(wp), parameter :: much_finer = 1.3_wp, farther = 2.0_wp
-      ! over the rate of the window
+      ! rate that stands for zero, over that of the window
       real(wp), parameter :: slowest = 1.0e-14_wp
       type(exponential_sum_t) :: now
       integer :: refinement
@@ -163,7 +162,8 @@ contains
          if (now%error < terms%error) terms = now
          if (terms%error <= max(accuracy, rounding)) exit
       end do
-      ! what is too slow for a rate of its own is a mode, too: the motion remembers nothing else
+      ! the motion remembers the force by modes only: the constant becomes a mode of a very slow
+      ! rate
       if (.not. terms%equilibrium > 0.0_wp) return
       terms%moduli = [terms%moduli, terms%equilibrium]
       terms%rates = [terms%rates, slowest/window]
@@ -184,7 +184,7 @@ contains
       time = [1.0_wp, 0.1_wp]*window
       n = size(time)
       if (self%material%discrete) then
-         ! the rule for gaps converges geometrically: one time tells, before all is relaxed
+         ! the rule over gaps converges geometrically: one time is enough, before all has relaxed
          n = 1
          associate (zero => self%gaps%pole(self%gaps%near(1)) + self%gaps%offset(1))
             if (zero*window > 1.0_wp) time = 1.0_wp/zero
@@ -198,9 +198,9 @@ contains
       end do
    end function error_of
 
-   !> Sum for a material that is a sum of exponentials itself. Q_b(-l) is real, and negative between
-   !> each of its zeros z and the pole b that follows; there w(l) = A/(pi sqrt(-Q_b)), with a branch
-   !> point at both ends. With a dashpot w goes on to infinity beyond the last pole
+   !> Sum for a material that is a sum of exponentials. Q_b(-l) is real, and negative between each
+   !> zero z and the pole b that follows, with a branch point at both ends; there
+   !> w(l) = A/(pi sqrt(-Q_b)). With a dashpot the last gap extends to infinity
    pure subroutine sum_over_gaps(self, gaps, window, accuracy, terms)
       class(memory_t), intent(in) :: self
       !> Zeros and poles of Q_b
@@ -211,11 +211,12 @@ contains
       real(wp), intent(in) :: accuracy
       type(exponential_sum_t), intent(out) :: terms
 
-      ! exp(-l t) grows for l < 0 where the window is long: as if there were a branch point
+      ! in a long window exp(-l t) grows for l < 0; this bounds the strip like a branch point
       real(wp), parameter :: growth = 2.0_wp
-      ! beyond all rates that can be computed with, and what is a dashpot on the window
+      ! the substitution begins here; |y| beyond which rates cannot be computed; 1/(rate times
+      ! window) of a term that acts as a dashpot
       real(wp), parameter :: slow = 0.1_wp, farthest = 600.0_wp, constant = 1.0e-14_wp
-      ! terms that are collected at a time: no gap has as many
+      ! terms collected at a time, more than any gap has
       integer, parameter :: room = 256
       real(wp), allocatable :: from_zero(:), to_pole(:), share(:)
       real(wp) :: rates(room), moduli(room)
@@ -251,8 +252,8 @@ contains
       terms%moduli = [terms%moduli, moduli(:found)]
       if (.not. zeros > n) return
 
-      ! beyond the last pole l = z + exp(y), and y runs away doubly exponentially at both ends, as
-      ! in `vcor_material_spectrum`
+      ! beyond the last pole l = z + exp(y), with a double-exponential substitution for y at both
+      ! ends, as in `vcor_material_spectrum`
       zero = gaps%pole(gaps%near(zeros)) + gaps%offset(zeros)
       before = (gaps%pole(gaps%near(zeros)) - gaps%pole(zeros)) + gaps%offset(zeros)
       if (.not. before > 0.0_wp) before = 1.0_wp/window
@@ -275,14 +276,14 @@ contains
 
    contains
 
-      !> w(l) at l = z_i + x = b_i - y. As Q_b(-z_i) is 0,
-      !> -Q_b(-l) = x (viscosity + sum w_j d_j/((d_j - z_i) (d_j - l))): all terms are positive
+      !> w(l) at l = z_i + x = b_i - y. With Q_b(-z_i) = 0 subtracted, all terms are positive:
+      !> -Q_b(-l) = x (viscosity + sum w_j d_j/((d_j - z_i) (d_j - l)))
       pure function density(i, x, y) result(w)
          !> Number of the zero
          integer, intent(in) :: i
          !> Distance from the zero [1/s], > 0
          real(wp), intent(in) :: x
-         !> Distance to the pole after it [1/s], > 0; without meaning beyond the last pole
+         !> Distance to the next pole [1/s], > 0; not used beyond the last pole
          real(wp), intent(in) :: y
          !> Density
          real(wp) :: w

@@ -1,4 +1,4 @@
-!> Outcome of an impact: the numbers that users ask for
+!> Outcome of an impact: the quantities that users ask for
 module vcor_impact_outcome
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use, intrinsic :: iso_fortran_env, only : int64
@@ -13,13 +13,14 @@ module vcor_impact_outcome
 
    public :: outcome_t, evaluate, none
 
-   !> A number that there is not: quiet NaN, which no function may make in a constant
+   !> Quiet NaN for a quantity that does not exist, by its bits: no function is allowed in a
+   !> constant
    real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
 
-   !> Outcome; of an impact that did not end in separation only `status`, `steps` and
-   !> `initial_energy` are numbers, and of one that rests the maxima and the indentation that is
-   !> left; all else is NaN. The measures from `rebound_height` on, which take more than the impact,
-   !> are set by `assess` of `vcor_impact_validity`; NaN where there is no such thing
+   !> The outcome. Without separation only `status`, `steps` and `initial_energy` are set, for a
+   !> sphere at rest the maxima and the residual indentation too; all others are NaN. The measures
+   !> from `rebound_height` on, which need more than the impact, are set by `assess` of
+   !> `vcor_impact_validity`, NaN where they do not apply
    type :: outcome_t
       !> One of the `contact_*` constants of the trajectory
       integer :: status = contact_unknown
@@ -33,13 +34,13 @@ module vcor_impact_outcome
       real(wp) :: contact_time = none
       !> Largest indentation [m]
       real(wp) :: max_indentation = none
-      !> Its time [s]
+      !> Time of the largest indentation [s]
       real(wp) :: time_of_max_indentation = none
       !> Largest force [N]
       real(wp) :: max_force = none
-      !> Its time [s]
+      !> Time of the largest force [s]
       real(wp) :: time_of_max_force = none
-      !> Indentation left at t0 [m]
+      !> Indentation at t0 [m]
       real(wp) :: residual_indentation = none
       !> Residual over largest indentation [-]
       real(wp) :: residual_ratio = none
@@ -53,10 +54,10 @@ module vcor_impact_outcome
       real(wp) :: final_energy = none
       !> Work of the weight m g z(t0) [J]
       real(wp) :: weight_work = none
-      !> What the budget misses: initial - final energy + work of the weight m g z(t0) - hysteresis
-      !> - wave energy [J]
+      !> Imbalance of the energies: initial - final energy + work of the weight - hysteresis - wave
+      !> energy [J]
       real(wp) :: energy_imbalance = none
-      !> Lowest frequency that matters, 2 pi/t0 [rad/s]
+      !> Lowest frequency of interest, 2 pi/t0 [rad/s]
       real(wp) :: min_frequency = none
       !> Zener's inelasticity parameter lambda [-]
       real(wp) :: inelasticity = none
@@ -66,24 +67,24 @@ module vcor_impact_outcome
       real(wp) :: cor_error = none
       !> Estimate of the error of `cor_sphere` [-]
       real(wp) :: cor_sphere_error = none
-      !> Accuracy of both that was asked for [-]; 0: none was
+      !> Accuracy requested for both [-]; 0 if none was
       real(wp) :: accuracy = 0.0_wp
-      !> cor_sphere^2, rebound resilience [-]
+      !> Rebound resilience, cor_sphere^2 [-]
       real(wp) :: resilience = none
-      !> Height of the rebound of a sphere dropped from a height [m]
+      !> Height of rebound of a dropped sphere [m]
       real(wp) :: rebound_height = none
       !> Largest radius of the contact [m]
       real(wp) :: contact_radius = none
-      !> It over the smaller one of Hertz' radius and the sphere's [-]
+      !> Contact radius over the smaller of Hertz' radius and the sphere's [-]
       real(wp) :: contact_ratio = none
-      !> It over the radius of the sphere, times the sphere's share of the compliance; the sum of
-      !> two spheres [-]
+      !> Contact radius over the radius of the sphere, times the sphere's share of the compliance;
+      !> added up for two spheres [-]
       real(wp) :: sphere_ratio = none
-      !> It over the thickness of the plate, times the plate's share of the compliance [-]
+      !> Contact radius over thickness of the plate, times the plate's share of the compliance [-]
       real(wp) :: thickness_ratio = none
-      !> Thickness times the number of the bending wave of frequency pi/t0 [-]
+      !> Thickness times the wavenumber of bending waves at the frequency pi/t0 [-]
       real(wp) :: plate_wave_number = none
-      !> Distance of the nearest edge from which this wave is back at t0 [m]
+      !> Distance of the nearest edge from which this wave returns at t0 [m]
       real(wp) :: needed_extent = none
       !> Largest displacement of the plate over its thickness [-]
       real(wp) :: deflection_ratio = none
@@ -91,15 +92,15 @@ module vcor_impact_outcome
       real(wp) :: weight_ratio = none
       !> Mean pressure at the time of the largest force [Pa]
       real(wp) :: mean_pressure = none
-      !> Energy radiated into a half space in place of the plate, over `initial_energy` [-]
+      !> Energy radiated into a half space instead of the plate, over `initial_energy` [-]
       real(wp) :: half_space_loss = none
-      !> Change of `cor` where the disc that loads a layer is 1.25 times larger [-]
+      !> Change of `cor` with a footprint of the layer 1.25 times larger [-]
       real(wp) :: footprint_effect = none
       !> Loss tangent of the contact modulus at pi/t0 [-]
       real(wp) :: peak_loss_tangent = none
       !> One of the `level_*` constants of `vcor_impact_validity`
       integer :: validity = 0
-      !> Place of the measure that decides in its `thresholds`, 0: none
+      !> Index in `thresholds` of the decisive measure; 0: none
       integer :: validity_cause = 0
    contains
       procedure :: is_finite
@@ -129,12 +130,12 @@ contains
       outcome%max_force = trajectory%max_force
       outcome%time_of_max_force = trajectory%time_of_max_force
       outcome%residual_indentation = trajectory%state(col_indentation, n)
-      ! bodies that part at once have touched each other, and that is all
+      ! bodies that separate at first touch have no other quantities
       if (.not. outcome%max_indentation > 0.0_wp) return
       outcome%residual_ratio = outcome%residual_indentation/outcome%max_indentation
       if (outcome%status == contact_resting) return
 
-      ! what the weight leaves of the force's impulse
+      ! impulse of the force less that of the weight
       outcome%contact_time = trajectory%state(col_time, n)
       impulse = trajectory%state(col_impulse, n) &
          - impact%mass*impact%gravity*outcome%contact_time
@@ -147,8 +148,7 @@ contains
          *trajectory%state(col_plate_velocity, 0:n))
       outcome%final_energy = outcome%initial_energy*outcome%resilience
       outcome%weight_work = impact%mass*impact%gravity*trajectory%state(col_sphere, n)
-      ! the work done on the sphere, KE0 (1 - cor_sphere^2), straight from the impulse, and that of
-      ! its weight
+      ! the work done on the sphere, KE0 (1 - cor_sphere^2) from the impulse, and that of its weight
       outcome%energy_imbalance = impulse*(impact%velocity - 0.5_wp*impulse/impact%mass) &
          + outcome%weight_work - outcome%hysteresis_energy - outcome%wave_energy
 
@@ -161,9 +161,9 @@ contains
       outcome%accuracy = trajectory%accuracy
    end function evaluate
 
-   !> Whether all numbers are finite: energies, for one, can leave the range of the numbers
+   !> Whether all numbers are finite: energies, for example, may overflow
    pure function is_finite(self)
-      !> The outcome, of a separation
+      !> The outcome of an impact that ended in separation
       class(outcome_t), intent(in) :: self
       logical :: is_finite
 
@@ -175,8 +175,7 @@ contains
          self%cor_error, self%cor_sphere_error]))
    end function is_finite
 
-   !> Whether the estimated error is above the accuracy that was asked for; there is none where
-   !> nothing separated
+   !> Whether the estimated error exceeds the accuracy requested; false without separation
    pure function misses(self)
       class(outcome_t), intent(in) :: self
       logical :: misses

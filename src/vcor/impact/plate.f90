@@ -1,4 +1,4 @@
-!> Plate that carries the impact's energy away in bending waves
+!> Plate that carries energy of the impact away in waves
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_layer, only : layer_t, new_layer
@@ -14,21 +14,21 @@ module vcor_impact_plate
    public :: waves_none, waves_constant, waves_relaxing, waves_frozen, waves_hereditary
    public :: waves_body
 
-   !> Plate models: the plate does not move, U = 0
+   !> Plate models: no motion, U = 0
    integer, parameter :: waves_none = 0
    !> U = alpha(0) I, Zener 1941
    integer, parameter :: waves_constant = 1
    !> U = alpha(t) I, Eqs. (2) and (3)
    integer, parameter :: waves_relaxing = 2
-   !> U' = int alpha F' dt, alpha' and alpha'' dropped from Eq. (2): behind the paper's Fig. 7
+   !> U' = int alpha F' dt, Eq. (2) without alpha' and alpha'', as in the paper's Fig. 7
    integer, parameter :: waves_frozen = 3
-   !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a viscoelastic plate
+   !> s U = A F/sqrt(Q_b) in the Laplace domain: exact for a thin viscoelastic plate
    integer, parameter :: waves_hereditary = 4
-   !> U = C F in the Laplace domain, the compliance of a layer or a half space by elastodynamics
+   !> U = C F in the Laplace domain, with the compliance C of a layer or a half space
    integer, parameter :: waves_body = 5
 
-   !> Modulus that counts as one [Pa]: what has decayed to nothing is kept off zero, so far that
-   !> products with alpha and its rate are numbers; the plate then gives way at once
+   !> Lower bound of the modulus in alpha [Pa]: for a modulus that has decayed to zero the plate
+   !> yields at once, but alpha, its rate and their products stay finite
    real(wp), parameter :: least = 1.0e-60_wp
 
    !> Deflection U of the plate's mid-plane under the impulse I of the contact force
@@ -40,15 +40,15 @@ module vcor_impact_plate
       real(wp) :: coefficient = 0.0_wp
       !> alpha(0) [m/(N s)]
       real(wp) :: initial = 0.0_wp
-      !> Material of a plate whose alpha varies, otherwise not allocated
+      !> Material of a plate with variable alpha, otherwise unallocated
       class(material_t), allocatable :: material
-      !> What a hereditary plate remembers of the force, otherwise not allocated
+      !> Memory of a hereditary plate, otherwise unallocated
       type(memory_t), allocatable :: memory
-      !> The plate as a layer, otherwise not allocated
+      !> The layer of `waves_body`, otherwise unallocated
       type(layer_t), allocatable :: layer
-      !> Sums of exponentials of its response that were made in advance, not allocated if none was
+      !> Sums of exponentials of the layer made in advance, unallocated without any
       type(layer_sum_t), allocatable :: sums(:)
-      !> Radius of the disc that loads the layer [m], > 0
+      !> Radius of the disc that loads the layer, the footprint [m], > 0
       real(wp), public :: footprint = 0.0_wp
    contains
       procedure :: moves
@@ -72,7 +72,7 @@ module vcor_impact_plate
 
 contains
 
-   !> Whether the plate moves: it is not rigid, and there are waves in it
+   !> Whether the plate moves: it has waves and is not rigid
    pure function moves(self)
       class(plate_t), intent(in) :: self
       logical :: moves
@@ -83,7 +83,7 @@ contains
    !> Build a plate
    pure subroutine new_plate(self, material, half_thickness, waves, error)
       type(plate_t), intent(out) :: self
-      !> Its material; a rigid one never moves
+      !> Its material; a rigid plate does not move
       class(material_t), intent(in) :: material
       !> Half thickness h [m], > 0 if the plate moves; 0 for a half space of `waves_body`
       real(wp), intent(in) :: half_thickness
@@ -91,7 +91,7 @@ contains
       integer, intent(in) :: waves
       type(error_t), allocatable, intent(out) :: error
 
-      ! alpha, its products with the mass and their squares stay far inside the range of the numbers
+      ! keeps alpha, its products with the mass and their squares within the range of numbers
       real(wp), parameter :: largest = 1.0e60_wp
 
       if (all(waves /= [waves_none, waves_constant, waves_relaxing, waves_frozen, &
@@ -133,7 +133,7 @@ contains
          self%initial = self%memory%viscosity
          return
       end if
-      ! an elastic plate is a constant one
+      ! alpha of an elastic plate is constant
       if (waves /= waves_constant .and. material%glassy() > material%rubbery()) &
          allocate (self%material, source=material)
    end subroutine new_plate
@@ -153,7 +153,7 @@ contains
       end if
    end function alpha
 
-   !> The same at many times at once
+   !> Plate parameter alpha at many times
    pure subroutine alpha_at(self, t, value)
       class(plate_t), intent(in) :: self
       !> Times since first contact [s], t >= 0
@@ -173,8 +173,8 @@ contains
       end if
    end subroutine alpha_at
 
-   !> Plate parameter after a time: alpha, or what a plate that remembers the force makes of a
-   !> constant one
+   !> Plate parameter after a time: alpha, for a plate with memory the velocity under a constant
+   !> force, over that force
    elemental function alpha_after(self, t) result(value)
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
@@ -189,22 +189,22 @@ contains
    !> Whether U' = int alpha F' dt instead of (alpha I)'
    elemental function frozen(self)
       class(plate_t), intent(in) :: self
-      !> Whether it does; with a constant alpha both are the same
+      !> False for a constant alpha, for which both are the same
       logical :: frozen
 
       frozen = self%waves == waves_frozen .and. allocated(self%material)
    end function frozen
 
-   !> Whether the plate remembers the force: U' = alpha F + int psi(t - x) F(x) dx
+   !> Whether the plate has a memory: U' = alpha F + int psi(t - x) F(x) dx
    elemental function hereditary(self)
       class(plate_t), intent(in) :: self
-      !> Whether it does; an elastic plate does not
+      !> False for an elastic thin plate
       logical :: hereditary
 
       hereditary = allocated(self%memory) .or. allocated(self%layer)
    end function hereditary
 
-   !> Whether the plate is a layer or a half space by elastodynamics
+   !> Whether the plate is a layer or a half space of `waves_body`
    elemental function layered(self)
       !> The plate
       class(plate_t), intent(in) :: self
@@ -214,8 +214,8 @@ contains
       layered = allocated(self%layer)
    end function layered
 
-   !> Whether it is a layer so thin against the disc that loads it that its compliance takes too
-   !> long to integrate
+   !> Whether it is a layer so thin compared with the footprint that integrating its compliance
+   !> takes too long
    elemental function is_sheet(self)
       class(plate_t), intent(in) :: self
       logical :: is_sheet
@@ -227,8 +227,8 @@ contains
          .and. self%layer%thickness < thinnest*self%footprint
    end function is_sheet
 
-   !> Whether the waves of a layer stay within the disc that loads it for so short a contact that
-   !> its compliance takes too long to integrate
+   !> Whether the waves of a layer travel so short a way, compared with the footprint, during the
+   !> contact that integrating its compliance takes too long
    elemental function is_outpaced(self, contact_time)
       class(plate_t), intent(in) :: self
       !> Expected contact time [s], > 0
@@ -241,7 +241,7 @@ contains
       if (is_outpaced) is_outpaced = self%layer%way(contact_time) < shortest*self%footprint
    end function is_outpaced
 
-   !> Whether the velocity U' - alpha F is a quantity of its own, not alpha' I
+   !> Whether U' - alpha F is a variable of its own and not alpha' I
    elemental function drifts(self)
       class(plate_t), intent(in) :: self
       logical :: drifts
@@ -249,8 +249,8 @@ contains
       drifts = self%frozen() .or. self%hereditary()
    end function drifts
 
-   !> Time that a sum of exponentials for a layer holds: rounded up so that impacts of about the
-   !> same duration have the same
+   !> Time for which a layer's sum of exponentials holds, rounded up to a step of a ladder so that
+   !> impacts of similar duration share it
    elemental function window(contact_time)
       !> Expected contact time [s], > 0
       real(wp), intent(in) :: contact_time
@@ -262,14 +262,15 @@ contains
       window = ladder**ceiling(log(margin*contact_time)/log(ladder))
    end function window
 
-   !> Make the response of a layer in advance, for its footprint and those next to it
+   !> Make the sum of a layer in advance, for the band of its footprint and the window of a contact
+   !> time
    pure subroutine prepare(self, contact_time)
       !> The plate, a layer
       class(plate_t), intent(inout) :: self
       !> Expected contact time [s], > 0
       real(wp), intent(in) :: contact_time
 
-      ! that are kept
+      ! maximum number of sums kept
       integer, parameter :: most = 100
       type(layer_sum_t) :: sum
       real(wp) :: window
@@ -282,21 +283,21 @@ contains
       self%sums = [self%sums, sum]
    end subroutine prepare
 
-   !> Response of a hereditary plate on a window of time as a sum of exponentials,
-   !> U' = viscosity F + instant F' + int psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
+   !> Response of a plate with memory as a sum of exponentials, U' = viscosity F + instant F' + int
+   !> psi(t - x) F(x) dx with psi = sum_k w_k exp(-l_k t)
    pure subroutine response(self, window, accuracy, terms, instant, misfit)
-      !> The plate, a hereditary one
+      !> The plate, with memory
       class(plate_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
-      !> Wanted relative accuracy, > 0; a layer takes what the fit gives
+      !> Wanted relative accuracy, > 0; has no effect for a layer
       real(wp), intent(in) :: accuracy
-      !> psi in [m/(N s2)], alpha [m/(N s)] as its viscosity; the error is that of the velocity
-      !> under a constant force over that velocity, 0 of a layer
+      !> psi [m/(N s2)], with alpha [m/(N s)] as its viscosity; `terms%error` is that of the
+      !> velocity under a constant force, relative, and 0 for a layer
       type(exponential_sum_t), intent(out) :: terms
-      !> Deflection that follows the force at once [m/N], <= 0; not 0 for a layer only
+      !> Deflection per force that follows at once [m/N], <= 0; not zero only for a layer
       real(wp), intent(out) :: instant
-      !> What the sum misses of a layer's deflection per force, else 0
+      !> Misfit of the layer's compliance; 0 for other plates
       type(layer_misfit_t), intent(out) :: misfit
 
       type(layer_sum_t) :: sum
@@ -318,7 +319,7 @@ contains
       end if
    end subroutine response
 
-   !> Integral of the memory psi of a hereditary plate from 0 to t
+   !> Integral from 0 to t of the memory psi of a hereditary plate
    elemental function memory_integral(self, t) result(value)
       !> The plate, a hereditary one
       class(plate_t), intent(in) :: self
@@ -330,7 +331,7 @@ contains
       value = self%memory%integral(t)
    end function memory_integral
 
-   !> Compliance C(s) of a layer without what follows the force at once
+   !> Compliance C(s) - C(oo) of a layer
    pure function compliance(self, s) result(c)
       !> The plate, a layer
       class(plate_t), intent(in) :: self
@@ -346,10 +347,10 @@ contains
       end associate
    end function compliance
 
-   !> Deflection of a layer that follows the force at once
+   !> Compliance C(oo) of a layer
    elemental function instant(self) result(c)
       class(plate_t), intent(in) :: self
-      !> Deflection [m/N], <= 0; 0 for all other plates
+      !> Deflection per force [m/N], <= 0; 0 for all other plates
       real(wp) :: c
 
       c = 0.0_wp
@@ -361,7 +362,7 @@ contains
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t > 0
       real(wp), intent(in) :: t
-      !> Plate parameter at that time, where it is known [m/(N s)]
+      !> Plate parameter at that time if known [m/(N s)]
       real(wp), intent(in), optional :: alpha
       !> Rate [m/(N s^2)], >= 0
       real(wp) :: value

@@ -1,13 +1,13 @@
-!> The impact of a sphere on a plate: what a solver solves
+!> The impact of a sphere on a plate: the problem that solvers solve
 !>
-!> With z the sphere's displacement, U the plate's, s = z - U the indentation and g gravity, Eq. (2)
-!> of Green's paper integrated twice from s(0) = 0, s'(0) = v0 is
+!> With the displacements z of the sphere and U of the plate, the indentation s = z - U and gravity
+!> g, Eq. (2) of Green's paper, integrated twice from s(0) = 0, s'(0) = v0, is
 !>
 !>     s(t) = v0 t + g t^2/2 - J(t)/m - U(t),    I' = F,   J' = I,    U = alpha(t) I
 !>     F(t) = int_0^t k(t - x) u'(x) dx,    u = s^n,    k(t) = K E'(t)
 !>
-!> and with the receding law, once the contact shrinks, the integral ends at t1(t), when it was as
-!> large as now and growing,
+!> By the receding law, once the contact shrinks, the integral ends at the time t1(t) at which the
+!> contact was growing and as large as now,
 !>
 !>     F(t) = int_0^t1 k(t - x) u'(x) dx,   int_t1^t k(t - x) s'(x) dx = 0
 module vcor_impact_problem
@@ -23,16 +23,15 @@ module vcor_impact_problem
 
    public :: impact_t, new_impact
 
-   !> An impact; solvers leave it as it is
+   !> An impact; solvers do not change it
    type :: impact_t
       !> Velocity of approach v0 [m/s], > 0
       real(wp) :: velocity = 0.0_wp
       !> Mass of the sphere m [kg], > 0
       real(wp) :: mass = 0.0_wp
-      !> Gravity g, which presses the sphere on the plate [m/s2], >= 0
+      !> Gravity g, towards the plate [m/s2], >= 0
       real(wp) :: gravity = 0.0_wp
-      !> Factor K of the shape, the firmness of a contact of unit modulus; (4/3) sqrt(R) of a sphere
-      !> [m^0.5]
+      !> Shape factor K [m^(2-n)], kernel per unit modulus; (4/3) sqrt(R) for a sphere
       real(wp) :: factor = 0.0_wp
       !> Contact modulus E'(t)
       type(contact_modulus_t) :: modulus
@@ -77,14 +76,14 @@ contains
       real(wp), intent(in) :: mass
       !> Radius of the sphere [m], > 0
       real(wp), intent(in) :: radius
-      !> Radius of the plate's surface at the contact [m]: 0 = flat, negative = concave
+      !> Radius of curvature of the plate at the contact [m]: 0 = flat, negative = concave
       real(wp), intent(in) :: surface_radius
       type(contact_modulus_t), intent(in) :: modulus
       type(plate_t), intent(in) :: plate
       type(error_t), allocatable, intent(out) :: error
-      !> Contact law; absent: Hertz's over all the past
+      !> Contact law; absent: Hertz's with the integral over all the past
       type(contact_law_t), intent(in), optional :: law
-      !> Gravity [m/s2], >= 0; absent: none
+      !> Gravity [m/s2], >= 0; absent: 0
       real(wp), intent(in), optional :: gravity
 
       real(wp) :: factor
@@ -101,27 +100,27 @@ contains
       if (.not. allocated(error)) call self%launch(velocity, mass, factor, error, gravity)
    end subroutine new_impact
 
-   !> Give the body another motion, mass or size; modulus, plate and law stay
+   !> Change the motion, mass and shape of the body; modulus, plate and law remain
    pure subroutine launch(self, velocity, mass, factor, error, gravity, footprint)
       class(impact_t), intent(inout) :: self
       !> Velocity of approach [m/s], > 0
       real(wp), intent(in) :: velocity
       !> Mass [kg], > 0
       real(wp), intent(in) :: mass
-      !> Factor K of its shape [m^(2-n)], > 0
+      !> Shape factor K [m^(2-n)], > 0
       real(wp), intent(in) :: factor
       type(error_t), allocatable, intent(out) :: error
-      !> Gravity [m/s2], >= 0; absent: none
+      !> Gravity [m/s2], >= 0; absent: 0
       real(wp), intent(in), optional :: gravity
-      !> Radius of the disc that loads a plate by elastodynamics [m]; absent or 0: one that is
-      !> larger than the contact, 1.6 times the `expected_radius`
+      !> Radius of the disc that loads a layer [m]; absent or 0: 1.6 times the `expected_radius`,
+      !> which is larger than the contact
       real(wp), intent(in), optional :: footprint
 
-      ! energies and their products stay far inside the range of the numbers
+      ! keeps energies and their products within the range of numbers
       real(wp), parameter :: largest = 1.0e60_wp
       real(wp) :: time_scale
 
-      ! the mass of a tiny sphere may be nothing
+      ! the computed mass of a tiny sphere may underflow to zero
       if (.not. (velocity > 0.0_wp .and. mass >= 0.0_wp .and. factor > 0.0_wp)) then
          call raise(error, error_input, 'velocity, mass and radius of the sphere must be ' &
             //'positive', about='velocity mass radius')
@@ -143,7 +142,7 @@ contains
       if (.not. self%plate%layered()) return
       self%plate%footprint = 0.0_wp
       if (present(footprint)) self%plate%footprint = footprint
-      ! a number that jumped with the rounding of T would make the results jump
+      ! to full accuracy, for with the usual tolerance the footprint and the results would jump
       time_scale = self%time_scale(1.0e-14_wp)
       if (.not. self%plate%footprint > 0.0_wp) &
          self%plate%footprint = 1.6_wp*self%expected_radius(time_scale)
@@ -157,8 +156,8 @@ contains
       end if
    end subroutine launch
 
-   !> Largest contact radius of an elastic impact of a time scale T, sqrt(R 1.0936 v0 T) for a
-   !> sphere, 1.0936 v0 T being its largest indentation
+   !> Largest contact radius of an elastic impact with time scale T: sqrt(R 1.0936 v0 T) for a
+   !> sphere, whose largest indentation is 1.0936 v0 T
    pure function expected_radius(self, time_scale) result(radius)
       class(impact_t), intent(in) :: self
       !> Time scale T [s]
@@ -169,12 +168,12 @@ contains
       radius = self%contact_radius(1.0936_wp*self%speed_scale(time_scale)*time_scale)
    end function expected_radius
 
-   !> Way of the sphere without a contact force, v0 t + g t^2/2
+   !> Distance covered by the sphere without a contact force, v0 t + g t^2/2
    elemental function free_path(self, t) result(path)
       class(impact_t), intent(in) :: self
       !> Time since first contact [s]
       real(wp), intent(in) :: t
-      !> Way [m]
+      !> Distance [m]
       real(wp) :: path
 
       path = self%velocity*t + 0.5_wp*self%gravity*t**2
@@ -191,8 +190,8 @@ contains
       velocity = self%velocity + self%gravity*t
    end function free_velocity
 
-   !> Velocity that the motion is measured by: v0 and what gravity adds in the time scale T. A
-   !> sphere that is merely put down has one, too
+   !> Reference velocity of the motion, v0 + g T with the time scale T: not zero for a sphere that
+   !> is merely put down
    pure function speed_scale(self, time_scale) result(speed)
       class(impact_t), intent(in) :: self
       !> Time scale of the contact [s]
@@ -203,8 +202,8 @@ contains
       speed = self%velocity + self%gravity*time_scale
    end function speed_scale
 
-   !> Force at first contact: a dashpot presses at once under a flat punch, n = 1, and a plate that
-   !> gives way at once makes it less
+   !> Force at first contact, nonzero only for a dashpot under a flat punch (n = 1), and reduced by
+   !> a plate that yields at once
    pure function first_force(self) result(force)
       class(impact_t), intent(in) :: self
       !> Force [N]
@@ -216,7 +215,7 @@ contains
       force = drag*self%velocity/(1.0_wp + self%plate%alpha(0.0_wp)*drag)
    end function first_force
 
-   !> Radius of the contact circle, a = K u'(s)/2: the next step of s is one of a flat punch
+   !> Contact radius a = K u'(s)/2: an increment of s acts like a flat punch of this radius
    elemental function contact_radius(self, indentation) result(radius)
       class(impact_t), intent(in) :: self
       !> Indentation [m]
@@ -238,7 +237,7 @@ contains
       k = self%factor*self%modulus%relaxation(t)
    end function kernel
 
-   !> Integral of the kernel from 0 to t, the dashpot left out
+   !> Integral of the kernel from 0 to t, without the dashpot
    elemental function kernel_integral(self, t) result(value)
       class(impact_t), intent(in) :: self
       !> Upper limit [s], >= 0
@@ -249,7 +248,7 @@ contains
       value = self%factor*self%modulus%integral(t)
    end function kernel_integral
 
-   !> Mean over 0 .. t of the integral of the kernel
+   !> Mean over (0, t) of the integral of the kernel
    pure function kernel_mean_integral(self, t) result(value)
       class(impact_t), intent(in) :: self
       !> Time [s], > 0
@@ -273,14 +272,14 @@ contains
       value = self%factor*self%modulus%step_integrals(dt, n)
    end function kernel_step_integrals
 
-   !> The kernel as a sum of exponentials, Eq. (17): itself where it is one, else an approximation
+   !> The kernel as a sum of exponentials, Eq. (17): exact if it is one, else an approximation
    pure subroutine kernel_exponentials(self, window, accuracy, terms)
       class(impact_t), intent(in) :: self
       !> Time up to which the sum is to hold [s], > 0
       real(wp), intent(in) :: window
       !> Wanted relative accuracy, > 0
       real(wp), intent(in) :: accuracy
-      !> The sum, in [N/m^1.5], its `error` told
+      !> The sum [N/m^1.5]; `terms%error` is its estimated relative error
       type(exponential_sum_t), intent(out) :: terms
 
       call self%modulus%exponentials(window, accuracy, terms)
@@ -296,10 +295,10 @@ contains
       viscosity = self%factor*self%modulus%viscosity()
    end function kernel_viscosity
 
-   !> Time scale of the contact: that of an elastic impact with the mean kernel over it
+   !> Time scale T of the contact: that of an elastic impact with the mean of the kernel over (0, T)
    pure function time_scale(self, tolerance) result(scale)
       class(impact_t), intent(in) :: self
-      !> Relative error that it may have; absent: 1e-3
+      !> Tolerated relative error; absent: 1e-3
       real(wp), intent(in), optional :: tolerance
       !> Time scale [s]
       real(wp) :: scale
@@ -309,8 +308,8 @@ contains
 
       least = 1.0e-3_wp
       if (present(tolerance)) least = tolerance
-      ! start from the time scale of the glassy contact, or 1 s, and iterate; with a kernel t^-a the
-      ! map contracts by a/(n + 1)
+      ! fixed-point iteration from the time scale of the glassy contact, or 1 s; for a kernel t^-a
+      ! the map contracts by a/(n + 1)
       scale = 1.0_wp
       firmness = self%factor*self%modulus%glassy()
       if (firmness > 0.0_wp .and. firmness <= huge(1.0_wp)) scale = self%elastic_time(firmness)
@@ -324,8 +323,8 @@ contains
       scale = guess
    end function time_scale
 
-   !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz's, v0 + g T in place of
-   !> v0 under gravity
+   !> Time scale of an elastic contact, T = (m/(k sqrt(v0)))^(2/5) for Hertz, with v0 + g T instead
+   !> of v0 under gravity
    pure function elastic_time(self, firmness) result(time)
       class(impact_t), intent(in) :: self
       !> Firmness k of the contact [N/m^1.5], > 0
@@ -347,8 +346,8 @@ contains
       time = guess
    end function elastic_time
 
-   !> Time scale of the fastest motion: that of the glassy contact where it has a modulus; a contact
-   !> that relaxes before it is over can be shorter than its time scale
+   !> Time scale of the fastest motion: that of the glassy contact if its modulus is finite, as a
+   !> contact that relaxes early may be shorter than its time scale
    pure function fast_time_scale(self) result(scale)
       class(impact_t), intent(in) :: self
       !> Time scale [s]
@@ -362,11 +361,11 @@ contains
          scale = min(scale, self%elastic_time(firmness))
    end function fast_time_scale
 
-   !> Time after which a contact counts as lasting where the user gives none: a thousand time
-   !> scales, those of the rubbery modulus if there is one
+   !> Default time after which a contact counts as lasting: a thousand time scales, with the rubbery
+   !> modulus if there is one
    pure function patience(self, time_scale) result(time)
       class(impact_t), intent(in) :: self
-      !> Its time scale [s]
+      !> Time scale T [s]
       real(wp), intent(in) :: time_scale
       !> Time [s]
       real(wp) :: time
@@ -379,27 +378,28 @@ contains
       time = 1000.0_wp*time
    end function patience
 
-   !> Whether the plate may flee from the sphere and be caught up with within a step, unseen: alpha
-   !> grows in it, and takes up a part of the motion
+   !> Whether the plate may move away from the sphere and be caught up with within one step,
+   !> unnoticed: alpha grows during the step, and alpha I is a noticeable part of the distance
+   !> covered
    elemental function outruns(self, alpha_before, alpha, impulse, time)
       class(impact_t), intent(in) :: self
       !> alpha at the start and at the end of the step [m/(N s)]
       real(wp), intent(in) :: alpha_before, alpha
-      !> Impulse at its end [N s]
+      !> Impulse at the end of the step [N s]
       real(wp), intent(in) :: impulse
-      !> Its end [s]
+      !> End of the step [s]
       real(wp), intent(in) :: time
       logical :: outruns
 
-      ! growth of alpha in a step that follows it, and share of the way of the sphere
+      ! growth of alpha in a step that resolves it, and noticeable part of the distance
       real(wp), parameter :: resolved = 2.0_wp, noticeable = 0.3_wp
 
       outruns = alpha > resolved*alpha_before .and. alpha*impulse > noticeable*self%free_path(time)
    end function outruns
 
    !> Whether the contact has an equilibrium modulus that pushes the bodies apart once all else has
-   !> relaxed. The restitution that it gives to a fluid is about its ratio to the mean modulus over
-   !> the contact: below the rounding of the velocities it is none
+   !> relaxed. For a fluid-like contact the COR is about its ratio to the mean modulus over the
+   !> contact; it counts as zero below the rounding of the velocities
    pure function springs_back(self)
       class(impact_t), intent(in) :: self
       logical :: springs_back
@@ -413,7 +413,7 @@ contains
    end function springs_back
 
    !> Zener's parameter lambda = alpha(0) m/T with T = (m/(k(0) sqrt(v0)))^(2/5); 0 for a kernel
-   !> that is infinite or nothing at t = 0
+   !> that is infinite or zero at t = 0
    pure function inelasticity(self) result(lambda)
       class(impact_t), intent(in) :: self
       !> Parameter [-]
@@ -428,9 +428,8 @@ contains
          /self%law%time_scale(self%mass, firmness, self%velocity)
    end function inelasticity
 
-   !> Zener's parameter with alpha after a time and the mean of the kernel up to there: how light
-   !> the plate is for the sphere in a contact that lasts, whether or not the kernel is finite at
-   !> t = 0
+   !> Zener's parameter with alpha after a time and the mean of the kernel up to then: a measure,
+   !> for infinite k(0) too, of how easily the plate yields during a lasting contact
    pure function lasting_inelasticity(self, time) result(lambda)
       class(impact_t), intent(in) :: self
       !> Time since first contact [s], > 0

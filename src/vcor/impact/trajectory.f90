@@ -1,4 +1,4 @@
-!> Course of an impact, as every solver returns it
+!> Time course of an impact, as every solver returns it
 module vcor_impact_trajectory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_impact_problem, only : impact_t
@@ -33,59 +33,58 @@ module vcor_impact_trajectory
    !> Number of rows of `state`
    integer, parameter :: columns = 9
 
-   !> Nothing is solved yet
+   !> Status: nothing has been solved yet
    integer, parameter :: contact_unknown = -1
    !> The force returned to zero: the bodies separated
    integer, parameter :: contact_separated = 0
-   !> The time ran out in contact
+   !> The end time was reached in contact
    integer, parameter :: contact_lasting = 1
-   !> All motion died out in contact
+   !> All motion decayed in contact
    integer, parameter :: contact_sticking = 2
-   !> Its weight keeps the sphere in contact for good
+   !> The weight of the sphere keeps it in contact for good
    integer, parameter :: contact_resting = 5
 
-   !> Steps of a history where the solver does not work in equal steps
+   !> Steps of a history if the solver does not use equal steps
    integer, parameter :: history_steps = 500
 
-   !> Course of an impact from first contact (node 0) on
+   !> Time course of an impact from first contact, node 0
    type :: trajectory_t
       !> One of the `contact_*` constants
       integer :: status = contact_lasting
       !> Number of time steps taken
       integer :: steps = 0
-      !> Node at which contact ended or the computation stopped
+      !> Node at which contact or computation ended
       integer :: last = 0
-      !> Last node of all: beyond `last` if the computation went on after the separation, as if the
-      !> bodies were glued together
+      !> Last node of all: beyond `last` if the computation continued after separation, as if the
+      !> bodies stuck to each other
       integer :: final = 0
       !> State at the nodes, shape (columns, 0:), used up to `final`
       real(wp), allocatable :: state(:, :)
-      !> Weights of the nodes in integrals over the time of contact [s], shape (0:)
+      !> Quadrature weights of the nodes for the time of contact [s], shape (0:)
       real(wp), allocatable :: weight(:)
       !> Largest indentation [m]
       real(wp) :: max_indentation = 0.0_wp
-      !> Its time [s]
+      !> Time of the largest indentation [s]
       real(wp) :: time_of_max_indentation = 0.0_wp
       !> Largest force [N]
       real(wp) :: max_force = 0.0_wp
-      !> Its time [s]
+      !> Time of the largest force [s]
       real(wp) :: time_of_max_force = 0.0_wp
-      !> Estimate of the error of the coefficient of restitution [-]
+      !> Estimated error of the coefficient of restitution [-]
       real(wp) :: cor_error = 0.0_wp
-      !> The same of that of the sphere alone [-]
+      !> Estimated error of that of the sphere alone [-]
       real(wp) :: cor_sphere_error = 0.0_wp
-      !> Accuracy of both that was asked for [-]; 0: none was, the time step is the user's
+      !> Accuracy requested for both [-]; 0 if none was, as the time step is given
       real(wp) :: accuracy = 0.0_wp
-      !> Exponentials that stood for a kernel that is no finite sum of them; 0: it was taken as it
-      !> is
+      !> Number of exponentials that approximate the kernel; 0 if it is used unchanged
       integer :: kernel_terms = 0
-      !> Largest relative error of that sum
+      !> Estimated largest relative error of that sum
       real(wp) :: kernel_error = 0.0_wp
       !> Stages of a collocation panel; 0: the nodes are a plain time series
       integer :: stages = 0
-      !> Points of a panel in theta, its start first, shape (0:stages)
+      !> Points of a panel in theta, beginning with its start, shape (0:stages)
       real(wp), allocatable :: point(:)
-      !> Their barycentric weights, shape (0:stages)
+      !> Barycentric weights of the points, shape (0:stages)
       real(wp), allocatable :: barycentric(:)
       !> Time in panel p: t = state(col_time, start) + map(1, p) theta + map(2, p) theta^2 [s],
       !> shape (2, panels)
@@ -103,7 +102,7 @@ module vcor_impact_trajectory
 
 contains
 
-   !> Make room for at least `nodes` nodes after node 0; what is there stays
+   !> Make room for at least `nodes` nodes after node 0; contents are kept
    pure subroutine reserve(self, nodes)
       class(trajectory_t), intent(inout) :: self
       !> Number of nodes wanted
@@ -125,7 +124,7 @@ contains
       end if
    end subroutine reserve
 
-   !> Note the map of the panel that comes next
+   !> Record the map of the next panel
    pure subroutine add_map(self, map)
       class(trajectory_t), intent(inout) :: self
       !> Coefficients of theta and theta^2 [s]
@@ -142,13 +141,13 @@ contains
       self%map(:, self%steps + 1) = map
    end subroutine add_map
 
-   !> Set the status if all motion has died out in contact at the last node, for good
+   !> Set the status if all motion has decayed in contact at the last node, for good
    subroutine stop_at_rest(self, impact, is_last, stopped)
       class(trajectory_t), intent(inout) :: self
       type(impact_t), intent(in) :: impact
-      !> Whether the computation ends there in any case
+      !> Whether the computation ends there anyway
       logical, intent(in) :: is_last
-      !> Whether it has died out
+      !> Whether the motion has decayed
       logical, intent(out) :: stopped
 
       if (impact%gravity > 0.0_wp) then
@@ -160,19 +159,19 @@ contains
       end if
    end subroutine stop_at_rest
 
-   !> Whether all motion has died out in contact at the last node, for good: what energy is left
-   !> cannot make a rebound that deserves the name. A contact with an equilibrium modulus is at rest
-   !> for a moment at its largest indentation, however soft it is; it sticks only where a plate has
-   !> taken up the blow and the dent is gone
+   !> Whether all motion has decayed in contact at the last node, for good: the remaining energy
+   !> cannot cause a noticeable rebound. A contact with an equilibrium modulus, however soft, is
+   !> momentarily at rest at its largest indentation; it sticks only if a plate has absorbed the
+   !> impact and no dent is left
    pure function is_stuck(self, impact)
       class(trajectory_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       !> Whether the sphere sticks
       logical :: is_stuck
 
-      ! a rebound with all of it had a coefficient of restitution of 1e-7
+      ! a rebound with all of this energy has a coefficient of restitution of 1e-7
       real(wp), parameter :: negligible = 1.0e-14_wp
-      ! indentation over the way of the sphere that is no dent
+      ! indentation over displacement of the sphere that counts as no dent
       real(wp), parameter :: no_dent = 1.0e-3_wp
 
       associate (now => self%state(:, self%last), first => self%state(:, 0))
@@ -184,27 +183,27 @@ contains
       end associate
    end function is_stuck
 
-   !> Whether the weight W = m g keeps the sphere in contact for good at the last node: it has come
-   !> to where a spring holds its weight, or, where the computation ends, what energy is left cannot
-   !> make the force zero any more.
+   !> Whether the weight W = m g keeps the sphere in contact for good at the last node. It does if
+   !> the force and the spring k(oo) u balance the weight and the motion has decayed or, at the end
+   !> of the computation, if the remaining energy cannot make the force zero again.
    !>
-   !> Next to rest the contact is linear in u and the energy of what it is off by,
-   !> V = m v^2/2 + (F - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of
-   !> the sphere, in a fluid as far as it is not one between rest and steady sinking. A force of
-   !> zero a time tau after a state of that energy needs
+   !> Near rest the contact is linear in u. The energy of the deviations from rest, V = m v^2/2 + (F
+   !> - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of the sphere, for
+   !> a fluid its excess over steady sinking. A zero force at a time tau after a state of energy V
+   !> requires, for every tau,
    !>
    !>     W <= sqrt(2 V u') (sqrt(k(2 tau)) + K(tau) sqrt(u'/m)),   K = int_0 k
    !>
-   !> for every tau: what modes have not relaxed by then, and what the motion since then adds. The
-   !> square of the least bracket is the stiffness that counts, k(0) of a glassy contact at most
+   !> The first term is what modes have not relaxed by then, the second the effect of motion since
+   !> then. The square of the least bracket is the effective stiffness, at most k(0)
    pure function rests(self, impact, is_last)
       class(trajectory_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
-      !> Whether the computation ends there in any case
+      !> Whether the computation ends there anyway
       logical, intent(in) :: is_last
       logical :: rests
 
-      ! square of what the forces may be off by, over the weight
+      ! square of the tolerated deviation of the forces, over the weight
       real(wp), parameter :: negligible = 1.0e-14_wp
       integer, parameter :: halvings = 50
       real(wp) :: weight, slope, viscosity, root, excess, spring, stiffness, velocity, tau
@@ -236,8 +235,7 @@ contains
       end associate
    end function rests
 
-   !> Whether the estimated error is so far above the accuracy that was asked for that the result is
-   !> none
+   !> Whether the estimated error exceeds the accuracy requested by so much that there is no result
    pure function misses_by_far(self)
       !> The trajectory, ended in separation
       class(trajectory_t), intent(in) :: self
@@ -254,10 +252,10 @@ contains
    end function misses_by_far
 
    !> State at equal steps of time from first contact to the final node: interpolated by the
-   !> collocation polynomials, or the nodes themselves where the solver works in equal steps
+   !> collocation polynomials, or the nodes themselves of a solver with equal steps
    pure subroutine sample(self, count, state)
       class(trajectory_t), intent(in) :: self
-      !> Number of steps wanted of a collocation solution, > 0
+      !> Number of steps, > 0; has no effect for a solver with equal steps
       integer, intent(in) :: count
       !> State, shape (columns, 0:)
       real(wp), allocatable, intent(out) :: state(:, :)
@@ -283,8 +281,8 @@ contains
       state(:, count) = self%state(:, self%final)
    end subroutine sample
 
-   !> Indentation at a time of the contact, by the polynomial of its panel, or in equal steps by the
-   !> cubic that has indentation and velocity of the nodes beside it
+   !> Indentation at a time of the contact, by the collocation polynomial or, for equal steps, by
+   !> the cubic through indentations and velocities of the adjacent nodes
    pure function indentation_at(self, time) result(indentation)
       class(trajectory_t), intent(in) :: self
       !> Time since first contact [s], up to that of the last node
@@ -311,13 +309,13 @@ contains
       end associate
    end function indentation_at
 
-   !> The panel of a time, and the weights of its nodes there
+   !> Find the panel that contains a time, and the weights of its nodes
    pure subroutine find_panel(self, time, first, c)
       !> The trajectory, of a collocation solution
       class(trajectory_t), intent(in) :: self
       !> Time since first contact [s]
       real(wp), intent(in) :: time
-      !> Node at which a panel begins that is not behind the time; that of the panel
+      !> First node of a panel not after the time; on return that of the panel
       integer, intent(inout) :: first
       !> Weights, shape (0:stages)
       real(wp), intent(out) :: c(0:)
@@ -328,7 +326,7 @@ contains
                 .and. first + self%stages < self%final)
          first = first + self%stages
       end do
-      ! the root of the quadratic map in its stable form
+      ! root of the quadratic map in its stable form
       associate (map => self%map(:, first/self%stages + 1))
          offset = time - self%state(col_time, first)
          theta = 2.0_wp*offset/(map(1) + sqrt(max(0.0_wp, map(1)**2 + 4.0_wp*map(2)*offset)))

@@ -1,8 +1,7 @@
-!> Does the model hold? Measures of what an impact assumes, and what they come to
+!> Measures of how well an impact meets the assumptions of the model, and their assessment
 !>
-!> Each measure is a column of the summary. Those with a threshold decide whether a contact is one
-!> of Hertz' on a half space, in a plate that is thin and wide, with nothing lost but what is
-!> computed.
+!> Each measure is a column of the summary. Those with a threshold show whether the contact is
+!> Hertzian, on a half space, in a thin and wide plate, and without losses that are not computed.
 module vcor_impact_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_constants, only : pi, standard_gravity
@@ -19,85 +18,84 @@ module vcor_impact_validity
    public :: threshold_t, thresholds, judged, level_of
    public :: levels, level_none, level_good, level_caution, level_outside
 
-   !> Levels of validity: of an impact without result
+   !> Levels of validity: the impact has no result
    integer, parameter :: level_none = 0
-   !> No measure is beyond a threshold
+   !> No measure exceeds a threshold
    integer, parameter :: level_good = 1
-   !> A measure is beyond its first threshold: per cents
+   !> A measure exceeds its first threshold: errors of a few per cent
    integer, parameter :: level_caution = 2
-   !> A measure is beyond its second threshold: the number is that of another problem
+   !> A measure exceeds its second threshold: the model does not describe the impact
    integer, parameter :: level_outside = 3
-   !> Their names, by level
+   !> Names of the levels
    character(len=*), parameter :: levels(level_none:level_outside) = [character(len=7) :: &
       'none', 'good', 'caution', 'outside']
 
-   !> What one measure comes to
+   !> Thresholds of one measure
    type :: threshold_t
       !> Column of the measure
       character(len=17) :: measure
-      !> Value from which on it calls for caution
+      !> Value that calls for caution
       real(wp) :: caution
-      !> Value from which on the model does not hold
+      !> Value at which the model does not hold
       real(wp) :: outside
    end type threshold_t
 
-   !> All thresholds, of the values that `judged` gives in the same order; the derivations are in
-   !> docs/validity.md
+   !> Thresholds of the values of `judged`, in the same order; derivations are in docs/validity.md
    type(threshold_t), parameter :: thresholds(*) = [ &
-      ! Hertz' force on a rigid sphere's true shape, Sneddon 1965, doi:10.1016/0020-7225(65)90019-4:
-      ! 1.6 % too high at 0.4, 6.9 % at 0.8, 10 % at 0.95; sphere_weight*sphere_ratio if larger
+      ! Hertz' force against Sneddon 1965, doi:10.1016/0020-7225(65)90019-4, for a rigid sphere: 1.6
+      ! % too high at 0.4, 6.9 % at 0.8, 10 % at 0.95; or sphere_weight*sphere_ratio, if larger
       threshold_t('contact_ratio', 0.4_wp, 0.8_wp), &
       ! force on a layer over that on a half space, Dimitriadis et al. 2002,
       ! doi:10.1016/S0006-3495(02)75620-8: 1.10 to 1.13 at 0.1, 1.35 to 1.48 at 0.3
       threshold_t('thickness_ratio', 0.1_wp, 0.3_wp), &
-      ! a layer by Rayleigh and Lamb's equations takes 8 % more energy than a thin plate at 0.7, a
-      ! third more at 1.3
+      ! Rayleigh and Lamb's layer takes 8 % more energy than a thin plate at 0.7, a third more at
+      ! 1.3
       threshold_t('plate_wave_number', 0.7_wp, 1.3_wp), &
-      ! over the extent: the wave is back at t0 where the edge is at needed_extent; energy of the
-      ! waves of a plate hit at its centre: 0.4 % off at 0.6, 4 % at 1, 25 % at 1.25
+      ! over the extent: an edge at needed_extent returns the wave at t0; energy of the waves in a
+      ! plate hit at its centre: 0.4 % off at 0.6, 4 % at 1, 25 % at 1.25
       threshold_t('needed_extent', 0.6_wp, 1.0_wp), &
-      ! stretching adds 0.445 times its square to the stiffness of bending
+      ! stretching increases the bending stiffness by 0.445 times its square
       threshold_t('deflection_ratio', 0.3_wp, 1.0_wp), &
-      ! the weight over the force that throws the sphere back
+      ! the weight over the force that reverses the motion
       threshold_t('weight_ratio', 0.01_wp, 0.1_wp), &
-      ! over the yield strength: first yield, and plasticity all over the contact, Johnson, Contact
+      ! over the yield strength: first yield, and full plasticity of the contact, Johnson, Contact
       ! Mechanics (1985), doi:10.1017/CBO9781139171731, sections 6.1 and 6.2
       threshold_t('mean_pressure', 1.07_wp, 2.8_wp), &
-      ! less what is computed as waves: energy that the impact loses and the model does not
+      ! less the wave energy computed: energy lost in reality but not in the model
       threshold_t('half_space_loss', 0.01_wp, 0.1_wp), &
-      ! its size: what a layer's cor depends on the disc that is loaded, which is a choice
+      ! absolute value: dependence of a layer's cor on the footprint, which is a choice
       threshold_t('footprint_effect', 0.01_wp, 0.1_wp)]
 
-   !> Weight of `sphere_ratio` in what is held against the thresholds of contact_ratio. A sphere
-   !> that gives way is no half space: its dent is smaller by 0.5 a/r, so the contact is 4 % shorter
-   !> at a/r = 0.13 and 10 % at 0.27, as it is on a plate of thickness_ratio 0.1 and 0.3
+   !> Factor of `sphere_ratio` for the thresholds of contact_ratio. A deformable sphere is not a
+   !> half space: its dent is smaller by 0.5 a/r, so the contact is 4 % shorter at a/r = 0.13 and 10
+   !> % at 0.27, as on a plate of thickness_ratio 0.1 and 0.3
    real(wp), parameter :: sphere_weight = 3.0_wp
 
-   !> What an impact knows nothing of, but its measures do; what is not known is NaN
+   !> Properties outside the impact that the measures need; NaN if unknown
    type :: surroundings_t
       !> Radius of the sphere [m]
       real(wp) :: radius = none
-      !> Whether the other body is a sphere, and no half space
+      !> Whether the second body is a sphere, not a half space
       logical :: is_sphere = .false.
       !> Thickness of the plate, 2h [m]
       real(wp) :: thickness = none
       !> Distance from the contact to the nearest edge of the plate [m]
       real(wp) :: extent = none
-      !> Yield strength, the smaller one of the two bodies [Pa]
+      !> Yield strength, the smaller of the two bodies' [Pa]
       real(wp) :: yield_strength = none
-      !> Whether the plate is computed as a layer: thin plates and losses into a half space do not
-      !> count then
+      !> Whether the plate is computed as a layer; measures of thin plates and half spaces do not
+      !> apply then
       logical :: is_layer = .false.
-      !> Whether the sphere falls from a height that is given, and with what gravity [m/s2]
+      !> Whether the sphere is dropped from a given height, and the gravity of the fall [m/s2]
       logical :: drops = .false.
       real(wp) :: gravity = standard_gravity
-      !> Whether the impact is solved with that gravity
+      !> Whether the impact is solved with this gravity
       logical :: is_weighed = .false.
       !> Poisson's ratio of the plate [-]
       real(wp), private :: poisson_ratio = none
-      !> `half_space_resistance` of it [-]
+      !> `half_space_resistance` of the plate [-]
       real(wp), private :: resistance = none
-      !> Rule of its integrals, made once, shape (n)
+      !> Gauss' rule of `half_space_resistance`, shape (n)
       real(wp), allocatable, private :: node(:), weight(:)
    contains
       procedure :: follow
@@ -105,7 +103,7 @@ module vcor_impact_validity
 
 contains
 
-   !> Follow the plate's Poisson's ratio: the resistance is found anew where it has changed
+   !> Set the plate's Poisson's ratio; the resistance is computed again if it has changed
    pure subroutine follow(self, poisson_ratio)
       class(surroundings_t), intent(inout) :: self
       !> Poisson's ratio [-], -1 < nu <= 0.5
@@ -123,9 +121,9 @@ contains
       self%resistance = half_space_resistance(poisson_ratio, self%node, self%weight)
    end subroutine follow
 
-   !> Measure what an impact assumes, and judge it
+   !> Set and judge the measures
    pure subroutine assess(outcome, impact, trajectory, around, sphere, plate)
-      !> Outcome of a separation, evaluated; its measures but for `footprint_effect` are set
+      !> Outcome of a separation; on return all measures but `footprint_effect` are set
       type(outcome_t), intent(inout) :: outcome
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(in) :: trajectory
@@ -149,7 +147,7 @@ contains
       if (.not. plate%rigid) plate_modulus = plate%complex_modulus(cmplx(0.0_wp, frequency, wp))
       share = plate_share(sphere, plate, plate_modulus, frequency)
       outcome%thickness_ratio = outcome%contact_radius/around%thickness*share
-      ! shapes without a radius are no spheres
+      ! other shapes have no radius
       if (.not. ieee_is_nan(around%radius)) then
          hertz_radius = (0.75_wp*impact%factor)**2
          outcome%contact_ratio = outcome%contact_radius/min(hertz_radius, around%radius)
@@ -183,7 +181,7 @@ contains
       share = stiffness/(stiffness + abs(modulus)*plate%plane_strain_factor())
    end function plate_share
 
-   !> Measures of the plate's waves
+   !> Set the measures of the plate's waves
    pure subroutine assess_plate(outcome, impact, trajectory, around, plate, storage, frequency)
       type(outcome_t), intent(inout) :: outcome
       type(impact_t), intent(in) :: impact
@@ -192,12 +190,12 @@ contains
       class(material_t), intent(in) :: plate
       !> Storage modulus of the plate [Pa], 0 for a rigid one
       real(wp), intent(in) :: storage
-      !> Its frequency, pi/t0 [rad/s]
+      !> Frequency of the storage modulus, pi/t0 [rad/s]
       real(wp), intent(in) :: frequency
 
       real(wp) :: wave_number, shear_speed
 
-      ! neither a rigid body nor a dashpot has waves
+      ! neither a rigid plate nor a dashpot has waves
       if (.not. storage > 0.0_wp) return
       wave_number = 0.0_wp
       if (impact%plate%moves() .and. .not. ieee_is_nan(around%thickness)) then
@@ -210,7 +208,7 @@ contains
       end if
       if (around%is_sphere .or. .not. plate%density() > 0.0_wp) return
       shear_speed = sqrt(storage/(2.0_wp*(1.0_wp + plate%poisson_ratio())*plate%density()))
-      ! no wave along a layer is faster than about this
+      ! no wave in a layer is much faster
       if (around%is_layer) then
          outcome%needed_extent = 0.5_wp*shear_speed*outcome%contact_time
          if (wave_number*outcome%needed_extent > pi) outcome%needed_extent = pi/wave_number
@@ -221,16 +219,16 @@ contains
          *pi*frequency/2.0_wp
    end subroutine assess_plate
 
-   !> The numbers that are held against the thresholds, in their order; NaN: is not judged
+   !> Values that are compared with the thresholds, in their order; NaN if not judged
    pure function judged(outcome, around) result(values)
       !> Outcome, its measures set
       type(outcome_t), intent(in) :: outcome
-      !> What is around the impact
+      !> Properties outside the impact
       type(surroundings_t), intent(in) :: around
-      !> The numbers [-]
+      !> The values [-]
       real(wp) :: values(size(thresholds))
 
-      ! what a layer computes itself
+      ! measures of what a layer computes itself
       character(len=*), parameter :: of_thin_plates(3) = [character(len=17) :: &
          'plate_wave_number', 'deflection_ratio', 'half_space_loss']
       integer :: i
@@ -244,17 +242,17 @@ contains
       do i = 1, size(thresholds)
          if (around%is_layer .and. any(of_thin_plates == thresholds(i)%measure)) values(i) = none
       end do
-      ! NaN is not to be compared
+      ! NaN must not be compared
       if (.not. (ieee_is_nan(values(1)) .or. ieee_is_nan(outcome%sphere_ratio))) &
          values(1) = max(values(1), sphere_weight*outcome%sphere_ratio)
    end function judged
 
-   !> The worst level of all measures, and which one brings it: of several the one that is farthest
-   !> beyond its first threshold
+   !> Set the worst level of all measures, and the measure that causes it: of several, the one
+   !> farthest beyond its first threshold
    pure subroutine judge(outcome, around)
       !> Outcome, its measures set
       type(outcome_t), intent(inout) :: outcome
-      !> What is around the impact
+      !> Properties outside the impact
       type(surroundings_t), intent(in) :: around
 
       real(wp) :: values(size(thresholds)), excess, largest
@@ -277,9 +275,9 @@ contains
 
    !> Level of one measure
    pure function level_of(measure, value) result(level)
-      !> Its place in `thresholds`
+      !> Index in `thresholds`
       integer, intent(in) :: measure
-      !> What is held against its threshold; NaN: nothing
+      !> Value compared with the threshold; NaN if none
       real(wp), intent(in) :: value
       !> One of the `level_*` constants
       integer :: level
@@ -291,21 +289,21 @@ contains
       if (value >= thresholds(measure)%outside) level = level_outside
    end function level_of
 
-   !> Resistance of an elastic half space to a force on a point of its surface: the imaginary part
-   !> of Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2,
-   !> q^2 = x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
+   !> Resistance of an elastic half space to a point force on its surface: the imaginary part of
+   !> Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2, q^2 =
+   !> x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
    !>
    !>     I = -Im int_0^inf x p/R dx
    !>
-   !> which has the pressure waves in x < a, the shear waves in a < x < 1 and those of Rayleigh at
+   !> consists of pressure and shear waves in x < a, shear waves in a < x < 1 and Rayleigh waves at
    !> the root of R: G. F. Miller, H. Pursey, Proc. R. Soc. A 223 (1954) 521,
    !> doi:10.1098/rspa.1954.0134
    pure function half_space_resistance(poisson_ratio, node, weight) result(resistance)
       !> Poisson's ratio [-], -1 < nu <= 0.5
       real(wp), intent(in) :: poisson_ratio
-      !> Nodes of Gauss' rule on (0, 1): 48 leave 1e-8 at worst, near nu = 0, shape (n)
+      !> Nodes of Gauss' rule on (0, 1), shape (n); 48 have an error of 1e-8 at worst, near nu = 0
       real(wp), intent(in) :: node(:)
-      !> Their weights, shape (n)
+      !> Weights of the nodes, shape (n)
       real(wp), intent(in) :: weight(:)
       !> I(nu) [-]
       real(wp) :: resistance
@@ -316,7 +314,7 @@ contains
 
       a2 = 0.5_wp*(1.0_wp - 2.0_wp*poisson_ratio)/(1.0_wp - poisson_ratio)
       sine = sin(0.5_wp*pi*node)
-      ! x = a sin(phi): no root is left in the integrand
+      ! x = a sin(phi) removes the square root from the integrand
       x = sqrt(a2)*sine
       p = sqrt(a2)*cos(0.5_wp*pi*node)
       q = sqrt(1.0_wp - x**2)
@@ -328,7 +326,7 @@ contains
       q = sqrt(1.0_wp - a2)*cos(0.5_wp*pi*node)
       part = 4.0_wp*x**3*p**2*q/((1.0_wp - 2.0_wp*x**2)**4 + (4.0_wp*x**2*p*q)**2)
       resistance = resistance + 0.5_wp*pi*sum(weight*part*p*q/x)
-      ! beyond its root R falls and is concave: Newton's method comes down to it
+      ! right of its root R falls and is concave: Newton's method descends to it monotonically
       root = 1.6_wp
       do iteration = 1, 20
          p_root = sqrt(root**2 - a2)
