@@ -1,4 +1,4 @@
-!> Solvers by the name of their method
+!> Factory of solvers by the name of their method, and the method `auto`
 module vcor_solver
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_error, only : error_input, error_numerical, error_t, raise
@@ -17,19 +17,20 @@ module vcor_solver
    public :: solver_t, solver_settings_t, new_solver, solve_impact, check_settings, method_for
    public :: default_accuracy
 
-   !> The method that works: internal variables, or product integration where those fail. They fail
-   !> where the kernel is no sum of exponentials: that of a table whose data begin long after the
-   !> contact has ended, of some pairs, of exponents next to a limit
+   !> The method `auto`: internal variables, and product integration if they fail. They fail if no
+   !> sum of exponentials represents the kernel: for a table whose data begin long after the end of
+   !> the contact, for some pairs, and for exponents near a limit
    type, extends(solver_t) :: auto_t
-      !> What is tried first
+      !> First method
       type(ive_t) :: ive
-      !> What is tried if that has no result, or one that is far from the accuracy asked for
+      !> Method if the first has no result, or one far from the requested accuracy
       type(product_t) :: product
    contains
       procedure :: solve => solve_by_what_works
    end type auto_t
 
-   !> Solve an impact: by a solver, or by the one that a case without &solver has
+   !> Solve an impact with a given solver, or with settings, by default those of a case without
+   !> &solver
    interface solve_impact
       procedure :: solve_by
       module procedure solve_in_short
@@ -43,10 +44,10 @@ module vcor_solver
 
 contains
 
-   !> Check that an impact can be solved as it is to be; the solver itself is the same for all of
-   !> them
+   !> Check that an impact can be solved with the given settings; the solver itself is the same for
+   !> all impacts
    subroutine check_settings(settings, impact, error)
-      !> How the impact is to be solved
+      !> Settings of the solution
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       !> Error of code `error_input`, unallocated on success
@@ -102,7 +103,7 @@ contains
 
       !> Raise the error
       subroutine refuse(message, about)
-         !> Why they do not go together
+         !> Reason
          character(len=*), intent(in) :: message
          !> Names of the settings
          character(len=*), intent(in) :: about
@@ -111,17 +112,17 @@ contains
       end subroutine refuse
    end subroutine check_settings
 
-   !> Solve an impact by the method auto, or as it is to be solved
+   !> Solve an impact with given settings, by default by the method `auto`
    subroutine solve_in_short(impact, outcome, error, settings, trajectory)
       type(impact_t), intent(in) :: impact
-      !> Its outcome; one that is no separation has a status and no numbers
+      !> Outcome; without separation it has only a status
       type(outcome_t), intent(out) :: outcome
-      !> Error of code `error_input` if the settings do not go with the impact, `error_numerical` if
-      !> the solution fails or is far from the accuracy asked for; unallocated on success
+      !> Error of code `error_input` if the settings do not suit the impact, `error_numerical` if
+      !> the solution fails or is far from the requested accuracy; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> How it is to be solved; absent: all defaults
+      !> Settings of the solution; absent: all defaults
       type(solver_settings_t), intent(in), optional :: settings
-      !> Its course, for those who ask
+      !> Course of the impact
       type(trajectory_t), intent(out), optional :: trajectory
 
       class(solver_t), allocatable :: solver
@@ -142,7 +143,7 @@ contains
    subroutine new_solver_for_impact(solver, settings, impact, error)
       !> The solver; not allocated on failure
       class(solver_t), allocatable, intent(out) :: solver
-      !> How the impact is to be solved
+      !> Settings of the solution
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       type(error_t), allocatable, intent(out) :: error
@@ -155,7 +156,7 @@ contains
    subroutine new_solver_for_all(solver, settings, error)
       !> The solver; not allocated on failure
       class(solver_t), allocatable, intent(out) :: solver
-      !> How impacts are to be solved
+      !> Settings of the solution
       type(solver_settings_t), intent(in) :: settings
       type(error_t), allocatable, intent(out) :: error
 
@@ -173,7 +174,7 @@ contains
          allocate (auto)
          call new_ive(auto%ive, settings, error)
          if (allocated(error)) return
-         ! the time step is that of a method which the user has not asked for
+         ! the time step belongs to a method that the user has not requested
          fallback = settings
          fallback%time_step = 0.0_wp
          call new_product(auto%product, fallback)
@@ -205,7 +206,7 @@ contains
       type(error_t), allocatable :: failure
 
       call self%ive%solve(impact, trajectory, error)
-      ! a layer takes product integration seconds, with an estimate that says less
+      ! for a layer product integration takes seconds, and its error estimate says less
       if (impact%plate%layered()) return
       if (allocated(error)) then
          if (error%code /= error_numerical) return
@@ -216,7 +217,7 @@ contains
       call self%product%solve(impact, trajectory, error)
       if (.not. allocated(failure)) return
       if (allocated(error)) return
-      ! that equal steps run out says nothing about a contact whose end nobody has set
+      ! running out of steps says nothing about a contact without a given end
       if (trajectory%status == contact_lasting .and. &
           .not. self%product%settings%end_time > 0.0_wp) call move_alloc(failure, error)
    end subroutine solve_by_what_works

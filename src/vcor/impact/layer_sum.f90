@@ -1,9 +1,9 @@
 !> Response of a layer during an impact as internal variables
 !>
 !> U = instant F + sum_k c_k int_0^t exp(-l_k (t - x)) F(x) dx, in which some of the rates l_k are
-!> complex conjugate pairs, as waves between the faces oscillate. C(s) = instant + sum_k c_k/(s +
-!> l_k) is fitted by least squares. Over the window the rates are the same for all layers: like a
-!> Fourier series with a somewhat longer period, they can represent any response on the window.
+!> complex conjugate pairs, as waves between the faces oscillate. Least squares fit
+!> C(s) = instant + sum_k c_k/(s + l_k). Over the window the rates are the same for all layers: like
+!> a Fourier series of a somewhat longer period, they can represent any response on the window.
 !>
 !> `instant` is the exact C(oo). The impact is stable with the sum, as it is with the layer, if C
 !> plus the dent of a flat punch remains passive; so the misfit is weighted by the size of both.

@@ -7,8 +7,8 @@
 !>
 !> with alpha = A/sqrt(Q_b(oo)). A s/sqrt(Q_b) has all properties of the complex modulus of a
 !> material and is implemented as one, with relaxation modulus psi and dashpot alpha. 1/sqrt(Q_b) is
-!> a Stieltjes function, so psi = int w(l) exp(-l t) dl with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0))
-!> >= 0.
+!> a Stieltjes function, so psi = int w(l) exp(-l t) dl, w >= 0,
+!> with w(l) = -(A/pi) Im 1/sqrt(Q_b(-l + i0)).
 module vcor_impact_memory
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_positive_inf, ieee_value
    use vcor_constants, only : pi

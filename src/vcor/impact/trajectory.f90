@@ -187,10 +187,10 @@ contains
    !> the force and the spring k(oo) u balance the weight and the motion has decayed or, at the end
    !> of the computation, if the remaining energy cannot make the force zero again.
    !>
-   !> Near rest the contact is linear in u. The energy of the deviations from rest, V = m v^2/2 + (F
-   !> - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of the sphere, for
-   !> a fluid its excess over steady sinking. A zero force at a time tau after a state of energy V
-   !> requires, for every tau,
+   !> Near rest the contact is linear in u. The energy of the deviations from rest,
+   !> V = m v^2/2 + (F - W)^2/(2 k u'), falls in all solids, fluids and plates; v is the velocity of
+   !> the sphere, for a fluid its excess over steady sinking. A zero force at a time tau after a
+   !> state of energy V requires, for every tau,
    !>
    !>     W <= sqrt(2 V u') (sqrt(k(2 tau)) + K(tau) sqrt(u'/m)),   K = int_0 k
    !>

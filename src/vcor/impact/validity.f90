@@ -290,8 +290,8 @@ contains
    end function level_of
 
    !> Resistance of an elastic half space to a point force on its surface: the imaginary part of
-   !> Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2, q^2 =
-   !> x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
+   !> Lamb's compliance u/F is -omega I(nu)/(2 pi mu c_s). With a = c_s/c_p, p^2 = x^2 - a^2,
+   !> q^2 = x^2 - 1 and R(x) = (2 x^2 - 1)^2 - 4 x^2 p q
    !>
    !>     I = -Im int_0^inf x p/R dx
    !>

@@ -102,9 +102,9 @@ contains
       modulus = self%equilibrium + self%viscosity*s + sum(self%moduli*(s/(s + self%rates)))
    end function complex_modulus
 
-   !> Poles and zeros, at s = -x, of the complex modulus without pairs, -x (viscosity + sum w_j/(d_j
-   !> - x)), with the equilibrium modulus as a pole d = 0. One zero lies between two adjacent poles,
-   !> and with a dashpot one beyond the last
+   !> Poles and zeros at s = -x of the complex modulus without pairs,
+   !> -x (viscosity + sum w_j/(d_j - x)), with the equilibrium modulus as a pole d = 0. One zero
+   !> lies between two adjacent poles, and with a dashpot one beyond the last
    pure subroutine find_zeros(self, pole, weight, near, offset)
       class(exponential_sum_t), intent(in) :: self
       !> Poles d [1/s], increasing: 0 if there is an equilibrium modulus, then the rates; rates that

@@ -1,5 +1,5 @@
-!> Fractional Kelvin-Voigt solid, a spring beside a fractional dashpot: E(t) = E_0 + C t^-a/Gamma(1
-!> - a). Bagley and Torvik fitted it to BUTYL B252
+!> Fractional Kelvin-Voigt solid, a spring beside a fractional dashpot, which Bagley and Torvik
+!> fitted to BUTYL B252: E(t) = E_0 + C t^-a/Gamma(1 - a)
 module vcor_material_power_law
    use, intrinsic :: ieee_arithmetic, only : ieee_negative_inf, ieee_positive_inf, ieee_value
    use vcor_error, only : error_t

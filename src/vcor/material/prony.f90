@@ -1,6 +1,6 @@
-!> Generalised Maxwell solid, a Prony series with an optional dashpot in parallel: E(t) = E_0 +
-!> sum_i E_i exp(-b_i t) + viscosity delta(t). The elastic solid has no exponential, the standard
-!> linear solid one; a rigid body is an elastic solid of infinite modulus
+!> Generalised Maxwell solid, a Prony series with an optional dashpot in parallel:
+!> E(t) = E_0 + sum_i E_i exp(-b_i t) + viscosity delta(t). The elastic solid has no exponential,
+!> the standard linear solid one; a rigid body is an elastic solid of infinite modulus
 module vcor_material_prony
    use, intrinsic :: ieee_arithmetic, only : ieee_positive_inf, ieee_value
    use vcor_error, only : error_input, error_t, raise

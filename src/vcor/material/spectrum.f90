@@ -1,8 +1,9 @@
 !> Sums of exponentials for materials with a continuous relaxation spectrum
 !>
-!> A completely monotone modulus is E(t) = E_0 + int_0^inf H(l) exp(-l t) dl, with the spectrum H(l)
-!> = Im Q(-l + i0)/(pi l) from its complex modulus Q. In y = ln(l) the integrand is analytic for |Im
-!> y| < pi/2, so the trapezoidal rule of step h converges as exp(-pi^2/h). It is applied in x, with
+!> A completely monotone modulus is E(t) = E_0 + int_0^inf H(l) exp(-l t) dl, with the spectrum
+!> H(l) = Im Q(-l + i0)/(pi l) from its complex modulus Q. In y = ln(l) the integrand is analytic
+!> for |Im y| < pi/2, so the trapezoidal rule of step h converges as exp(-pi^2/h). It is applied in
+!> x, with
 !>
 !>     y + c asinh((y - y_p)/d) = x - exp(x_a - x) + exp(x - x_b),   x = 0, +-h, +-2 h ..
 !>

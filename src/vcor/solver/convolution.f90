@@ -1,14 +1,14 @@
-!> Sums over the past on equal steps: hereditary integrals as the direct methods compute them
+!> Sums over the past on equal steps: the hereditary integrals of the direct methods
 !>
 !> The second term of the Volterra series, Eq. (10) of Green's paper with h2(t1, t2) = h(t1 + t2),
 !> is
 !>
 !>     D_n = sum_{a=1..n} sum_{b=1..n} h_{2n-a-b} w_a w_b
 !>
-!> which is O(n^2) work at every step and O(N^3) in all as it stands. The kernel depends on a + b
-!> alone, so D_n = sum_m h_{2n-m} C_n(m) with C_n(m) = sum_{a+b=m; a,b<=n} w_a w_b. From step to
-!> step C_n gains 2 w_n w_a at m = n + a and w_n^2 at m = 2n only: O(n) work, the same number but
-!> for rounding, arrays of length 2N. With the newest value w_n apart,
+!> which in this form takes O(n^2) operations per step and O(N^3) in all. As the kernel depends on
+!> a + b only, D_n = sum_m h_{2n-m} C_n(m) with C_n(m) = sum_{a+b=m; a,b<=n} w_a w_b. In each step
+!> C_n gains only 2 w_n w_a at m = n + a and w_n^2 at m = 2n: O(n) operations and arrays of length
+!> 2N for the same number but for rounding. With the newest value w_n separated,
 !>
 !>     D_n = sum_{m<=2n-2} h_{2n-m} C_{n-1}(m) + 2 w_n sum_{a<n} h_{n-a} w_a + h_0 w_n^2
 module vcor_solver_convolution
@@ -22,7 +22,7 @@ module vcor_solver_convolution
    type :: convolution_t
       !> Number of weights
       integer :: room = 0
-      !> W_0, the share of the newest value
+      !> W_0, weight of the newest value
       real(wp) :: newest = 0.0_wp
       !> reversed(room - i) = W_i, so that sums run forward through both arrays, shape (room)
       real(wp), allocatable, private :: reversed(:)
@@ -31,9 +31,9 @@ module vcor_solver_convolution
       procedure :: sum_over
    end type convolution_t
 
-   !> Second term of the Volterra series as a double sum under way
+   !> Second term of the Volterra series, a double sum that grows step by step
    type :: second_term_t
-      !> Kernel h_i at t = i dt, room for half as many steps
+      !> Kernel h_i at t = i dt, for half as many steps
       type(convolution_t) :: kernel
       !> sums(m) = C_n(m)
       real(wp), allocatable, private :: sums(:)
@@ -61,9 +61,9 @@ contains
       class(convolution_t), intent(in) :: self
       !> Step at which the sum is taken, n - first < room
       integer, intent(in) :: n
-      !> First step of the part, >= 1
+      !> First step of the range, >= 1
       integer, intent(in) :: first
-      !> Its last step, <= n
+      !> Last step of the range, <= n
       integer, intent(in) :: last
       !> Values, x_1 first
       real(wp), contiguous, intent(in) :: x(:)
@@ -75,7 +75,7 @@ contains
       end associate
    end function sum_over
 
-   !> Make room and set the kernel; the sums so far stay
+   !> Make room and set the kernel; the sums so far are kept
    pure subroutine prepare(self, kernel)
       class(second_term_t), intent(inout) :: self
       !> Kernel h_i at t = i dt, shape (0:)
@@ -85,7 +85,7 @@ contains
       call lengthen(self%sums, 1, size(kernel))
    end subroutine prepare
 
-   !> The double sum D_n without the newest value: its part that does not depend on w_n
+   !> Part of D_n that does not depend on the newest value w_n
    pure function past(self, n)
       class(second_term_t), intent(in) :: self
       !> Step, 1 <= n, 2 n <= room
@@ -96,7 +96,7 @@ contains
       past = self%kernel%sum_over(2*n, 2, 2*n - 2, self%sums)
    end function past
 
-   !> Take the newest value w_n in
+   !> Add the newest value w_n to the sums
    pure subroutine accept(self, n, w)
       class(second_term_t), intent(inout) :: self
       !> Step
@@ -108,9 +108,9 @@ contains
       self%sums(2*n) = self%sums(2*n) + w(n)**2
    end subroutine accept
 
-   !> Scalar product a . b. Partial sums in a fixed order make it a matter of vector registers and
-   !> free of the latency of one running sum, with the same result on every machine; the intrinsic
-   !> may not reorder the sum and takes four times as long
+   !> Scalar product a . b with partial sums in a fixed order, which fill vector registers, avoid
+   !> the latency of one running sum, and give the same result on every machine; the intrinsic may
+   !> not reorder the sum and takes four times as long
    pure function dot(a, b) result(product)
       !> First vector, shape (n)
       real(wp), contiguous, intent(in) :: a(:)
@@ -135,13 +135,13 @@ contains
       product = product + sum(partial)
    end function dot
 
-   !> Make a series longer: what is there stays, the rest is 0
+   !> Lengthen a series: its values are kept, the rest is 0
    pure subroutine lengthen(series, first, last)
-      !> The series; on entry it may not be allocated
+      !> The series; may be unallocated on entry
       real(wp), allocatable, intent(inout) :: series(:)
-      !> Its first index, that of the series on entry
+      !> First index, the same as on entry
       integer, intent(in) :: first
-      !> Its last index
+      !> New last index
       integer, intent(in) :: last
 
       real(wp), allocatable :: longer(:)

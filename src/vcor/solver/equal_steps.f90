@@ -1,5 +1,5 @@
-!> Evaluation of a course on equal time steps, whose last step alone is shorter: what both direct
-!> schemes have in common
+!> Evaluation of a course on equal time steps with a shorter last step, common to both direct
+!> schemes
 module vcor_solver_equal_steps
    use vcor_impact_trajectory, only : col_force, col_indentation, col_time, trajectory_t
    use vcor_kinds, only : wp
@@ -21,13 +21,13 @@ contains
       y = value(0) + 0.5_wp*x*(value(1) - value(-1) + x*(value(1) - 2.0_wp*value(0) + value(-1)))
    end function parabola
 
-   !> Add the weights of the last step by the parabola through the last three nodes
+   !> Add the weights of the last step, from the parabola through the last three nodes
    pure subroutine add_last_step(dt, last, weight)
       !> Time step [s]
       real(wp), intent(in) :: dt
       !> Length of the last step [s]
       real(wp), intent(in) :: last
-      !> Weights of these nodes [s]
+      !> Weights of the last three nodes [s]
       real(wp), intent(inout) :: weight(3)
 
       weight(1) = weight(1) - last**3/(6.0_wp*dt*(dt + last))
@@ -49,7 +49,7 @@ contains
          integer, intent(in) :: column
          !> Largest value
          real(wp), intent(out) :: value
-         !> Its time [s]
+         !> Time of the largest value [s]
          real(wp), intent(out) :: time
 
          real(wp) :: y(-1:1), x, bend
@@ -58,7 +58,7 @@ contains
          i = maxloc(trajectory%state(column, 0:trajectory%last), 1) - 1
          value = trajectory%state(column, i)
          time = trajectory%state(col_time, i)
-         ! the last node is not at an equal distance
+         ! the last node has another distance
          if (i < 1 .or. i > trajectory%last - 2) return
          y = trajectory%state(column, i - 1:i + 1)
          bend = y(1) - 2.0_wp*y(0) + y(-1)

@@ -1,10 +1,10 @@
-!> Internal variable evolution: the fast method for kernels that are sums of exponentials
-!> (Section VI of Green's paper), by collocation with the internal variables eliminated
+!> Internal variable evolution: the fast method for kernels that are sums of exponentials (Section
+!> VI of Green's paper), by collocation with the internal variables eliminated
 !>
-!> Every impact is solved twice on the same panels of time, with eight stages and with seven by a
-!> companion: what the two differ by is the error, of a panel and of the outcome. On a layer, which
-!> rings, each panel of the companion starts from the solution. One panel is in
-!> `vcor_solver_ive_problem`, their sequence in `vcor_solver_ive_contact` and
+!> Every impact is solved twice on the same panels of time, with eight stages and, by a companion,
+!> with seven. Their difference is the error estimate, of a panel and of the outcome. On a layer,
+!> which oscillates, each panel of the companion starts from the solution. The equations of a panel
+!> are in `vcor_solver_ive_problem`, the sequence of panels in `vcor_solver_ive_contact` and
 !> `vcor_solver_ive_rebound`.
 module vcor_solver_ive
    use vcor_error, only : error_numerical, error_t, raise
@@ -29,8 +29,8 @@ module vcor_solver_ive
    !> Internal variable evolution
    type, extends(solver_t) :: ive_t
       private
-      !> Accuracy of the coefficient of restitution that is worked to [-]; what is asked for may be
-      !> looser
+      !> Accuracy of the coefficient of restitution used internally [-]; may be higher than
+      !> requested
       real(wp) :: accuracy = 0.0_wp
       type(collocator_t) :: collocator
    contains
@@ -52,9 +52,9 @@ contains
       call new_collocator(self%collocator, self%accuracy, settings%second_coefficient, error)
    end subroutine new_ive
 
-   !> Compute the course of an impact. Where the kernel is no finite sum of exponentials, one is
-   !> made that holds up to some times the expected contact time, and anew if the contact outlasts
-   !> it
+   !> Compute the course of an impact. For a kernel that is no finite sum of exponentials, one is
+   !> made for a window of some expected contact times, and again for a longer window if the contact
+   !> outlasts it
    subroutine solve(self, impact, trajectory, error)
       class(ive_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -95,7 +95,7 @@ contains
                return
             end if
          end if
-         ! a sum that is the kernel itself holds for ever, ghost lines beyond the end included
+         ! an exact sum holds for all times, also for ghost lines beyond the end
          if (.not. (modes%contact%error > 0.0_wp .or. impact%plate%hereditary())) &
             window = huge(1.0_wp)
          call follow(self%collocator, impact, modes, self%accuracy, time_scale, end_time, &
@@ -116,7 +116,7 @@ contains
       if (trajectory%status == contact_separated) then
          error_of_sums = error_of_kernel*error_felt(impact, modes%contact, trajectory)
          if (impact%plate%layered()) then
-            ! for lines beyond its end the window became longer than the contact takes
+            ! for ghost lines the window became longer than the contact needs
             window = first_window
             do while (window < trajectory%state(col_time, trajectory%last))
                window = growth*window
@@ -138,8 +138,8 @@ contains
       end associate
    end subroutine solve
 
-   !> Whether the force ends as s^1.5, so that what the response of a layer does at once shows in
-   !> the velocity at the end
+   !> Whether the force ends as s^1.5, so that errors of the fast response of a layer appear in the
+   !> velocity at the end
    pure function ends_as_power(impact, trajectory)
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(in) :: trajectory
@@ -149,12 +149,12 @@ contains
          < shallow_end*trajectory%max_indentation
    end function ends_as_power
 
-   !> Error of the kernel as an impact feels it: that of the kernel's integral up to the largest
-   !> force, in the share of the momentum that the loading has taken, if that is more, as it is
-   !> where heavy losses end the loading early in the window
+   !> Error of the kernel as an impact feels it: that of the sum, or that of the kernel's integral
+   !> up to the largest force, times the share of the momentum taken by then, if larger. This is the
+   !> case where heavy losses end the loading early in the window
    pure function error_felt(impact, contact, trajectory) result(error)
       type(impact_t), intent(in) :: impact
-      !> Its kernel as a sum of exponentials
+      !> Kernel as a sum of exponentials
       type(exponential_sum_t), intent(in) :: contact
       type(trajectory_t), intent(in) :: trajectory
       !> Relative error

@@ -1,5 +1,5 @@
-!> What all solvers have in common: their settings, the type, and the way from an impact to its
-!> outcome, or why there is none
+!> Common part of all solvers: settings, abstract type, and the evaluation of an impact with the
+!> check of its accuracy
 module vcor_solver_type
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_outcome, only : evaluate, outcome_t
@@ -12,10 +12,10 @@ module vcor_solver_type
    public :: solver_t, solver_settings_t, solve_impact, default_accuracy, refuse_growth, &
       method_for
 
-   !> Letters of the longest name in the settings
+   !> Length of the longest name in the settings
    integer, parameter :: longest_name = len('adams_bashforth')
 
-   !> How an impact is to be solved
+   !> Settings of a solution
    type :: solver_settings_t
       !> One of auto, ive, direct
       character(len=longest_name) :: method = 'auto'
@@ -23,23 +23,23 @@ module vcor_solver_type
       character(len=longest_name) :: scheme = 'product'
       !> adams_bashforth: form of Eq. (8), a or b
       character(len=longest_name) :: form = 'a'
-      !> adams_bashforth: sums, rectangle or trapezoid
+      !> adams_bashforth: rule of the sums, rectangle or trapezoid
       character(len=longest_name) :: quadrature = 'trapezoid'
-      !> Time step of the direct method [s]; 0: follows from the accuracy
+      !> Time step of the direct method [s]; 0: chosen from the accuracy
       real(wp) :: time_step = 0.0_wp
-      !> End of the computation [s]; 0: follows from the contact's time scale
+      !> End of the computation [s]; 0: chosen from the time scale of the contact
       real(wp) :: end_time = 0.0_wp
-      !> Wanted accuracy of the coefficient of restitution [-]; 0: that of the method
+      !> Wanted accuracy of the coefficient of restitution [-]; 0: the default of the method
       real(wp) :: accuracy = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series, Eq. (10) [m^-1.5]; 0: without it
       real(wp) :: second_coefficient = 0.0_wp
-      !> Go on after the separation, to `end_time` or to twice the contact time
+      !> Continue after the separation, to `end_time` or to twice the contact time
       logical :: ghost = .false.
    end type solver_settings_t
 
-   !> A method for impacts; immutable once built, so that threads can share it
+   !> A method of solution; immutable once built, so threads can share it
    type, abstract :: solver_t
-      !> The settings that it was built with
+      !> Settings with which it was built
       type(solver_settings_t) :: settings
    contains
       !> Compute the course of an impact
@@ -52,7 +52,7 @@ module vcor_solver_type
          import :: error_t, impact_t, solver_t, trajectory_t
          class(solver_t), intent(in) :: self
          type(impact_t), intent(in) :: impact
-         !> Its course; an impact that does not end in separation is no error but a status
+         !> Course of the impact; one that does not end in separation is a status, not an error
          type(trajectory_t), intent(out) :: trajectory
          type(error_t), allocatable, intent(out) :: error
       end subroutine solve_i
@@ -60,12 +60,12 @@ module vcor_solver_type
 
 contains
 
-   !> The method: `auto` is ive, which hands over to direct where it fails, but direct where a
-   !> scheme other than product is asked for
+   !> Method in use: `auto` is ive, which falls back to direct on failure, but direct if a scheme
+   !> other than product is requested
    pure function method_for(method, scheme) result(name)
-      !> What the user asks for: auto, ive or direct
+      !> Method requested: auto, ive or direct
       character(len=*), intent(in) :: method
-      !> Scheme of the direct method that the user asks for
+      !> Scheme of the direct method requested
       character(len=*), intent(in) :: scheme
       !> ive or direct
       character(len=:), allocatable :: name
@@ -74,7 +74,7 @@ contains
       if (method == 'auto') name = trim(merge('ive   ', 'direct', scheme == 'product'))
    end function method_for
 
-   !> Accuracy of the coefficient of restitution where none is asked for
+   !> Accuracy of the coefficient of restitution if none is requested
    pure function default_accuracy(method) result(accuracy)
       !> ive or direct
       character(len=*), intent(in) :: method
@@ -85,15 +85,15 @@ contains
       if (method == 'ive') accuracy = 1.0e-8_wp
    end function default_accuracy
 
-   !> Solve an impact: the one place where a result is held against the accuracy that was asked for
+   !> Solve an impact, and compare its estimated error with the requested accuracy, only here
    subroutine solve_impact(solver, impact, trajectory, outcome, error)
       class(solver_t), intent(in) :: solver
       type(impact_t), intent(in) :: impact
       type(trajectory_t), intent(inout) :: trajectory
-      !> Its outcome; one that is no separation has a status and no numbers
+      !> Outcome; without separation it has only a status
       type(outcome_t), intent(out) :: outcome
-      !> Error of code `error_numerical` if the solution fails, is far from the accuracy asked for
-      !> or leaves the range of the numbers; unallocated on success
+      !> Error of code `error_numerical` if the solution fails, is far from the requested accuracy
+      !> or overflows; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: advice(2) = [character(len=59) :: &
@@ -119,7 +119,7 @@ contains
       end if
       if (.not. allocated(error)) return
       if (error%code /= error_numerical .or. .not. impact%plate%layered()) return
-      ! a disc within the contact is stiffer than the contact: the equations have no solution
+      ! a footprint within the contact is stiffer than the contact: the equations have no solution
       if (impact%plate%footprint < impact%expected_radius(impact%time_scale())) then
          call raise(error, error_numerical, 'the footprint, ' &
             //as_text(impact%plate%footprint)//' m, is smaller than the contact becomes, which ' &
@@ -127,9 +127,8 @@ contains
       end if
    end subroutine solve_impact
 
-   !> Refuse a receding contact in which t1 grows. On a plate at rest, without weight, s' only
-   !> falls, and t1' has the sign of s': there it is what rounding leaves of a sphere that has come
-   !> to rest
+   !> Refuse a receding contact in which t1 grows. On a plate at rest and without weight s' only
+   !> falls, and t1' has its sign: there a rising t1 is rounding of a sphere that has come to rest
    subroutine refuse_growth(impact, error)
       type(impact_t), intent(in) :: impact
       !> Error of code `error_numerical`
@@ -145,12 +144,12 @@ contains
       end if
    end subroutine refuse_growth
 
-   !> A number as text, of fixed length: gfortran 12 keeps the length of a text of deferred length
-   !> that a function returns in static storage, where threads collide
+   !> A number as text of fixed length: gfortran 12 keeps the length of a deferred-length function
+   !> result in static storage, where threads collide
    pure function as_text(number) result(text)
       !> The number, > 0
       real(wp), intent(in) :: number
-      !> Such as 1.0E-08
+      !> Text such as 1.0E-08
       character(len=7) :: text
 
       write (text, '(es7.1)') number

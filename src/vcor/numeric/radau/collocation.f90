@@ -233,8 +233,8 @@ contains
 
    contains
 
-      !> Combine two real eigenvalues into a pair a + b and a - b: x v + y w = (x + y)/2 (v + w) +
-      !> (x - y)/2 (v - w)
+      !> Combine two real eigenvalues into a pair a + b and a - b:
+      !> x v + y w = (x + y)/2 (v + w) + (x - y)/2 (v - w)
       subroutine join(first, second)
          !> Number of the first eigenvalue
          integer, intent(in) :: first

@@ -1,16 +1,16 @@
 !> The approach of a receding contact, as its rebound needs it
 !>
 !> While the contact shrinks, force and condition are integrals over the approach up to a time t1
-!> (see `vcor_impact_problem`). For a kernel G_0 + sum_k G_k exp(-l_k t) both are known from what
-!> had not relaxed at t1,
+!> (see `vcor_impact_problem`). For a kernel G_0 + sum_k G_k exp(-l_k t) both follow from the lags
+!> at t1,
 !>
 !>   F = G_0 u(t1) + sum_k G_k p_k(t1) exp(-l_k (t - t1)),  p_k = int_0^t1 exp(-l_k (t1 - x)) u' dx
 !>   N = G_0 s(t1) + sum_k G_k w_k(t1) exp(-l_k (t - t1)),  w_k = int_0^t1 exp(-l_k (t1 - x)) s' dx
 !>
-!> and the condition is that N is the same integral over all the past, int_0^t k(t - x) s'(x) dx. As
-!> dF/dt1 = k(t - t1) u'(t1) and dN/dt1 = k(t - t1) s'(t1), F is a function of N with the slope
-!> dF/dN = du/ds at s(t1), which is regular where s' is zero. It goes to zero as u(N), where t1
-!> gets to 0, and is continued as an odd function: as if s = v0 t1 before first contact.
+!> and the condition is that N equals the same integral over all the past, int_0^t k(t - x) s'(x)
+!> dx. Since dF/dt1 = k(t - t1) u'(t1) and dN/dt1 = k(t - t1) s'(t1), F is a function of N with the
+!> slope dF/dN = du/ds at s(t1), which is regular where s' is zero. F goes to zero as u(N) when t1
+!> reaches 0, and is continued as an odd function, as if s = v0 t1 before first contact.
 module vcor_solver_ive_approach
    use vcor_impact_law, only : contact_law_t
    use vcor_kinds, only : wp
@@ -27,11 +27,11 @@ module vcor_solver_ive_approach
 
    !> One panel of the approach; index 0 is its start
    type :: stretch_t
-      !> Time at its start [s]
+      !> Time at the start [s]
       real(wp) :: start = 0.0_wp
-      !> Time in it: start + map(1) theta + map(2) theta^2 [s]
+      !> Map of time in the panel: start + map(1) theta + map(2) theta^2 [s]
       real(wp) :: map(2) = 0.0_wp
-      !> Indentation at its points [m]
+      !> Indentation at the points [m]
       real(wp) :: s(0:width) = 0.0_wp
       !> Rate of the indentation [m/s]
       real(wp) :: rate(0:width) = 0.0_wp
@@ -51,14 +51,14 @@ module vcor_solver_ive_approach
       real(wp), allocatable :: w(:)
       !> p_k at its end [m^1.5], shape (modes)
       real(wp), allocatable, private :: p(:)
-      !> Moduli of the modes [N/m^1.5], a zero added if they are odd in number: their sums are taken
-      !> in pairs
+      !> Moduli of the modes [N/m^1.5], followed by a zero if their number is odd, as they are
+      !> summed in pairs
       real(wp), allocatable, private :: moduli(:)
-      !> Rates of the modes, rising, a zero added likewise [1/s]
+      !> Rates of the modes [1/s], increasing, followed by a zero likewise
       real(wp), allocatable, private :: rates(:)
       !> Number of panels
       integer, private :: count = 0
-      !> Their points
+      !> Points of a panel in theta
       real(wp), private :: point(0:width) = 0.0_wp
       !> Barycentric weights of the points
       real(wp), private :: barycentric(0:width) = 0.0_wp
@@ -118,7 +118,7 @@ contains
          stretch%rate(1:stages) = rate(1:stages)
          allocate (stretch%past(2*points, size(self%rates)))
          stretch%past(:, size(self%w) + 1:) = 0.0_wp
-         ! from what is gained in the panel: the modes that settle at once leave no digits of s
+         ! from increments in the panel, since modes that settle at once would leave no digits of s
          s = apply(map%left, panel%indentation(1:) - panel%indentation(0))
          call law%secants(width, panel%indentation(1:), u)
          u = apply(map%left, panel%indentation(1:)*u - law%u(panel%indentation(0)))
@@ -137,23 +137,24 @@ contains
       end associate
    end subroutine add
 
-   !> The same numbers, with a zero behind them if they are odd in number
+   !> Numbers followed by a zero if their number is odd
    pure function in_pairs(numbers)
       !> The numbers, shape (n)
       real(wp), intent(in) :: numbers(:)
-      !> The same, shape (n + modulo(n, 2))
+      !> Padded numbers, shape (n + modulo(n, 2))
       real(wp), allocatable :: in_pairs(:)
 
       allocate (in_pairs(size(numbers) + modulo(size(numbers), 2)), source=0.0_wp)
       in_pairs(:size(numbers)) = numbers
    end function in_pairs
 
-   !> Force and condition by t1, and their derivatives, at the stages of a panel of the rebound
+   !> Force and condition as functions of t1, and their derivatives, at the stages of a rebound
+   !> panel
    pure subroutine evaluate(self, equilibrium, stages, t, t1, condition, force, slope, rate)
       class(approach_t), intent(in) :: self
       !> Modulus of the kernel at rate 0 [N/m^1.5]
       real(wp), intent(in) :: equilibrium
-      !> Number of stages; beyond them all is zero
+      !> Number of stages; values beyond are zero
       integer, intent(in) :: stages
       !> Times [s]
       real(wp), intent(in) :: t(width)
@@ -192,7 +193,7 @@ contains
       n_past = 0.0_wp
       f_past = 0.0_wp
       do i = 1, stages
-         ! an iteration on its way may be anywhere
+         ! t1 of an unfinished iteration may be anywhere
          elapsed = max(t(i) - max(t1(i), 0.0_wp), 0.0_wp)
          do active = size(self%w), 1, -1
             if (self%rates(active)*elapsed <= gone) exit
@@ -226,24 +227,24 @@ contains
       rate = stiffness*velocity
    end subroutine evaluate
 
-   !> What has not relaxed yet, summed over the modes
+   !> Sum over the modes that have not relaxed
    pure subroutine add_modes(n, moduli, rates, past, elapsed, stiffness, total)
-      !> Number of modes that have not, even, > 0
+      !> Number of such modes, even, > 0
       integer, intent(in) :: n
       !> Their moduli [N/m^1.5]
       real(wp), intent(in) :: moduli(n)
       !> Their rates [1/s]
       real(wp), intent(in) :: rates(n)
-      !> What they remember, as in `stretch_t`
+      !> Their lags at t1, as in `stretch_t`
       real(wp), intent(in) :: past(2*points, n)
-      !> Time since then [s]
+      !> Time since t1 [s]
       real(wp), intent(in) :: elapsed
-      !> Stiffness, to which the moduli that are left are added [N/m^1.5]
+      !> Stiffness, to which the decayed moduli are added [N/m^1.5]
       real(wp), intent(inout) :: stiffness
-      !> What is remembered, to which theirs is added
+      !> Sums of the lags, to which those of these modes are added
       real(wp), intent(inout) :: total(2*points)
 
-      ! exponentials in one go, which spares an allocation; even
+      ! exponentials computed at a time, which avoids an allocation; even
       integer, parameter :: block = 64
       real(wp) :: share(block)
       integer :: first, i, k
@@ -262,7 +263,7 @@ contains
       end do
    end subroutine add_modes
 
-   !> Lagrange's polynomials at positions in a panel
+   !> Lagrange polynomials at positions in a panel
    pure function basis_at(self, theta) result(basis)
       class(approach_t), intent(in) :: self
       !> Positions
@@ -289,7 +290,7 @@ contains
       end do
    end function basis_at
 
-   !> The t1 at which the condition has changed by a given amount, next to a known one: N is about a
+   !> The t1 at which the condition has changed by a given amount from a known one: N is about a
    !> parabola with its vertex at the end of the approach, where s' is zero
    pure function moved(self, t1, change, rate) result(other)
       class(approach_t), intent(in) :: self
@@ -302,7 +303,7 @@ contains
       !> Other t1 [s], less than the end
       real(wp) :: other
 
-      ! way back beyond which no digit of the approach is left
+      ! distance before the end at which no digit of the approach is left
       real(wp), parameter :: farthest = 1.0_wp/epsilon(1.0_wp)
       real(wp) :: way, whole
 

@@ -1,5 +1,5 @@
-!> The two collocation rules of the internal-variable method, that of the solution and that of its
-!> companion, and what Newton's method may leave of an error
+!> The collocation rules of the internal-variable method, for the solution and for its companion,
+!> and the tolerances of Newton's method
 module vcor_solver_ive_collocator
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
@@ -11,10 +11,10 @@ module vcor_solver_ive_collocator
 
    public :: collocator_t, new_collocator
 
-   !> Stages of the solution: enough that three panels make an impact, few enough that the
-   !> eigenvectors of the integration matrices cost four digits only
+   !> Stages of the solution: enough for an impact in three panels, few enough for eigenvectors of
+   !> the integration matrices that cost only four digits
    integer, parameter :: stages = width
-   !> Stages of its companion
+   !> Stages of the companion
    integer, parameter :: fewer_stages = stages - 1
 
    !> Collocation rules; immutable once built
@@ -25,15 +25,16 @@ module vcor_solver_ive_collocator
       type(collocation_t) :: coarse
       !> Interpolation from the points of `rule` to the nodes of `coarse`
       real(wp) :: to_coarse(width, 0:width) = 0.0_wp
-      !> Interpolation from the nodes of `coarse` to those of `rule`, of what is zero at the start
+      !> Interpolation from the nodes of `coarse` to those of `rule`, for values that are 0 at the
+      !> start
       real(wp) :: from_coarse(width, width) = 0.0_wp
       !> Coefficient c2 of the second term of the Volterra series [m^-1.5], 0 without it
       real(wp) :: second_coefficient = 0.0_wp
-      !> Error that Newton's method may leave in the indentation, over its largest value
+      !> Error left by Newton's method in the indentation, over its largest value
       real(wp) :: tolerance = 0.0_wp
-      !> The same at the end of a panel that is solved with the Jacobian of another one: a
-      !> companion, whose difference to the solution is wanted to two digits only, or a panel cut to
-      !> an end
+      !> The same at the end of a panel solved with the Jacobian of another: a companion, whose
+      !> difference to the solution is needed to two digits only, or a panel cut at the end of the
+      !> contact
       real(wp) :: near_tolerance = 0.0_wp
    contains
       procedure :: coarsened
@@ -54,7 +55,7 @@ contains
       integer :: i, j
 
       self%second_coefficient = second_coefficient
-      ! products with a matrix leave that rounding
+      ! rounding in products with a matrix
       self%tolerance = max(width**2*epsilon(1.0_wp), newton_tolerance*accuracy)
       self%near_tolerance = max(width**2*epsilon(1.0_wp), near_tolerance*accuracy)
       call new_collocation(self%rule, stages, error)

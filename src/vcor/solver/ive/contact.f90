@@ -1,14 +1,13 @@
-!> The contact in the internal-variable method, from first touch to its end, or to the largest
-!> indentation where the contact recedes from there on
+!> The contact in the internal-variable method: from first touch to its end, or to the largest
+!> indentation if it recedes from there on
 !>
-!> Close to first contact the panels are steps in x = sqrt(t), in which the solution is analytic
-!> from the start, u(s) included; later, where the branch point at t = 0 has become remote, steps
-!> in t. Each is solved with eight stages and with seven by its companion, and what the two differ
-!> by decides whether the panel is accepted or halved. The last one is solved anew until it ends
-!> where the force is zero: the end of a panel is where collocation is most accurate
-!> (order 2 n - 1), and all integrals over the contact are then sums over whole panels. Towards the
-!> end of a nearly elastic contact, where s goes to zero as well and u(s) loses its derivatives, the
-!> panels shrink geometrically.
+!> Near first contact the panels are steps in x = sqrt(t), in which the solution, with u(s), is
+!> analytic from the start; later, far from the branch point at t = 0, they are steps in t. Each
+!> panel is solved with eight stages and, by its companion, with seven; their difference decides
+!> whether it is accepted or halved. The last panel is solved again until it ends where the force is
+!> zero: collocation is most accurate at the end of a panel (order 2 n - 1), and all integrals over
+!> the contact are then sums over whole panels. Towards the end of a nearly elastic contact, where s
+!> goes to zero as well and u(s) loses its derivatives, the panels shrink geometrically.
 module vcor_solver_ive_contact
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -40,9 +39,9 @@ module vcor_solver_ive_contact
 
    public :: follow
 
-   !> The contact until it ends
+   !> Integration of the contact
    type, extends(course_t) :: contact_t
-      !> Whether the contact recedes after the largest indentation, and whether that is in the panel
+      !> Whether the contact recedes after the largest indentation, and whether this is in the panel
       logical :: recedes = .false., turns = .false.
       !> Rate of the indentation at the start of the panel [m/s]
       real(wp) :: velocity = 0.0_wp
@@ -52,32 +51,32 @@ module vcor_solver_ive_contact
       real(wp) :: doubt = 0.0_wp
       !> Largest force so far [N]
       real(wp) :: largest_force = 0.0_wp
-      !> What the panel adds to the error of the motion, and the most that one has added [-]
+      !> Contribution of the panel to the error of the motion, and the largest one so far [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
-      !> Difference of the impulse to those of the companions of the panels before, where each of
-      !> them starts from the solution [N s]
+      !> Difference of the impulse to the companions, added up over earlier panels if each companion
+      !> starts from the solution [N s]
       real(wp) :: handed_down = 0.0_wp
-      !> What a rebound feels of the difference of the two solutions inside the panel, and the most
-      !> that it has felt [-]
+      !> Effect on a rebound of the difference of the two solutions inside the panel, and the
+      !> largest one so far [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
-      !> What a rebound feels of the branch point of the force at first contact [-]
+      !> Effect on a rebound of the branch point of the force at first contact [-]
       real(wp) :: branch_felt = 0.0_wp
-      !> Whether the panel ends next to s = 0, and with it next to the branch point of u(s)
+      !> Whether the panel ends near s = 0, and whether also near the branch point of u(s)
       logical :: shallow = .false., ends_at_branch = .false.
-      !> End of the contact that was refused [s], and panels to come before it is tried again
+      !> End of the contact that was refused [s], and number of panels before it is tried again
       real(wp) :: end_found = 0.0_wp
       integer :: ahead = 0
    end type contact_t
 
 contains
 
-   !> Follow the contact with the kernel as a sum of exponentials
+   !> Integrate the contact with the kernel as a sum of exponentials
    subroutine follow(collocator, impact, modes, accuracy, time_scale, end_time, ghost_end, window, &
                      trajectory, complete, error)
       type(collocator_t), intent(in), target :: collocator
       type(impact_t), intent(in), target :: impact
       type(modes_t), intent(in), target :: modes
-      !> Wanted accuracy of the coefficient of restitution
+      !> Accuracy wanted of the coefficient of restitution
       real(wp), intent(in) :: accuracy
       !> Time scale of the contact [s]
       real(wp), intent(in) :: time_scale
@@ -85,7 +84,7 @@ contains
       real(wp), intent(in) :: end_time
       !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
       real(wp), intent(in) :: ghost_end
-      !> Time up to which the sum holds [s]
+      !> Time up to which the sums hold [s]
       real(wp), intent(in) :: window
       type(trajectory_t), intent(out) :: trajectory
       !> Whether the window was long enough
@@ -100,7 +99,7 @@ contains
       contact%problem = new_panel_problem(collocator, impact, modes)
       contact%time_scale = time_scale
       contact%speed = impact%speed_scale(time_scale)
-      ! of a sphere that is put down rather than thrown, v0 is no measure
+      ! relative to `speed`: v0 may be near zero for a sphere that is put down
       contact%accuracy = max(accuracy*(impact%velocity/contact%speed), &
          min(accuracy, finest_accuracy))
       contact%end_time = end_time
@@ -108,7 +107,7 @@ contains
       call begin(collocator%rule, impact, trajectory)
       complete = .true.
       do trial = 1, most_panels
-         ! a panel that has been cut to nothing: no other one does better
+         ! a panel of no length: shorter ones do not help
          if (.not. contact%step%duration() > epsilon(1.0_wp)**2*time_scale) then
             call trajectory%stop_at_rest(impact, .true., over)
             if (over) return
@@ -140,7 +139,7 @@ contains
          //'of the contact: the accuracy asked for is out of reach')
    end subroutine follow
 
-   !> First step: the square root of some part of the expected contact time, in x = sqrt(t)
+   !> First step: the square root of a part of the expected contact time, in x = sqrt(t)
    subroutine start(self)
       type(contact_t), intent(inout) :: self
 
@@ -150,7 +149,7 @@ contains
       associate (contact => self%problem%modes%contact, impact => self%problem%impact)
          continuous = contact%error > 0.0_wp
          signed = any(contact%moduli < 0.0_wp)
-         ! the noise of moduli of both signs is not to be resolved
+         ! the noise of moduli of both signs must not be resolved
          if (signed) self%accuracy = max(self%accuracy, error_of_kernel*contact%error)
          if (impact%plate%layered()) &
             self%accuracy = max(self%accuracy, layer_accuracy, self%problem%modes%plate%error)
@@ -182,9 +181,9 @@ contains
       end associate
    end subroutine start
 
-   !> Shorten the first step of a contact that recedes where the force, x^(2 n) at first, is no
-   !> polynomial in x = sqrt(t). The rebound takes it from that of the panel; the error falls as
-   !> the force and the time that it acts
+   !> Shorten the first step of a receding contact if the force, x^(2 n) at first, is no polynomial
+   !> in x = sqrt(t). The rebound uses the polynomial of the panel, whose error falls as the force
+   !> times the time over which it acts
    pure subroutine shorten_at_branch(self)
       type(contact_t), intent(inout) :: self
 
@@ -201,8 +200,8 @@ contains
       end associate
    end subroutine shorten_at_branch
 
-   !> Number of times that the first step is halved for a kernel with a continuous spectrum: in it
-   !> collocation does not resolve the internal variables that settle within the step
+   !> Number of halvings of the first step for a kernel with a continuous spectrum: collocation does
+   !> not resolve the internal variables that settle within it
    pure function levels(accuracy)
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
@@ -212,8 +211,8 @@ contains
       levels = max(0, ceiling(log(levels_error/accuracy)/log(levels_base)))
    end function levels
 
-   !> Solve the next panel, up to the end of the contact or the largest indentation if that is in
-   !> it, and its companion
+   !> Solve the next panel, cut at the end of the contact or at the largest indentation if it
+   !> contains one, and its companion
    subroutine solve_panel(self, trajectory)
       type(contact_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
@@ -232,7 +231,7 @@ contains
                self%accuracy, self%step, self%panel, self%inverse)
          else if (self%panel%converged .and. trajectory%status /= contact_separated) then
             self%ends = first_without_force(self%panel) > 0
-            ! what rings in a layer does not keep the end from being found
+            ! oscillations in a layer must not prevent the end from being found
             if (self%ends) call land_on_zero(problem, self%start, &
                merge(usual_accuracy, self%accuracy, problem%impact%plate%layered()), &
                shallow_end*trajectory%max_indentation, self%step, self%panel, self%inverse)
@@ -259,9 +258,9 @@ contains
       end do
    end function is_turning
 
-   !> Error of the panel over what it may be: that of the motion, and of the force where it has its
-   !> maximum and at the end; elsewhere it is what is left of transients that the impulse does not
-   !> feel
+   !> Error of the panel over the allowed one: of the motion, and of the force at its maximum and at
+   !> the end of the contact. Elsewhere errors of the force are remainders of transients, which the
+   !> impulse does not feel
    subroutine judge(self, trajectory)
       type(contact_t), intent(inout) :: self
       type(trajectory_t), intent(in) :: trajectory
@@ -276,7 +275,7 @@ contains
          self%growth = self%motion_error()
          self%excess = self%growth/(panel_share*self%accuracy)
          ! alpha' of a frozen plate is infinite at first contact, or a spike that both solutions
-         ! miss, and its error stays for the rest of the contact
+         ! miss, and the error remains for the rest of the contact
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) self%excess = &
             max(self%growth, missed_drift(collocator%rule, panel)/self%speed) &
             /(first_drift*self%accuracy)
@@ -287,7 +286,7 @@ contains
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
          if (trajectory%status /= contact_separated .and. .not. self%recedes &
              .and. 2.0_wp*panel%force(n) < panel%force(n - 1)) then
-            ! what the force is off by here moves the end of the contact
+            ! an error of the force here shifts the end of the contact
             force_error = max(force_error, settled_error(self))
             allowed = abs(slope_at_end(collocator%rule, panel, panel%force)) &
                *panel%time(n)*self%time_tolerance()
@@ -296,25 +295,25 @@ contains
          end if
          if (self%ends) then
             self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
-            ! next to u(s) = 0 both solutions err in the same direction
+            ! near u(s) = 0 both solutions have errors of the same sign
             if (self%shallow) force_error = max(force_error, shallow_factor &
                *min(self%growth_of(panel%force, coarse%force), self%doubt))
             self%ends_at_branch = panel%indentation(n) < next_to_branch*panel%indentation(0)
             if (self%ends_at_branch) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
-            ! the velocity of a layer's face rings: shorter panels do not reach its error
+            ! the velocity of a layer's face oscillates: shorter panels do not reduce its error
             if (.not. impact%plate%layered()) self%excess = max(self%excess, &
                cor_error/self%accuracy)
          end if
-         ! of a force that is no more than rounding there is nothing to be off by
+         ! a force that is mere rounding has no error
          force_error = max(0.0_wp, min(force_error, maxval(panel%force(0:n))) &
             - rounding_of_force*self%largest_force)
          self%excess = max(self%excess, share(force_error, allowed))
          if (self%recedes) then
-            ! the rebound feels the solution between the ends of the panels, too
+            ! the rebound also uses the solution between the ends of the panels
             self%inner = inner_felt*maxval(abs(collocator%coarsened(panel%indentation) &
                - coarse%indentation(1:)))/(self%speed*self%time_scale)
-            ! what is handed down stays however short the panel is
+            ! an inherited error does not depend on the length of the panel
             inherited = inner_felt*abs(panel%indentation(0) - coarse%indentation(0)) &
                /(self%speed*self%time_scale)
             self%excess = max(self%excess, (self%inner - inherited)/(inner_allowed*self%accuracy))
@@ -329,10 +328,10 @@ contains
       end associate
    end subroutine judge
 
-   !> Error of the force at the end of the panel that both solutions may share: a dashpot and
-   !> the modes that settle within the panel follow the rate of u. That is the derivative of a
-   !> polynomial, known to one order less than u: the error is what its last coefficient adds to it.
-   !> A polynomial of n stages resolves modes with l dt/dtheta < n (n + 1)
+   !> Error of the force at the end of the panel that both solutions may share. The force of a
+   !> dashpot and of modes that settle within the panel follows the rate of u, the derivative of a
+   !> polynomial, known to one order less than u: the error is the contribution of its last
+   !> coefficient. A polynomial of n stages resolves modes with l dt/dtheta < n (n + 1)
    pure function settled_error(self) result(error)
       type(contact_t), intent(in) :: self
       !> Error [N]
@@ -350,9 +349,9 @@ contains
       end associate
    end function settled_error
 
-   !> Drift of a frozen plate, int alpha' F dt, that the first panel may miss: what alpha F - int
-   !> alpha dF, whose integrand has no spike where alpha rises at once, has besides, and what alpha
-   !> gains before the first stage
+   !> Drift int alpha' F dt of a frozen plate that the first panel may miss: its difference from
+   !> alpha F - int alpha dF, whose integrand has no spike where alpha rises at once, and the gain
+   !> of alpha before the first stage
    pure function missed_drift(rule, panel) result(missed)
       type(collocation_t), intent(in) :: rule
       type(panel_t), intent(in) :: panel
@@ -368,9 +367,9 @@ contains
       end associate
    end function missed_drift
 
-   !> What the panel adds to the error of the energy that the plate takes, int alpha F^2, over that
-   !> of the impact: forces inside a panel are less accurate than the motion, and their square keeps
-   !> that
+   !> Contribution of the panel to the error of the energy that the plate takes, int alpha F^2, over
+   !> the initial energy: forces inside a panel are less accurate than the motion, and squaring does
+   !> not average their errors out
    pure function work_error(self) result(error)
       type(contact_t), intent(in) :: self
       !> Error [-]
@@ -402,15 +401,16 @@ contains
       type(contact_t), intent(in) :: self
       logical :: is_refused
 
-      ! what a shorter panel did not reduce has been handed down by the panels before
+      ! an error that a shorter panel did not reduce is inherited from earlier panels
       is_refused = .not. (self%excess <= 1.0_wp &
          .or. self%excess <= tolerable .and. self%excess > 0.5_wp*self%refused)
       if (is_refused .and. misses_its_end_only(self)) is_refused = .not. self%is_best_end()
    end function is_refused
 
-   !> Whether the panel is known but for its end: next to a branch point that is rounding
+   !> Whether the panel is accurate but for its end; next to a branch point only if the excess is
+   !> small, as rounding is
    pure function misses_its_end_only(self) result(misses)
-      !> The contact, its panel beyond what it may be off by
+      !> The contact, its panel not accurate enough
       type(contact_t), intent(in) :: self
       logical :: misses
 
@@ -418,7 +418,7 @@ contains
          .and. (self%excess <= tolerable .or. .not. (self%ends_at_branch .or. self%shallow))
    end function misses_its_end_only
 
-   !> Shorten a panel that is refused
+   !> Shorten a panel that was refused
    subroutine shorten(self)
       type(contact_t), intent(inout) :: self
 
@@ -428,8 +428,8 @@ contains
          self%refused_ends = self%refused_ends + 1
       end if
       if (self%ends) then
-         ! next to a branch point the error falls as s u(s) only: panels that lead to the end come
-         ! first
+         ! next to a branch point the error falls only as s u(s): other panels must first lead to
+         ! the end
          self%end_found = self%start%time + self%step%duration()
          self%ahead = 0
          if (self%ends_at_branch) self%ahead = ceiling(min(most_ahead, -log(self%excess) &
@@ -438,7 +438,7 @@ contains
       call self%step%shorten(merge(cut_at_end, 0.5_wp, self%ends)*self%step%duration())
    end subroutine shorten
 
-   !> Make the panel a part of the course
+   !> Accept the panel: add it to the trajectory
    subroutine accept(self, approach, trajectory)
       type(contact_t), intent(inout) :: self
       !> The approach of a contact that recedes
@@ -481,13 +481,13 @@ contains
       end associate
    end subroutine accept
 
-   !> Set the status of a contact that has come to its end with the panel, and how far to go on
+   !> Set the status if the contact ends with the panel, and the end of the computation beyond
    subroutine stop_at_end(self, ghost_end, trajectory, over)
       type(contact_t), intent(inout) :: self
       !> End of the computation beyond the separation [s]; 0: twice the contact time, negative: none
       real(wp), intent(in) :: ghost_end
       type(trajectory_t), intent(inout) :: trajectory
-      !> Whether the computation has come to its end, too
+      !> Whether the computation has ended, too
       logical, intent(out) :: over
 
       if (trajectory%status == contact_separated) then
@@ -507,15 +507,15 @@ contains
       end if
    end subroutine stop_at_end
 
-   !> Go on to the next step: to an end that was refused not before the panels that lead to it
+   !> Advance to the next step; if an end was refused, first to the panels that lead to it
    subroutine go_on(self)
       type(contact_t), intent(inout) :: self
 
       associate (problem => self%problem)
          call problem%advance(problem%collocator%rule, self%step, self%panel, self%start)
          if (problem%impact%plate%layered()) then
-            ! from companion to companion the difference to the solution would ring on, and no
-            ! shorter panel reduces that
+            ! carried on by companions, the difference to the solution would oscillate, and shorter
+            ! panels would not reduce it
             associate (n => self%panel%stages)
                self%handed_down = self%handed_down + self%panel%impulse(n) &
                   - self%coarse%impulse(n - 1)
@@ -534,7 +534,7 @@ contains
       end if
    end subroutine go_on
 
-   !> Go on with the rebound of a contact that recedes
+   !> Continue with the rebound of a receding contact
    subroutine turn_round(self, approach, trajectory, error)
       !> The contact, at its largest indentation
       type(contact_t), intent(inout) :: self
@@ -559,16 +559,16 @@ contains
    end subroutine turn_round
 
    !> Errors of the coefficients of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I and
-   !> z' = v0 - I/m. The companion reaches F = 0 a little earlier or later, which only gravity,
-   !> alpha' and the drift feel
+   !> z' = v0 - I/m. The companion reaches F = 0 slightly earlier or later, which affects only the
+   !> terms of gravity, alpha' and drift
    pure subroutine estimate_errors(self, panels, cor_error, cor_sphere_error)
       !> The contact, at its end
       type(contact_t), intent(in) :: self
       !> Number of panels
       integer, intent(in) :: panels
-      !> Error of that by the relative velocity [-]
+      !> Error of the one by the relative velocity [-]
       real(wp), intent(out) :: cor_error
-      !> Error of that of the sphere alone [-]
+      !> Error of the one of the sphere alone [-]
       real(wp), intent(out) :: cor_sphere_error
 
       real(wp) :: impulse, time, alpha_rate, fall, moved, plate, least, part
@@ -580,8 +580,8 @@ contains
          fall = slope_at_end(rule, panel, panel%force)
          time = part*abs((panel%force(n) - coarse%force(n - 1))/fall)
          alpha_rate = self%alpha_rate()
-         ! the end is moved to its zero along straight lines: what that leaves of the impulse, and
-         ! of the velocity of the plate
+         ! the end is moved to the zero of the force along straight lines: the errors of this in the
+         ! impulse and in the velocity of the plate
          moved = panel%force(n)/fall
          plate = impact%free_path(panel%time(n)) - panel%second_impulse(n)/impact%mass &
             - panel%indentation(n)
@@ -593,14 +593,14 @@ contains
             + (time*(plate_gains(panel, alpha_rate) &
             + abs(slope_at_end(rule, panel, panel%drift))) &
             + part*abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
-         ! next to s = 0 both solutions have F' = 0, but not at the same time
+         ! near s = 0 F' is zero in both solutions, but at different times
          if (.not. (self%ends_at_branch .or. self%shallow)) cor_error = cor_error &
             + (part*abs(panel%recoil(n) - coarse%recoil(n - 1)) &
             + time*abs(slope_at_end(rule, panel, panel%recoil)))/impact%velocity
       end associate
    end subroutine estimate_errors
 
-   !> Error of the velocity alpha' I of a plate whose alpha grows, over that of the impact
+   !> Error of the velocity alpha' I of a plate whose alpha grows, over the initial velocity
    pure function plate_error(self, part) result(error)
       !> The contact, its panel solved
       type(contact_t), intent(in) :: self
@@ -615,8 +615,8 @@ contains
       end associate
    end function plate_error
 
-   !> Error of the impulse. What the panels add to the difference to the companion may cancel, which
-   !> says nothing about the solution: what one of them has added to that of the motion counts, too
+   !> Error of the impulse. The contributions of the panels to the difference to the companion may
+   !> cancel, so the largest contribution of a panel to the error of the motion counts, too
    pure function impulse_error(self, part) result(error)
       !> The contact, its panel accepted
       type(contact_t), intent(in) :: self
@@ -629,14 +629,14 @@ contains
          error = max(part*abs(self%handed_down + self%panel%impulse(n) &
             - self%coarse%impulse(n - 1)), &
             min(part*self%largest_growth, harmless*self%accuracy)*impact%mass*self%speed)
-         ! next to a branch point the panel before the end is no better
+         ! next to a branch point the last panel is no more accurate than its companion
          if (self%ends_at_branch) error = max(error, self%growth*impact%mass*self%speed)
       end associate
    end function impulse_error
 
-   !> Error of the solution over its difference to the companion, which is no better next to the
-   !> branch point of u, where alpha' of a frozen plate is infinite at first contact, and where the
-   !> velocity of a plate that flees feels the impulse more than that of the sphere
+   !> Error of the solution over its difference to the companion. It is 1 where the solution is no
+   !> better: next to the branch point of u, for a frozen plate whose alpha' is infinite at first
+   !> contact, and for a plate whose velocity depends on the impulse more than the sphere's does
    pure function error_over_difference(self) result(part)
       !> The contact, its panel solved
       type(contact_t), intent(in) :: self

@@ -1,5 +1,5 @@
-!> The course of an impact while it is followed panel by panel: what its approach, contact and
-!> rebound have in common
+!> State of the integration panel by panel, and what contact and rebound share: error measures and
+!> the choice of steps
 module vcor_solver_ive_course
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
@@ -13,11 +13,11 @@ module vcor_solver_ive_course
 
    public :: course_t, share
 
-   !> Where the course has come to
+   !> State of the integration
    type :: course_t
       !> Equations of its panels
       type(panel_problem_t) :: problem
-      !> The panel that is tried, and its companion
+      !> The panel being tried, and its companion
       type(panel_t) :: panel, coarse
       !> State at the start of the panel, and of its companion
       type(start_t) :: start, coarse_start
@@ -27,19 +27,19 @@ module vcor_solver_ive_course
       real(wp) :: inverse(width, width) = 0.0_wp
       !> The panel solved last, accepted or not
       type(panel_t) :: previous
-      !> Accuracy of the motion that is worked to, over `speed` [-]
+      !> Accuracy of the motion used internally, over `speed` [-]
       real(wp) :: accuracy = 0.0_wp
-      !> Time scale of the contact [s], and the velocity that goes with it [m/s]
+      !> Time scale of the contact [s], and its reference velocity [m/s]
       real(wp) :: time_scale = 0.0_wp, speed = 0.0_wp
       !> End of the computation if the contact lasts [s]
       real(wp) :: end_time = 0.0_wp
-      !> Error of the panel over what it may be, and that of the one refused before
+      !> Error of the panel over the allowed one, and that of the panel refused before
       real(wp) :: excess = 0.0_wp, refused = huge(1.0_wp)
-      !> Excess of the last panel that was to end the contact and was refused for its end, and how
-      !> often one was
+      !> `excess` of the last panel that was refused because of the end of the contact, and the
+      !> number of such refusals
       real(wp) :: refused_end = huge(1.0_wp)
       integer :: refused_ends = 0
-      !> Whether the contact ends with the panel, and whether the computation does
+      !> Whether the contact, or the computation, ends with the panel
       logical :: ends = .false., reaches_end_time = .false.
    contains
       procedure :: motion_error
@@ -53,7 +53,7 @@ module vcor_solver_ive_course
 
 contains
 
-   !> By how much the difference of a panel and its companion grows over the panel
+   !> Growth over the panel of the difference between solution and companion
    pure function growth_of(self, one, other) result(difference)
       class(course_t), intent(in) :: self
       !> Values of the solution at the points of the panel
@@ -68,9 +68,9 @@ contains
       end associate
    end function growth_of
 
-   !> What a panel adds to the error of the motion, by its companion: through the impulse, in the
-   !> velocity of the sphere or alpha' I of the plate, the indentation and the velocity of a plate
-   !> that drifts
+   !> Contribution of a panel to the error of the motion, from its companion: through the impulse,
+   !> in the velocity of the sphere or alpha' I of the plate; the indentation; the velocity of a
+   !> plate that drifts
    pure function motion_error(self) result(error)
       class(course_t), intent(in) :: self
       !> Error over `speed`: without gravity that of the coefficient of restitution [-]
@@ -81,13 +81,13 @@ contains
             *max(1.0_wp/impact%mass, self%alpha_rate())/self%speed &
             + self%growth_of(panel%indentation, coarse%indentation) &
             /(self%speed*self%time_scale)
-         ! what rings in a layer comes to nothing in the motion
+         ! oscillations of a layer average out in the motion
          if (impact%plate%drifts() .and. .not. impact%plate%layered()) &
             error = error + self%growth_of(panel%drift, coarse%drift)/self%speed
       end associate
    end function motion_error
 
-   !> Rate of alpha at the end of the panel, of a plate with the velocity alpha F + alpha' I
+   !> Rate of alpha at the end of the panel, for a plate with velocity alpha F + alpha' I
    pure function alpha_rate(self) result(rate)
       class(course_t), intent(in) :: self
       !> Rate [m/(N s2)]
@@ -101,18 +101,18 @@ contains
       end associate
    end function alpha_rate
 
-   !> Whether an end does not become better: rounding in the force of stiff internal variables, or
-   !> what is handed down, keeps its time from being known better
+   !> Whether an end cannot be improved: rounding in the force of stiff internal variables, or an
+   !> inherited error, limits the accuracy of its time
    pure function is_best_end(self) result(best)
       !> The course, its panel judged
       class(course_t), intent(in) :: self
-      !> Whether it does not
+      !> Whether it cannot
       logical :: best
 
       best = self%excess > 0.5_wp*self%refused_end .or. self%refused_ends + 1 >= enough_closings
    end function is_best_end
 
-   !> Factor by which the next panel can be longer than an accepted one
+   !> Factor by which the next panel may be longer than an accepted one
    pure function growth_of_step(self) result(factor)
       class(course_t), intent(in) :: self
       real(wp) :: factor
@@ -121,8 +121,8 @@ contains
          **(-1.0_wp/real(2*self%panel%stages - 2, wp)))
    end function growth_of_step
 
-   !> Difference of the solution to its companion over its error: with panels as short as at the
-   !> usual accuracy it is better by some factor, with longer ones by less
+   !> Difference of the solution to its companion over its error: a fixed factor for panels as short
+   !> as at the usual accuracy, less for longer ones
    pure function improvement(self) result(factor)
       class(course_t), intent(in) :: self
       real(wp) :: factor
@@ -130,9 +130,9 @@ contains
       factor = better*min(1.0_wp, (usual_accuracy/self%accuracy)**better_power)
    end function improvement
 
-   !> Relative difference of the contact times of the two solutions that is let pass. Modes of a
-   !> continuous spectrum settle within the last panel, which neither of them resolves; that of a
-   !> rebound is chosen short enough
+   !> Relative difference of the contact times of the two solutions that is accepted. Neither of
+   !> them resolves the modes of a continuous spectrum that settle within the last panel; that of a
+   !> rebound is short enough
    pure function time_tolerance(self) result(tolerance)
       class(course_t), intent(in) :: self
       !> Tolerance [-]
@@ -144,11 +144,11 @@ contains
       tolerance = max(tolerance*self%accuracy, best_time)
    end function time_tolerance
 
-   !> Error over what it may be, at most `immense`: the forces of a fluid may be next to nothing
+   !> Error over the allowed error, limited to `immense`: the forces of a fluid may be almost zero
    pure function share(actual, allowed)
       !> Error, >= 0
       real(wp), intent(in) :: actual
-      !> What it may be, >= 0
+      !> Allowed error, >= 0
       real(wp), intent(in) :: allowed
       !> Ratio
       real(wp) :: share

@@ -1,4 +1,4 @@
-!> End of the contact in the internal-variable method
+!> Finding the end of the contact, or of the approach, in the internal-variable method
 module vcor_solver_ive_landing
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
@@ -17,13 +17,13 @@ module vcor_solver_ive_landing
    public :: first_without_force, hides_a_zero, land_on_zero, land_on_largest, end_at_zero, &
       slope_at_end
 
-   !> Correction of a time over it that may be rounding
+   !> Correction of a time, relative, that may be rounding
    real(wp), parameter :: rounding = sqrt(epsilon(1.0_wp))
 
 contains
 
-   !> First stage of a panel at which the force is gone; 0 if there is none. While the indentation
-   !> grows, or stands still, the force is positive: what is not is rounding
+   !> First stage of a panel without force; 0 if there is none. While the indentation grows or is
+   !> constant, the force is positive, and a force <= 0 is rounding
    pure function first_without_force(panel) result(stage)
       type(panel_t), intent(in) :: panel
       integer :: stage
@@ -35,8 +35,8 @@ contains
       stage = 0
    end function first_without_force
 
-   !> Whether the force is gone between two stages and back at the second one, as that of a sphere
-   !> which its weight all but keeps in contact: such a panel is too long to see the end
+   !> Whether the force is zero between two stages but positive again at the second, as for a sphere
+   !> that its weight almost keeps in contact: the panel is too long to show the end
    pure function hides_a_zero(rule, panel) result(hides)
       type(collocation_t), intent(in) :: rule
       type(panel_t), intent(in) :: panel
@@ -58,13 +58,13 @@ contains
       end do
    end function hides_a_zero
 
-   !> Cut a panel in which the indentation has its maximum so that it ends there: first where that
-   !> is by the polynomial of the panel, then by Newton's method. It need not be close to the last
-   !> digit: the two laws of the force part with the fourth power of the time since the maximum
+   !> Cut a panel at the maximum of the indentation: first where the polynomial of the panel has it,
+   !> then by Newton's method. Full accuracy is not needed: the two laws of the force differ only by
+   !> the fourth power of the time since the maximum
    subroutine land_on_largest(problem, start, start_velocity, accuracy, step, panel, inverse)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
-      !> Rate of the indentation there [m/s]
+      !> Rate of the indentation at the start [m/s]
       real(wp), intent(in) :: start_velocity
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
@@ -75,7 +75,7 @@ contains
       !> Inverse of its Jacobian
       real(wp), intent(inout) :: inverse(width, width)
 
-      ! beyond its end by as much as it is long a panel says nothing
+      ! length over that of the panel beyond which its polynomials are useless
       real(wp), parameter :: farthest = 2.0_wp
       type(panel_t) :: last
       type(step_t) :: whole
@@ -125,16 +125,16 @@ contains
       end subroutine find_velocity
    end subroutine land_on_largest
 
-   !> Solve a panel that is cut from another one
+   !> Solve a panel that is cut from a longer one
    subroutine solve_cut(problem, longer, start, step, panel, inverse)
       type(panel_problem_t), intent(in) :: problem
-      !> The panel that it is cut from
+      !> The longer panel
       type(panel_t), intent(in) :: longer
       type(start_t), intent(in) :: start
       type(step_t), intent(in) :: step
       !> The panel; not converged on failure
       type(panel_t), intent(inout) :: panel
-      !> Inverse of the Jacobian of the other panel, on return of one that serves
+      !> Inverse of the Jacobian of the longer panel, on return of one that converges
       real(wp), intent(inout) :: inverse(width, width)
 
       associate (collocator => problem%collocator)
@@ -146,16 +146,16 @@ contains
       end associate
    end subroutine solve_cut
 
-   !> Cut a panel in which the force changes its sign so that it ends where the force is zero
+   !> Cut a panel in which the force changes sign at the zero of the force
    subroutine land_on_zero(problem, start, accuracy, shallow, step, panel, inverse)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       !> Wanted accuracy of the coefficient of restitution
       real(wp), intent(in) :: accuracy
-      !> Indentation above which the force is about linear in time next to its zero [m]
+      !> Indentation above which the force is about linear in time near its zero [m]
       real(wp), intent(in) :: shallow
-      !> The step, on return the one that ends at the zero, or so close to it that its square does
-      !> not count where the force is linear
+      !> The step, on return the one that ends at the zero; if the force is linear there, so close
+      !> to it that the square of the distance is negligible
       type(step_t), intent(inout) :: step
       !> The panel, on return the one that ends at the zero; not converged on failure
       type(panel_t), intent(inout) :: panel
@@ -173,10 +173,10 @@ contains
       length = step%duration()
       associate (contact => problem%modes%contact, law => problem%impact%law)
          elastic = size(contact%rates) == 0 .and. .not. contact%viscosity > 0.0_wp
-         ! Write F = kappa u - M with any kappa that is about dF/du, the settled internal variables
-         ! left out: the indentation s and the memory M are smooth in time, u(s) where s goes to
-         ! zero is not. So Newton's method is put on kappa u(s) = M with s and M linear in time, the
-         ! slope of M from the polynomials of the panel and then from the last two iterations
+         ! F = kappa u - M, with any kappa about dF/du, here without modes that settle in the step:
+         ! s and M are smooth in time, but u(s) is not where s goes to zero. So Newton's method
+         ! solves kappa u(s) = M with s and M linear in time; the slope of M comes from the
+         ! polynomials of the panel, then from the last two iterations
          kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*step%duration()))
          call look_for_zero(problem%collocator%rule, law, kappa, panel, time, memory_rate)
          panel%converged = .false.
@@ -184,7 +184,7 @@ contains
          old_memory = 0.0_wp
          correction = 0.0_wp
          do iteration = 1, most_iterations
-            ! the zero is in the panel: beyond twice its length polynomials say nothing
+            ! the zero is in the panel; polynomials are useless beyond twice its length
             if (.not. (time > 0.0_wp .and. time < 2.0_wp*length)) return
             step = step_to(start%time, time)
             call solve_cut(problem, last, start, step, panel, inverse)
@@ -197,7 +197,7 @@ contains
             last_correction = correction
             velocity = relative_velocity(problem%impact, panel, n)
             if (elastic) then
-               ! s = 0; the square of s that a cone's force is has rounding for its zero
+               ! s = 0: the force of a cone is a square of s, whose zero is lost in rounding
                panel%converged = velocity < 0.0_wp
                correction = -panel%indentation(n)/velocity
             else
@@ -207,7 +207,8 @@ contains
             if (.not. panel%converged) return
             if (abs(correction) <= (start%time + time)*merge(sqrt(share_of_square*tolerance), &
                tolerance, panel%indentation(n) >= shallow)) return
-            ! rounding in the force of a dashpot or of stiff internal variables ends it, too
+            ! rounding in the force of a dashpot or of stiff internal variables ends the iteration,
+            ! too
             if (iteration > 3 .and. abs(correction) <= rounding*(start%time + time) &
                 .and. abs(correction) >= abs(last_correction)) return
             time = time + correction
@@ -216,15 +217,14 @@ contains
       panel%converged = .false.
    end subroutine land_on_zero
 
-   !> Zero of the force in a panel by its polynomials, and the slope there of the memory
-   !> M = kappa u - F
+   !> Zero of the force in a panel by its polynomials, and the slope there of M = kappa u - F
    subroutine look_for_zero(rule, law, kappa, panel, time, memory_rate)
       type(collocation_t), intent(in) :: rule
       type(contact_law_t), intent(in) :: law
       !> Stiffness kappa [N/m^1.5]
       real(wp), intent(in) :: kappa
       type(panel_t), intent(in) :: panel
-      !> Time of the zero since the start of the panel [s]; 0 where a panel is so crude that its
+      !> Time of the zero since the start of the panel [s]; 0 if the panel is so crude that its
       !> force is negative while the indentation grows
       real(wp), intent(out) :: time
       !> Slope of M [N/s]
@@ -252,9 +252,9 @@ contains
       real(wp), intent(in) :: s
       !> Its rate [m/s]
       real(wp), intent(in) :: v
-      !> Memory [N]
+      !> Memory M [N]
       real(wp), intent(in) :: memory
-      !> Its rate [N/s]
+      !> Rate of M [N/s]
       real(wp), intent(in) :: rate
       !> Time [s]
       real(wp), intent(out) :: x
@@ -276,9 +276,8 @@ contains
       end do
    end subroutine look_ahead
 
-   !> Let the last panel end where its force is zero, which is next to where it ends: its
-   !> polynomials go on up to there, and all values move with their nodes, so that integrals stay
-   !> sums over them
+   !> Move the end of the last panel to the zero of its force nearby: the polynomials are continued
+   !> to it, and all values move with their nodes, so that integrals remain sums over the nodes
    pure subroutine end_at_zero(rule, impact, panel)
       type(collocation_t), intent(in) :: rule
       type(impact_t), intent(in) :: impact
@@ -290,7 +289,7 @@ contains
 
       associate (n => rule%stages, theta => rule%point, map => panel%map)
          growth = -panel%force(n)/slope_at_end(rule, panel, panel%force)/sum(map)
-         ! in theta; the time of the nodes grows by this share
+         ! shift of the nodes in theta; their times grow by the factor 1 + growth
          shift = growth*theta*(map(1) + map(2)*theta) &
             /max(map(1) + 2.0_wp*map(2)*theta, tiny(1.0_wp))
          plate = impact%free_path(panel%time) - panel%second_impulse/impact%mass - panel%indentation
@@ -315,7 +314,7 @@ contains
 
    contains
 
-      !> Move the values
+      !> Move the values with their nodes
       pure subroutine move(value)
          !> Values at the points
          real(wp), intent(inout) :: value(0:width)
@@ -328,7 +327,7 @@ contains
    pure function slope_at_end(rule, panel, value) result(slope)
       type(collocation_t), intent(in) :: rule
       type(panel_t), intent(in) :: panel
-      !> Its values at the points of the panel
+      !> Values at the points of the panel
       real(wp), intent(in) :: value(0:width)
       !> Rate [1/s]
       real(wp) :: slope

@@ -1,10 +1,10 @@
-!> Internal variables of a kernel that is a sum of exponentials: what they add to the equations of
-!> a panel, and how they get to its end
+!> Internal variables of a kernel that is a sum of exponentials: their part in the equations of a
+!> panel, and their values at its end
 !>
-!> For q_k' = l_k (u - q_k) the stage values of p_k = u - q_k follow from those of u:
-!> p = (1 + l_k H)^-1 (u - u_n + p_n) with the integration matrix H of the panel, known through its
-!> eigenvalues. A kernel may have a hundred modes: the loops over the eigenvalues are the innermost
-!> ones, which the compiler turns into vector instructions.
+!> With q_k' = l_k (u - q_k) the lags p_k = u - q_k at the stages follow from u there:
+!> p = (1 + l_k H)^-1 (u - u_n + p_n), with the integration matrix H of the panel in terms of its
+!> eigenvalues. A kernel may have a hundred modes, so the loops over the eigenvalues are innermost:
+!> the compiler vectorises them.
 module vcor_solver_ive_modes
    use vcor_kinds, only : wp
    use vcor_material_exponential_sum, only : exponential_sum_t
@@ -15,11 +15,11 @@ module vcor_solver_ive_modes
 
    public :: modes_t, resolve, advance_lags
 
-   !> Sums of exponentials that the hereditary integrals of an impact are made of
+   !> Sums of exponentials in the hereditary integrals of an impact
    type :: modes_t
       !> Kernel of the contact [N/m^1.5]
       type(exponential_sum_t) :: contact
-      !> Memory of a hereditary plate: weights w_j and rates l_j, alpha as its viscosity [m/(N s)];
+      !> Memory of a hereditary plate: weights w_j and rates l_j, viscosity alpha [m/(N s)];
       !> without terms for other plates
       type(exponential_sum_t) :: plate
       !> Deflection of the plate that follows the force at once [m/N]
@@ -28,19 +28,19 @@ module vcor_solver_ive_modes
 
 contains
 
-   !> What the modes of a sum make of a function in the panel, and of their own past, as functions
-   !> of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1, and c with
+   !> Response R of the modes to a function in the panel, and c of their lags at its start, as
+   !> functions of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1 and
    !> c 1 = sum_k G_k p_k (1 + l_k H)^-1 1
    pure subroutine resolve(terms, p, map, lambda, response, past)
       type(exponential_sum_t), intent(in) :: terms
-      !> Values p_k at the start of the panel, shape (modes)
+      !> Lags p_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: p(:)
       type(panel_map_t), intent(in) :: map
       !> Eigenvalues of H [s]
       real(wp), intent(in) :: lambda(width)
       !> R
       real(wp), intent(out) :: response(width)
-      !> c, the vector of ones in it
+      !> c times V^-1 1
       real(wp), intent(out) :: past(width)
 
       real(wp) :: a, d, share, r(width), c(width), square(pairs)
@@ -50,8 +50,8 @@ contains
       r = constant(terms%equilibrium)
       c = 0.0_wp
       square = map%square
-      ! one eigenvalue of a pair is zero where time stands still at the end of a panel, and the
-      ! difference of squares is no number for an immense rate
+      ! a pair with a zero eigenvalue, at the stationary end of a map, has the norm 1 + 2 l lambda;
+      ! the difference of squares would be inf - inf for an immense rate
       regular = abs(lambda(:pairs)**2 - square*lambda(pairs + 1:)**2) > 0.0_wp
       do k = 1, size(terms%rates)
          associate (rate => terms%rates(k), modulus => terms%moduli(k))
@@ -74,12 +74,12 @@ contains
       past = times(square, c, map%left_one)
    end subroutine resolve
 
-   !> The same of pairs of conjugate terms: with 1/(1 + l H) = (1 + conjg(l) H)/n the real part of
-   !> w/(1 + l H) is (Re w + Re(w conjg(l)) H)/n, n = 1 + 2 Re l H + |l|^2 H^2
+   !> The same for conjugate pairs: 1/(1 + l H) is (1 + conjg(l) H)/n, n = 1 + 2 Re l H + |l|^2 H^2,
+   !> so the real part of w/(1 + l H) is (Re w + Re(w conjg(l)) H)/n
    pure subroutine resolve_pairs(terms, p, square, lambda, r, c)
       !> The sum
       type(exponential_sum_t), intent(in) :: terms
-      !> Internal variables, those of the pairs last, real and imaginary part
+      !> Lags, those of the pairs last, real and imaginary part
       real(wp), intent(in) :: p(:)
       !> j^2
       real(wp), intent(in) :: square(pairs)
@@ -136,17 +136,17 @@ contains
       end do
    end subroutine invert_pair
 
-   !> What has not relaxed at the end of a panel: p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last
-   !> stage for x = 0 at the start
+   !> Lags at the end of a panel: with p' = x' - l p, (1 + l H)^-1 (x + p_n) at the last stage,
+   !> where x is zero at the start
    pure subroutine advance_lags(map, scale, terms, x, p)
       type(panel_map_t), intent(in) :: map
       !> Scale of the map [s]
       real(wp), intent(in) :: scale
       !> Sum with the rates l
       type(exponential_sum_t), intent(in) :: terms
-      !> What is gained since the start, at the stages
+      !> Increment since the start, at the stages
       real(wp), intent(in) :: x(width)
-      !> What has not relaxed: at the start on entry, at the end on return, shape (modes)
+      !> Lags: at the start on entry, at the end on return, shape (modes)
       real(wp), intent(inout) :: p(:)
 
       real(wp), dimension(width) :: lambda, from_x, from_p
@@ -171,12 +171,12 @@ contains
 
    contains
 
-      !> What the numbers x of the pairs add to the last stage, by products with a + d j: the share
-      !> of a, and that of d
+      !> Contributions of the numbers x of the pairs to the last stage when multiplied by a + d j:
+      !> the coefficients of a, then those of d
       pure function at_end(x) result(share)
          !> Numbers of the pairs
          real(wp), intent(in) :: x(width)
-         !> The shares, all of a first
+         !> The coefficients
          real(wp) :: share(width)
 
          associate (last => map%last)
@@ -186,7 +186,7 @@ contains
       end function at_end
    end subroutine advance_lags
 
-   !> The same of pairs of conjugate terms, whose internal variables are complex
+   !> The same for conjugate pairs, whose lags are complex
    pure subroutine advance_pairs(map, lambda, terms, from_x, from_p, p)
       !> Map of the panel
       type(panel_map_t), intent(in) :: map
@@ -194,9 +194,9 @@ contains
       real(wp), intent(in) :: lambda(width)
       !> Sum with the rates l
       type(exponential_sum_t), intent(in) :: terms
-      !> What x and 1 add to the last stage
+      !> Coefficients of x and of 1 in the last stage
       real(wp), intent(in) :: from_x(width), from_p(width)
-      !> Internal variables, those of the pairs last, real and imaginary part
+      !> Lags, those of the pairs last, real and imaginary part
       real(wp), intent(inout) :: p(:)
 
       real(wp), dimension(width) :: squared, inverse, product

@@ -1,4 +1,4 @@
-!> Solution of the equations of a panel by Newton's method, with the Jacobian kept while it serves
+!> Newton's method for the equations of a panel, keeping the Jacobian as long as it converges
 module vcor_solver_ive_newton
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, invert, width
@@ -20,15 +20,15 @@ module vcor_solver_ive_newton
       logical :: stale = .true.
       !> Size of the last correction
       real(wp) :: last = 0.0_wp
-      !> Whether the equations are solved
+      !> Whether the equations have been solved
       logical :: converged = .false.
-      !> Whether they cannot be
+      !> Whether they cannot be solved
       logical :: failed = .false.
    end type newton_t
 
 contains
 
-   !> Guess the indentation in the panel to come from the polynomial of the panel solved last
+   !> Guess the indentation in the next panel from the polynomial of the last one that was solved
    subroutine guess(problem, previous, step, start, panel)
       type(panel_problem_t), intent(in) :: problem
       !> The panel solved last, accepted or not; without stages if there is none
@@ -57,7 +57,7 @@ contains
       type(start_t), intent(in) :: start
       !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages
       type(panel_t), intent(inout) :: panel
-      !> Inverse of the Jacobian, for panels next to this one
+      !> Inverse of the Jacobian, for use in neighbouring panels
       real(wp), intent(out) :: inverse(width, width)
 
       type(equations_t) :: equations
@@ -77,17 +77,17 @@ contains
       call problem%settle_plate(rule, equations, start, panel)
    end subroutine solve
 
-   !> Correct a panel, and judge what is left of its error: next to a fresh Jacobian it falls as u
-   !> does next to its branch point, or faster, otherwise linearly
+   !> Correct a panel, and estimate the error that remains: with a new Jacobian it falls as u does
+   !> at its branch point, or faster, otherwise linearly
    subroutine correct(self, problem, e, inverse, panel)
       type(newton_t), intent(inout) :: self
       type(panel_problem_t), intent(in) :: problem
       type(equations_t), intent(inout) :: e
-      !> Inverse of the Jacobian, made anew where `stale`
+      !> Inverse of the Jacobian, computed again if `stale`
       real(wp), intent(inout) :: inverse(width, width)
       type(panel_t), intent(inout) :: panel
 
-      ! u [m^n], or force [N]
+      ! largest u [m^n] or force [N]
       real(wp), parameter :: beyond_all = 1.0e120_wp
       real(wp) :: change(width), force(width), second(width, width)
       real(wp) :: unit, size, rate, left
@@ -96,7 +96,7 @@ contains
 
       n = panel%stages
       call problem%evaluate(e, panel)
-      ! an iteration that has lost its way does not get to products beyond the range of the numbers
+      ! stop a diverging iteration before products overflow
       self%failed = .not. largest(e%f) < beyond_all
       if (self%failed) return
       if (self%stale .and. .not. e%formed) call form_matrix(e)
@@ -136,17 +136,17 @@ contains
       self%last = size
    end subroutine correct
 
-   !> Solve the equations of a panel with the Jacobian of one next to it, of another length, or with
-   !> that of the panel whose companion it is. No matrix is formed, so this costs half of a solution
+   !> Solve the equations of a panel with the Jacobian of another: a neighbour of other length, or
+   !> the panel whose companion it is. No matrix is formed, so this costs half of a full solution
    subroutine solve_near(problem, rule, step, start, inverse, panel)
       type(panel_problem_t), intent(in) :: problem
       type(collocation_t), intent(in) :: rule
       type(step_t), intent(in) :: step
       type(start_t), intent(in) :: start
-      !> Inverse of the Jacobian of a panel of the full number of stages
+      !> Inverse of the Jacobian of a panel with the full number of stages
       real(wp), intent(in) :: inverse(width, width)
-      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged
-      !> where the Jacobian does not serve
+      !> The panel; on entry `indentation`, or `t1`, holds a guess at the stages. Not converged if
+      !> the Jacobian is not good enough
       type(panel_t), intent(inout) :: panel
 
       type(equations_t) :: equations
@@ -169,7 +169,7 @@ contains
          size = largest(change)
          unit = problem%largest_condition
          if (.not. equations%rebounds) unit = largest(equations%x)
-         ! a guess that is no guess
+         ! the guess was useless
          if (.not. size <= unit) return
          call problem%move(equations, change, panel)
          if (iteration > 1) then
@@ -188,7 +188,7 @@ contains
          call problem%settle(rule, equations, start, panel)
          call problem%settle_plate(rule, equations, start, panel)
       else if (.not. equations%rebounds) then
-         ! what is left of the error goes to the force, so that the motion is that of the impulse
+         ! keep the remaining error in the force, so that the motion agrees with the impulse
          panel%indentation(1:) = problem%impact%free_path(panel%time(1:)) &
             - panel%second_impulse(1:)*equations%inverse_mass
          if (.not. equations%frozen) &
@@ -199,18 +199,18 @@ contains
       end if
    end subroutine solve_near
 
-   !> Improve the motion and the forces of a guessed panel by two functional iterations: s from the
-   !> forces of the guess, and again. The error of an interpolated guess oscillates from stage to
-   !> stage, and two integrals leave little of it
+   !> Improve motion and forces of a guessed panel by two fixed-point iterations, s from the forces
+   !> of the previous s. The error of an interpolated guess oscillates from stage to stage, and two
+   !> integrations leave little of it
    subroutine improve(problem, step, start, tolerance, panel)
       !> The problem, its contact growing
       type(panel_problem_t), intent(in) :: problem
       type(step_t), intent(in) :: step
       type(start_t), intent(in) :: start
-      !> Wanted error of the indentation over its largest value
+      !> Error of the indentation allowed, over its largest value
       real(wp), intent(in) :: tolerance
-      !> The panel; on entry `indentation` holds a guess at the stages. Solved where the second
-      !> iteration still changes the indentation by more than the tolerance
+      !> The panel; on entry `indentation` holds a guess at the stages. It is solved if the second
+      !> iteration changes the indentation by more than the tolerance
       type(panel_t), intent(inout) :: panel
 
       type(equations_t) :: equations
@@ -236,14 +236,14 @@ contains
       end if
    end subroutine improve
 
-   !> Solve the companion of a panel, from its own start
+   !> Solve the companion of a panel, from the companion's own start
    subroutine accompany(problem, step, start, panel, inverse, companion)
       type(panel_problem_t), intent(in) :: problem
       type(step_t), intent(in) :: step
       !> State of the companion at the start of the panel
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
-      !> Inverse of its Jacobian
+      !> Inverse of the Jacobian of the panel
       real(wp), intent(in) :: inverse(width, width)
       type(panel_t), intent(out) :: companion
 
@@ -259,7 +259,7 @@ contains
 
    contains
 
-      !> Guess the companion
+      !> Guess the companion by interpolation
       subroutine start_from_panel()
 
          associate (collocator => problem%collocator)
@@ -269,12 +269,12 @@ contains
       end subroutine start_from_panel
    end subroutine accompany
 
-   !> Solve the last panel of a receding contact and find its duration, at whose end N is zero
+   !> Solve the last panel of a receding contact, and find its duration, for which N = 0 at the end
    subroutine close_contact(problem, start, time_tolerance, length, panel, inverse)
       !> The problem, its contact receding
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
-      !> Wanted relative error of the time of the end
+      !> Relative error allowed for the time of the end
       real(wp), intent(in) :: time_tolerance
       !> A guess at the duration, on return the duration [s]
       real(wp), intent(inout) :: length
@@ -300,7 +300,7 @@ contains
             if (newton%failed) return
             call problem%integrate(rule, equations, panel)
             call problem%settle(rule, equations, start, panel)
-            ! N is linear in (1 - theta)^2 at the end
+            ! N is linear in (1 - theta)^2 near the end
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
             if (.not. fall > 0.0_wp) return
             last_correction = correction
@@ -310,7 +310,7 @@ contains
             correction = sign(correction, panel%condition(n))
             panel%converged = newton%converged .and. (abs(correction) &
                <= time_tolerance*(start%time + length) &
-               ! rounding in the condition of stiff internal variables ends it, too
+               ! rounding in the condition of stiff internal variables ends the iteration, too
                .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
                .and. abs(correction) >= no_better*abs(last_correction))
             if (panel%converged) then
@@ -318,7 +318,7 @@ contains
                exit
             end if
             length = length + correction
-            ! the motion does not know how long the panel is
+            ! move t1 to the same times in the panel of the new length
             panel%t1(1:) = rule%extend(panel%t1, min(panel%theta(start%time &
                + rule%times(closing, length)), farthest_rebound))
          end do

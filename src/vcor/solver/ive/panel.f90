@@ -1,4 +1,4 @@
-!> Solution of the internal-variable method on a panel of time, and the state that it starts from
+!> Solution on one panel of time, and the state at its start, of the internal-variable method
 module vcor_solver_ive_panel
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
@@ -23,30 +23,29 @@ module vcor_solver_ive_panel
       real(wp) :: second_impulse = 0.0_wp
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha = 0.0_wp
-      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
+      !> Deflection U of a frozen plate, or the part due to the memory of a hereditary plate [m]
       real(wp) :: deflection = 0.0_wp
-      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
+      !> Drift of a frozen or hereditary plate: alpha F - U', without recoil [m/s]
       real(wp) :: drift = 0.0_wp
-      !> Velocity of a plate that follows the rate of the force at once [m/s]
+      !> Recoil: velocity of a plate that follows the rate of the force at once [m/s]
       real(wp) :: recoil = 0.0_wp
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition = 0.0_wp
-      !> Its time t1 [s]
+      !> Time t1 of a receding contact [s]
       real(wp) :: t1 = 0.0_wp
-      !> What has not relaxed of u [m^1.5], or of the indentation while the contact recedes [m],
-      !> shape (modes)
+      !> Lags of u [m^1.5], or of the indentation while the contact recedes [m], shape (modes)
       real(wp), allocatable :: lag(:)
-      !> Memory P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate); not
-      !> allocated for others
+      !> Lags P_j of a hereditary plate [N s], P_j' = F - l_j P_j, shape (modes of the plate);
+      !> unallocated for other plates
       real(wp), allocatable :: p(:)
    end type start_t
 
-   !> Solution on a panel; index 0 is its start. What it does not have, be it the condition of a
-   !> growing contact, is not set
+   !> Solution on a panel; index 0 is its start. Components that do not apply, such as the condition
+   !> while the contact grows, are not set
    type :: panel_t
       !> Number of stages
       integer :: stages = 0
-      !> Time in the panel: start + map(1) theta + map(2) theta^2 [s]
+      !> Map of time in the panel: start + map(1) theta + map(2) theta^2 [s]
       real(wp) :: map(2)
       !> Times of the stages [s]
       real(wp) :: time(0:width)
@@ -60,15 +59,15 @@ module vcor_solver_ive_panel
       real(wp) :: second_impulse(0:width)
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(0:width)
-      !> Deflection U of a frozen plate, or the part that a hereditary plate's memory has in it [m]
+      !> Deflection U of a frozen plate, or the part due to the memory of a hereditary plate [m]
       real(wp) :: deflection(0:width)
-      !> What the velocity of the plate falls behind alpha F, frozen or hereditary [m/s]
+      !> Drift of a frozen or hereditary plate: alpha F - U', without recoil [m/s]
       real(wp) :: drift(0:width)
-      !> Velocity of a plate that follows the rate of the force at once [m/s]
+      !> Recoil: velocity of a plate that follows the rate of the force at once [m/s]
       real(wp) :: recoil(0:width)
       !> Condition N of a receding contact [N/m^0.5]
       real(wp) :: condition(0:width)
-      !> Its time t1 [s]
+      !> Time t1 of a receding contact [s]
       real(wp) :: t1(0:width)
       !> Whether Newton's iteration converged
       logical :: converged = .false.
@@ -85,7 +84,7 @@ contains
       class(panel_t), intent(inout) :: self
       !> Number of stages
       integer, intent(in) :: stages
-      !> Their positions
+      !> Nodes, shape (width)
       real(wp), intent(in) :: node(width)
       !> Coefficients of theta and theta^2 in time [s]
       real(wp), intent(in) :: map(2)
@@ -132,7 +131,7 @@ contains
       pace = self%map(1) + 2.0_wp*self%map(2)
    end function pace_at_end
 
-   !> Make the end of a panel the start of the next one, internal variables aside
+   !> Make the end of a panel the start of the next one, except for the lags
    pure subroutine move_to_end(panel, start)
       type(panel_t), intent(in) :: panel
       !> State at the start of the panel, on return that at its end
@@ -153,8 +152,8 @@ contains
       end associate
    end subroutine move_to_end
 
-   !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I, or alpha F less the
-   !> drift of a frozen or hereditary plate, and its recoil
+   !> Velocity of the plate at a stage of a panel: U' = alpha F + alpha' I; for a frozen or
+   !> hereditary plate, alpha F - drift + recoil
    pure function plate_velocity(impact, panel, j) result(velocity)
       type(impact_t), intent(in) :: impact
       type(panel_t), intent(in) :: panel
@@ -172,14 +171,14 @@ contains
       end if
    end function plate_velocity
 
-   !> What the velocity alpha' I of a plate gains per time at the end of the contact, where F is
-   !> zero: alpha grows about as a power of time or exponentially there
+   !> Rate of the plate's velocity alpha' I at the end of the contact, where F is zero; alpha grows
+   !> about as a power of time or exponentially there
    pure function plate_gains(panel, alpha_rate) result(gain)
-      !> The last panel
+      !> The last panel of the contact
       type(panel_t), intent(in) :: panel
-      !> alpha' at its end [m/(N s2)]
+      !> alpha' at the end [m/(N s2)]
       real(wp), intent(in) :: alpha_rate
-      !> Gain [m/s2]
+      !> Rate [m/s2]
       real(wp) :: gain
 
       associate (n => panel%stages)

@@ -1,32 +1,32 @@
-!> The equations of a panel of the internal-variable method, one form for all of them
+!> The equations of a panel of the internal-variable method, in one form for contact and rebound
 !>
-!> Motion: forces F in the panel take R F of the indentation s and Q F of its rate, g and v are what
-!> they are without. R = H^2/m + what the plate gives way, H the integration matrix of the panel.
+!> Motion: s = g - R F and s' = v - Q F, where g and v are the motion without the forces in the
+!> panel. R = H^2/m plus the compliance of the plate; H is the integration matrix of the panel.
 !>
-!> What internal variables fall behind x = u or x = s, p_k' = x' - l_k p_k, follows from the stage
-!> values of x: p = (1 + l_k H)^-1 (x - x_n + p_n). So the hereditary integrals of a panel are
+!> Hereditary integrals: the lags p_k = x - q_k, p_k' = x' - l_k p_k, of x = u or x = s follow from
+!> the stage values of x: p = (1 + l_k H)^-1 (x - x_n + p_n). The integrals of a panel are
 !>
 !>     int k x' = S (x - x_n) + b,   S = G_0 + sum_k G_k (1 + l_k H)^-1 + eta H^-1,
 !>                                   b = G_0 x_n 1 + sum_k G_k p_k,n (1 + l_k H)^-1 1
 !>
-!> however many internal variables there are. While the contact grows, or always by Boltzmann's
-!> law, F = S (u - u_n) + b. While it recedes (`vcor_solver_ive_approach`) the condition is
-!> N = S (s - s_n) + b + eta s', the dashpot kept apart as it gives no force then, and F is a
-!> function of N. Both are, with one unknown and one function f, stage by stage,
+!> for any number of internal variables. While the contact grows, and always by Boltzmann's law,
+!> F = S (u - u_n) + b. While it recedes (`vcor_solver_ive_approach`) the condition is
+!> N = S (s - s_n) + b + eta s', in which S is without the dashpot, and F is a function of N. Both
+!> are equations for one unknown x, with a function f that acts stage by stage,
 !>
 !>     x + M f(x) = r      contact: x = s, f = u(s) - u_n, M = R S,           r = g - R b
 !>                         rebound: x = N, f = F(N),       M = S R + eta Q,   r = S (g - s_n) + b
 !>                                                                                + eta v
 !>
-!> and solved by Newton's method with the Jacobian 1 + M f'. All matrices but those of a plate
-!> whose alpha varies are functions of H, known through its eigenvalues: a product with such a one
-!> is `apply(right, times(f, numbers))` with `numbers` what `left` makes of a vector.
+!> and are solved by Newton's method with the Jacobian 1 + M f'. All matrices, except those of a
+!> plate whose alpha varies, are functions of H given by its eigenvalues. Such a matrix f(H) times a
+!> vector is `apply(right, times(f, numbers))` with `numbers` = `left` times the vector.
 !>
 !> The second term of the Volterra series adds c2 (G_0 u^2 + sum_k G_k p_k^2) to F, as
 !> int int k(x + y) u'(t - x) u'(t - y) dx dy = G_0 u^2 + sum_k G_k p_k^2, Eq. (10).
 !>
-!> At the end of the contact that recedes, time stands still in the map of the last panel, and its
-!> length is found along with its solution: N is zero there.
+!> In the last panel of a receding contact the map of time is stationary at the end, where N = 0,
+!> and the length of the panel is found along with its solution.
 module vcor_solver_ive_problem
    use vcor_impact_problem, only : impact_t
    use vcor_kinds, only : wp
@@ -44,18 +44,18 @@ module vcor_solver_ive_problem
    public :: panel_problem_t, new_panel_problem
    public :: equations_t, product_with_m, form_matrix, lost_indentation
 
-   !> What the panels of an impact have in common; what it points to outlives it
+   !> Data that all panels of an impact share; the targets of the pointers must outlive it
    type :: panel_problem_t
       type(collocator_t), pointer :: collocator => null()
       type(impact_t), pointer :: impact => null()
       type(modes_t), pointer :: modes => null()
       !> The approach, once the contact recedes
       type(approach_t), pointer :: approach => null()
-      !> Wanted error of x over its largest value
+      !> Error of x allowed, over its largest value
       real(wp) :: tolerance = 0.0_wp
-      !> Condition N at the largest indentation, against which its errors are counted [N/m^0.5]
+      !> Condition N at the largest indentation, the reference for its errors [N/m^0.5]
       real(wp) :: largest_condition = 0.0_wp
-      !> What rounding may leave of a correction of it
+      !> Rounding in a correction of the condition, over `largest_condition`
       real(wp) :: noise = 0.0_wp
    contains
       procedure :: turn_round
@@ -71,7 +71,7 @@ module vcor_solver_ive_problem
       procedure :: advance
    end type panel_problem_t
 
-   !> The equations of one panel; functions of H as in `panel_map_t`
+   !> The equations of one panel; functions of H are stored as in `panel_map_t`
    type :: equations_t
       !> Map of the panel, H diagonalised
       type(panel_map_t), pointer :: map => null()
@@ -87,23 +87,23 @@ module vcor_solver_ive_problem
       real(wp) :: stiffness(width)
       !> V^-1 b [N], or [N/m^0.5] while the contact recedes
       real(wp) :: memory(width)
-      !> R [s2/kg], but for the part of an alpha that varies
+      !> R [s2/kg], without the part of a variable alpha
       real(wp) :: yield(width)
-      !> R S likewise [m^-0.5]
+      !> R S, likewise [m^-0.5]
       real(wp) :: whole(width)
-      !> H S, which alpha is a factor of where it varies [N s/m^1.5]
+      !> H S, by which a variable alpha is multiplied [N s/m^1.5]
       real(wp) :: impulsive(width)
-      !> Velocity of a hereditary plate per impulse in the panel, by its memory [1/kg]
+      !> Velocity of a hereditary plate per impulse in the panel, from its memory [1/kg]
       real(wp) :: plate(width)
-      !> Deflection of the plate that follows the force at once [m/N], force at the start [N]
+      !> Deflection of the plate that follows the force at once [m/N], and force at the start [N]
       real(wp) :: instant, start_force
-      !> V^-1 of its velocity by what it remembers of earlier panels [m/s]
+      !> V^-1 of the plate's velocity from its memory of earlier panels [m/s]
       real(wp) :: past(width)
       !> Plate parameter alpha [m/(N s)]
       real(wp) :: alpha(width)
-      !> Its rate, where it is needed [m/(N s^2)]
+      !> Rate of alpha, if needed [m/(N s^2)]
       real(wp) :: alpha_rate(width)
-      !> g, less s_n while the contact recedes [m]
+      !> g, minus s_n while the contact recedes [m]
       real(wp) :: gain(width)
       !> r [m], or [N/m^0.5] while the contact recedes
       real(wp) :: right(width)
@@ -111,11 +111,11 @@ module vcor_solver_ive_problem
       real(wp) :: start_u
       !> Viscosity of the dashpot while the contact recedes [N s/m^1.5]
       real(wp) :: viscosity
-      !> Whether the contact recedes, and whether time stands still at the end
+      !> Whether the contact recedes, and whether it ends with the panel
       logical :: rebounds, closes
-      !> Whether alpha varies, whether the plate is frozen, and whether it remembers the force
+      !> Whether alpha varies, whether the plate is frozen, and whether it has a memory
       logical :: varies, frozen, remembers
-      !> Whether M is a function of H, but for the part with an alpha that varies
+      !> Whether M is a function of H, except for the part of a variable alpha
       logical :: simple
       !> Whether M has been formed
       logical :: formed = .false.
@@ -127,7 +127,7 @@ module vcor_solver_ive_problem
       real(wp) :: slope(width), rate(width)
       !> Second term of the Volterra series: matrices (1 + l_k H)^-1, shape (width, width, modes)
       real(wp), allocatable :: lag(:, :, :)
-      !> What it remembers at the start, u - q_k [m^1.5], shape (modes)
+      !> Lags u - q_k at the start, for the second term [m^1.5], shape (modes)
       real(wp), allocatable :: start_lag(:)
    end type equations_t
 
@@ -138,7 +138,7 @@ module vcor_solver_ive_problem
 
 contains
 
-   !> The problem of an impact, its contact growing
+   !> The problem of an impact whose contact grows
    function new_panel_problem(collocator, impact, modes) result(self)
       type(collocator_t), intent(in), target :: collocator
       type(impact_t), intent(in), target :: impact
@@ -157,7 +157,7 @@ contains
       type(collocation_t), intent(in), target :: rule
       type(step_t), intent(in) :: step
       type(start_t), intent(in) :: start
-      !> The panel: its times and plate parameters are set, and all values at its start
+      !> The panel; its times, plate parameters and values at the start are set
       type(panel_t), intent(inout) :: panel
       type(equations_t), intent(out) :: equations
 
@@ -182,7 +182,7 @@ contains
             e%start_u = self%impact%law%u(start%indentation)
          end if
 
-         ! the plate: what settles at once in a hereditary one counts as alpha
+         ! plate: alpha of a hereditary one is the viscosity of its sum
          e%frozen = plate%frozen()
          e%remembers = allocated(start%p)
          e%alpha = 0.0_wp
@@ -193,7 +193,7 @@ contains
             call plate%alpha_at(panel%time(1:n), e%alpha(:n))
          end if
          panel%alpha(1:) = e%alpha
-         ! alpha never falls
+         ! alpha never falls, so it is constant if it is the same at both ends
          e%varies = e%frozen .or. e%alpha(n) > e%alpha(1)
          if (e%frozen .or. e%varies .and. e%viscosity > 0.0_wp) &
             e%alpha_rate(:n) = plate%alpha_rate(panel%time(1:n), e%alpha(:n))
@@ -236,7 +236,7 @@ contains
                if (e%remembers) e%right = e%right - e%viscosity*apply(map%right, e%past)
                if (.not. e%frozen) e%right = e%right - e%viscosity*e%alpha_rate*start%impulse
             end if
-            ! no force acts at the end of the contact, and it would not count
+            ! the force is zero at the end of the contact, and this stage has no weight
             if (e%closes) e%right(n) = 0.0_wp
          else
             e%gain = e%gain + (self%impact%free_path(start%time) &
@@ -250,7 +250,7 @@ contains
       end associate
    end subroutine set_up
 
-   !> int x dt over the panel, for the values x at its stages
+   !> Integral of x over time from the start of the panel, from the values x at its stages
    pure function integral(e, x)
       type(equations_t), intent(in) :: e
       !> Values at the stages
@@ -261,11 +261,11 @@ contains
       integral = apply_product(e%map%right, e%map%square, e%lambda, apply(e%map%left, x))
    end function integral
 
-   !> What forces in the panel take of the indentation: R F. A frozen plate has
-   !> U' = alpha F - int alpha' F dt, others U = alpha I and what they remember
+   !> Indentation lost to the forces in the panel, R F. Plates have U = alpha I and their memory, a
+   !> frozen one has U' = alpha F - int alpha' F dt
    pure function lost_indentation(e, numbers) result(lost)
       type(equations_t), intent(in) :: e
-      !> Numbers of the forces [N]
+      !> Numbers of the pairs of the forces [N]
       real(wp), intent(in) :: numbers(width)
       !> Indentation [m]
       real(wp) :: lost(width)
@@ -282,10 +282,10 @@ contains
       end if
    end function lost_indentation
 
-   !> What they take of the rate of the indentation: Q F
+   !> Rate of the indentation lost to the forces in the panel, Q F
    pure function lost_velocity(e, numbers) result(lost)
       type(equations_t), intent(in) :: e
-      !> Numbers of the forces [N]
+      !> Numbers of the pairs of the forces [N]
       real(wp), intent(in) :: numbers(width)
       !> Velocity [m/s]
       real(wp) :: lost(width)
@@ -335,7 +335,7 @@ contains
       end associate
    end function product_with_m
 
-   !> Form M, column by column or at once where it is a function of H
+   !> Form M, at once if it is a function of H, else column by column
    pure subroutine form_matrix(e)
       type(equations_t), intent(inout) :: e
 
@@ -367,7 +367,7 @@ contains
       e%formed = .true.
    end subroutine form_matrix
 
-   !> The unknown x and f(x) at the stages: indentation and u, or condition and force by t1
+   !> The unknown x and f(x) at the stages: indentation and u, or condition and force from t1
    pure subroutine evaluate(self, e, panel)
       class(panel_problem_t), intent(in) :: self
       type(equations_t), intent(inout) :: e
@@ -384,7 +384,7 @@ contains
       end if
    end subroutine evaluate
 
-   !> Change the unknown of a panel; condition and force are extrapolated
+   !> Change the unknown of a panel; while the contact recedes, extrapolate condition and force
    pure subroutine move(self, e, change, panel)
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel, evaluated
@@ -406,12 +406,12 @@ contains
       end if
    end subroutine move
 
-   !> Forces of a solution; while the contact recedes they are part of it
+   !> Forces of a solution; while the contact recedes they are known already
    pure subroutine find_forces(self, e, panel, numbers)
       class(panel_problem_t), intent(in) :: self
       type(equations_t), intent(inout) :: e
       type(panel_t), intent(inout) :: panel
-      !> Numbers of the forces [N]
+      !> Numbers of the pairs of the forces [N]
       real(wp), intent(out) :: numbers(width)
 
       real(wp) :: force(width), second(width, width)
@@ -430,8 +430,8 @@ contains
       end if
    end subroutine find_forces
 
-   !> Forces of a solution and their integrals I = I_n + H F, J = J_n + H I_n + H^2 F, and the
-   !> motion that they make where it is not the solution itself
+   !> Forces of a solution, their integrals I = I_n + H F and J = J_n + H I_n + H^2 F, and the
+   !> motion if it is not the unknown
    pure subroutine integrate(self, rule, e, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
@@ -462,10 +462,10 @@ contains
       end associate
    end subroutine integrate
 
-   !> What a plate that follows the force at once adds to the deflection, and its recoil. With
-   !> F = kappa u(s) - M, kappa about dF/du, M is smooth in time where s goes to zero and F is not:
-   !> F' = kappa u' s' - M' with s' = w - instant F'. While the contact recedes F is smooth itself,
-   !> and F' zero at its end
+   !> Deflection of a plate that follows the force at once, and its velocity instant F', the recoil.
+   !> With F = kappa u(s) - M, kappa about dF/du, M is smooth in time where s goes to zero and F is
+   !> not: F' = kappa u' s' - M' with s' = w - instant F'. While the contact recedes F itself is
+   !> smooth, and F' is zero at the end
    pure subroutine follow_force(self, rule, e, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
@@ -498,9 +498,9 @@ contains
       panel%recoil(n + 1:) = 0.0_wp
    end subroutine follow_force
 
-   !> Where time stands still at the end of the panel, collocation there says nothing about internal
-   !> variables that settle in it, and the end has no weight in the integrals of the panel: what
-   !> they make of the condition is integrated
+   !> Set t1 and the condition at the end of a panel whose map is stationary there. Collocation does
+   !> not resolve internal variables that settle in such a panel, and the end has no weight in its
+   !> integrals, so the condition is integrated by `settling_t`
    pure subroutine settle(self, rule, e, start, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
@@ -529,7 +529,7 @@ contains
       end associate
    end subroutine settle
 
-   !> The same for the drift of a hereditary plate
+   !> Set the drift of a hereditary plate at the end of such a panel
    pure subroutine settle_plate(self, rule, e, start, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
@@ -569,11 +569,11 @@ contains
       end associate
    end subroutine advance
 
-   !> Begin the rebound where the approach has ended, at the largest indentation
+   !> Begin the rebound at the end of the approach, the largest indentation
    subroutine turn_round(self, approach, start)
       class(panel_problem_t), intent(inout) :: self
       type(approach_t), intent(in), target :: approach
-      !> State at the end of the approach, on return the same for the rebound
+      !> State at the end of the approach, on return at the start of the rebound
       type(start_t), intent(inout) :: start
 
       self%approach => approach
@@ -586,12 +586,12 @@ contains
       self%tolerance = self%collocator%near_tolerance
    end subroutine turn_round
 
-   !> Set up the second term of the Volterra series, for which the matrices of the modes are formed
+   !> Set up the second term of the Volterra series: form the matrices of the modes
    pure subroutine set_up_second_term(e, rates, start_lag)
       type(equations_t), intent(inout) :: e
       !> Rates of the modes [1/s], shape (modes)
       real(wp), intent(in) :: rates(:)
-      !> What the internal variables fall behind at the start, u - q_k [m^1.5], shape (modes)
+      !> Lags u - q_k at the start [m^1.5], shape (modes)
       real(wp), intent(in) :: start_lag(:)
 
       real(wp) :: settled(width)
@@ -607,7 +607,7 @@ contains
       end do
    end subroutine set_up_second_term
 
-   !> What the second term adds to the force, c2 (G_0 u^2 + sum_k G_k p_k^2), and its derivative
+   !> Force of the second term, c2 (G_0 u^2 + sum_k G_k p_k^2), and its derivative
    pure subroutine second_term(self, e, force, slope)
       class(panel_problem_t), intent(in) :: self
       !> Equations of the panel, evaluated

@@ -1,10 +1,10 @@
 !> Rebound of a receding contact in the internal-variable method, from the largest indentation on
 !>
-!> Next to the end at t0 the force goes to zero as u(t0 - t), and the motion is analytic in
-!> sqrt(t0 - t). So the last panel has the map t = t0 - D (1 - theta)^2 of its length D, which is
-!> found so that the condition N is zero at its end. Before it come as many panels in t as the
-!> accuracy takes; from a kernel that is infinite at first, or has a dashpot, the first one is in
-!> the square root of the time since the largest indentation.
+!> Near the end at t0 the force goes to zero as u(t0 - t), and the motion is analytic in
+!> sqrt(t0 - t). So the last panel has the map t = t0 - D (1 - theta)^2, and its length D is found
+!> such that the condition N is zero at its end. Before it come as many panels in t as the accuracy
+!> requires. For a kernel that is infinite at first, or has a dashpot, the first of them is in the
+!> square root of the time since the largest indentation.
 module vcor_solver_ive_rebound
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
@@ -30,38 +30,38 @@ module vcor_solver_ive_rebound
 
    public :: follow_rebound
 
-   !> The rebound until the contact ends
+   !> Integration of the rebound
    type, extends(course_t) :: rebound_t
       type(approach_t), pointer :: approach => null()
-      !> Index of the map of the next panel but the last one
+      !> Index of the map of the next panel, unless it is the last one
       integer :: kind = linear
-      !> Time that such a panel may take, and the last one [s]
+      !> Duration allowed for such a panel, and for the last one [s]
       real(wp) :: length = 0.0_wp, end_length = 0.0_wp
-      !> Time that the panel takes, and time left to the end of the contact [s]
+      !> Duration of the panel, and time left to the end of the contact [s]
       real(wp) :: taken = 0.0_wp, rest = 0.0_wp
-      !> End of the contact, once it was found [s]
+      !> End of the contact, once it has been found [s]
       real(wp) :: end_found = 0.0_wp
-      !> Rate of t1 and its rate [1/s], for a guess
+      !> t1' [-] and t1'' [1/s], for a guess
       real(wp) :: rate = 0.0_wp, bend = 0.0_wp
       !> Length of the panel refused before [s]
       real(wp) :: refused_length = huge(1.0_wp)
-      !> The longest panel in which t1 rises, and its end [s]
+      !> Duration of the longest panel in which t1 rises, and its end [s]
       real(wp) :: longest_growing = 0.0_wp, growing_until = 0.0_wp
-      !> Whether the panel only said where the contact ends
+      !> Whether the panel only showed where the contact ends
       logical :: misled = .false.
-      !> Errors of the coefficients of restitution, by the relative velocity and of the sphere, that
-      !> the panel adds, and of those before [-]
+      !> Errors of the coefficients of restitution, by the relative velocity and of the sphere:
+      !> contribution of the panel, and sum of those before [-]
       real(wp) :: error(2) = 0.0_wp, error_sum(2) = 0.0_wp
    end type rebound_t
 
 contains
 
-   !> Follow the rebound
+   !> Integrate the rebound
    subroutine follow_rebound(course, approach, trajectory, error)
-      !> The course up to the largest indentation
+      !> The integration up to the largest indentation
       type(course_t), intent(in) :: course
       type(approach_t), intent(in), target :: approach
-      !> Course of the impact, on entry its approach
+      !> Trajectory, on entry the approach
       type(trajectory_t), intent(inout) :: trajectory
       type(error_t), allocatable, intent(out) :: error
 
@@ -99,7 +99,7 @@ contains
                   //"for the material: use method = 'direct'")
                return
             end if
-            ! what its weight pushes back does not come off any more
+            ! a contact that its weight makes grow again may not separate any more
             call trajectory%stop_at_rest(rebound%problem%impact, .true., over)
             if (.not. over) call refuse_growth(rebound%problem%impact, error)
             return
@@ -113,7 +113,7 @@ contains
          //'of the contact: the accuracy asked for is out of reach')
    end subroutine follow_rebound
 
-   !> Lengths of the first panel, of the last one and of the rebound to begin with
+   !> Choose initial lengths of the first panel, of the last one and of the whole rebound
    subroutine start(self, approach)
       type(rebound_t), intent(inout) :: self
       type(approach_t), intent(in), target :: approach
@@ -134,8 +134,8 @@ contains
          self%rest = expected_rebound*time
          self%length = merge(rebound_fast, rebound_slow, relaxes)*time*finer**rebound_growth
          self%end_length = merge(end_fast, end_slow, relaxes)*time*finer**end_growth
-         ! of a continuous spectrum, in contact or plate, the collocation of a panel does not
-         ! resolve the modes that settle next to its end
+         ! collocation does not resolve the modes of a continuous spectrum, of contact or plate,
+         ! that settle near the end of a panel
          if (continuous) self%end_length = end_continuous*time*finer**end_growth
          if (continuous .and. self%problem%impact%plate%hereditary()) then
             self%length = rebound_hereditary*time*finer**rebound_growth
@@ -144,8 +144,8 @@ contains
       end associate
    end subroutine start
 
-   !> Choose the length of the next panel. Some equal ones leave what is for the last panel: the end
-   !> is a branch point, from which panels keep away
+   !> Choose the duration of the next panel. The end is a branch point, from which panels keep a
+   !> distance: equal shares of the remaining time lead to the length of the last panel
    subroutine choose_length(self)
       type(rebound_t), intent(inout) :: self
 
@@ -195,7 +195,7 @@ contains
          if (.not. panel%converged) return
          self%previous = panel
          if (self%ends) then
-            ! rounding in a condition next to zero is no end: t1 has to get there, too
+            ! a condition near zero may be rounding: at the end t1 must be near zero, too
             panel%converged = abs(panel%t1(n)) <= close_to_zero*self%start%t1
             if (.not. panel%converged) return
             self%end_found = self%start%time + self%taken
@@ -224,7 +224,7 @@ contains
                  rule => self%problem%collocator%rule)
          time = rule%times(self%step%index, self%step%map_scale())
          t1 = start%t1 + time*(self%rate + 0.5_wp*self%bend*time)
-         ! which is zero at the end of the contact
+         ! t1 is zero at the end of the contact
          if (self%ends) t1 = t1 - (start%t1 &
             + self%taken*(self%rate + 0.5_wp*self%bend*self%taken))*(time/self%taken)**2
          if (self%previous%stages > 0) then
@@ -232,12 +232,12 @@ contains
             t1 = merge(rule%extend(self%previous%t1, min(theta, farthest_rebound)), t1, &
                theta <= farthest_rebound)
          end if
-         ! next to the largest indentation t1 falls at least as fast as time grows
+         ! near the largest indentation t1 falls at least half as fast as time grows
          t1 = min(t1, vertex - slowest_fall*min(start%time + time - vertex, near_vertex*vertex))
       end associate
    end subroutine guess
 
-   !> Error of the panel over what it may be: that of the motion, and of the contact time
+   !> Error of the panel over the allowed one: of the motion, and of the contact time
    subroutine judge(self)
       type(rebound_t), intent(inout) :: self
 
@@ -255,7 +255,7 @@ contains
             + abs(panel%drift(n) - coarse%drift(n - 1)))/impact%velocity
          time_error = 0.0_wp
          if (self%ends) then
-            ! the companion ends a little earlier or later: weight and plate change the velocities
+            ! the companion ends slightly earlier or later: weight and plate change the velocities
             time_error = abs(panel%condition(n) - coarse%condition(n - 1))/self%start%condition &
                *self%taken
             self%error = self%error + time_error*impact%gravity/impact%velocity
@@ -263,7 +263,7 @@ contains
                + abs((panel%drift(n) - panel%drift(n - 1))/(panel%time(n) - panel%time(n - 1)))) &
                /impact%velocity
          else if (self%rest < self%end_time) then
-            ! by a line from here to the end
+            ! extrapolated linearly to the end
             time_error = max(0.0_wp, abs(panel%condition(n) - coarse%condition(n - 1)) &
                - self%problem%noise*self%problem%largest_condition)/panel%condition(n) &
                *max(0.0_wp, self%rest - self%taken)
@@ -279,14 +279,14 @@ contains
       type(rebound_t), intent(in) :: self
       logical :: is_refused
 
-      ! what half the panel does not reduce by half is handed down by the panels before, or rounding
-      ! in stiff internal variables
+      ! an error that half the panel does not halve is inherited, or rounding in stiff internal
+      ! variables
       is_refused = .not. (self%excess <= 1.0_wp .or. self%excess <= tolerable &
          .and. is_half_of_refused(self) .and. self%excess > 0.5_wp*self%refused)
       if (is_refused .and. self%ends) is_refused = .not. self%is_best_end()
    end function is_refused
 
-   !> Whether the panel is half as long as the one refused before, or shorter
+   !> Whether the panel is at most half as long as the one refused before
    pure function is_half_of_refused(self) result(is_half)
       type(rebound_t), intent(in) :: self
       logical :: is_half
@@ -294,7 +294,7 @@ contains
       is_half = self%taken <= 0.5_wp*self%refused_length
    end function is_half_of_refused
 
-   !> Shorten panels by one that is refused
+   !> Shorten the next panel after a refusal
    subroutine shorten(self)
       type(rebound_t), intent(inout) :: self
 
@@ -317,8 +317,8 @@ contains
       end associate
    end subroutine shorten
 
-   !> Whether t1 rises somewhere in the panel. It does where its slope is positive in the solution
-   !> and in its companion, by more than the two differ anywhere in the panel
+   !> Whether t1 rises somewhere in the panel: its slope is positive in the solution and in the
+   !> companion, by more than the two differ anywhere in the panel
    pure function is_growing(self) result(grows)
       type(rebound_t), intent(in) :: self
       logical :: grows
@@ -332,11 +332,11 @@ contains
          slope = rule%slopes(self%panel%t1)
          other = collocator%coarse%slopes(self%coarse%t1)
          same = collocator%coarsened(slope)
-         ! at the end of the contact time stands still in the map, and t1 with it
+         ! at the end of the contact the map is stationary, and so is t1
          points = merge(n - 2, n - 1, self%ends)
          doubt = maxval(abs(same(1:points) - other(1:points)))
          grows = any(min(same(1:points), other(1:points)) > doubt)
-         ! and where the slope is largest between them
+         ! check the largest slope between the points, too
          j = maxloc(slope(0:n), 1) - 1
          if (grows .or. j == 0 .or. j == n) return
          bend = rule%slopes(slope)
@@ -347,8 +347,8 @@ contains
       end associate
    end function is_growing
 
-   !> Whether t1 may rise because the panel is crude: while it has not been halved for that. What
-   !> rises within a small part of it, does
+   !> Whether t1 may rise only because the panel is crude and has not been halved enough. A rise
+   !> within a small part of the first such panel is real
    pure function is_crude(self)
       !> The rebound, t1 rising in its panel
       type(rebound_t), intent(in) :: self
@@ -369,7 +369,7 @@ contains
       self%end_length = min(self%end_length, self%length)
    end subroutine halve
 
-   !> Make the panel a part of the course
+   !> Accept the panel: add it to the trajectory
    subroutine accept(self, trajectory)
       type(rebound_t), intent(inout) :: self
       type(trajectory_t), intent(inout) :: trajectory
@@ -381,11 +381,11 @@ contains
       trajectory%last = trajectory%final
    end subroutine accept
 
-   !> Set the status of a contact that has come to its end with the panel
+   !> Set the status if the contact ends with the panel
    subroutine stop_at_end(self, trajectory, over)
       type(rebound_t), intent(in) :: self
       type(trajectory_t), intent(inout) :: trajectory
-      !> Whether it has, or the computation
+      !> Whether the contact or the computation has ended
       logical, intent(out) :: over
 
       call trajectory%stop_at_rest(self%problem%impact, self%reaches_end_time, over)
@@ -399,8 +399,8 @@ contains
       end if
    end subroutine stop_at_end
 
-   !> Go on to the next panel, with the end and t1 up to there by the parabolas that go on where
-   !> this one ends. While the condition grows nothing tells when the contact ends
+   !> Advance to the next panel, and extrapolate t1 and the end of the contact by parabolas from the
+   !> end of this one. While the condition grows, the end is unknown
    subroutine go_on(self)
       type(rebound_t), intent(inout) :: self
 
@@ -408,7 +408,7 @@ contains
 
       associate (panel => self%panel, rule => self%problem%collocator%rule, n => self%panel%stages)
          call end_rates(panel%t1, self%rate, self%bend)
-         ! which becomes less and less
+         ! t1'' decreases along the panel
          self%bend = bend_kept*self%bend
          call end_rates(panel%condition, fall, fall_rate)
          fall = -fall
@@ -422,13 +422,13 @@ contains
 
    contains
 
-      !> First and second derivative by time of a value at the end of the panel
+      !> First and second time derivative of a value at the end of the panel
       subroutine end_rates(value, first, second)
-         !> Its values at the points of the panel
+         !> Values at the points of the panel
          real(wp), intent(in) :: value(0:width)
-         !> Its rate
+         !> First derivative
          real(wp), intent(out) :: first
-         !> Rate of that
+         !> Second derivative
          real(wp), intent(out) :: second
 
          real(wp) :: slope(0:width)

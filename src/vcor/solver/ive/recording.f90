@@ -1,4 +1,4 @@
-!> Panels of the internal-variable method as a trajectory
+!> Recording of the panels of the internal-variable method in a trajectory, and its maxima
 module vcor_solver_ive_recording
    use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : col_force, col_impulse, col_indentation, col_plate, &
@@ -18,19 +18,19 @@ module vcor_solver_ive_recording
    public :: forerunner_t
    public :: begin, record, find_peaks
 
-   !> The panel before the one that is recorded
+   !> The panel before the one being recorded
    type :: forerunner_t
       !> The panel; without stages if there is none
       type(panel_t) :: panel
       !> State at its start
       type(start_t) :: start
-      !> Difference of its force from that of its companion, at its end [N]
+      !> Difference of its force to that of its companion at the end [N]
       real(wp) :: doubt = 0.0_wp
    end type forerunner_t
 
 contains
 
-   !> First node of a trajectory
+   !> Set the first node of a trajectory
    subroutine begin(rule, impact, trajectory)
       type(collocation_t), intent(in) :: rule
       type(impact_t), intent(in) :: impact
@@ -84,14 +84,14 @@ contains
       end do
    end subroutine record
 
-   !> Largest indentation and force so far
+   !> Update the largest indentation and force
    subroutine find_peaks(problem, start, panel, doubt, before, accuracy, trajectory)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
-      !> Difference of its force from that of its companion, at its end [N]
+      !> Difference of its force to that of its companion at the end [N]
       real(wp), intent(in) :: doubt
-      !> The panel before it
+      !> The panel before
       type(forerunner_t), intent(in) :: before
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
@@ -112,7 +112,7 @@ contains
          end if
          call find_peak(problem, start, panel, panel%force, .false., accuracy, peak, change, time)
          rises = trajectory%time_of_max_force >= panel%time(0)
-         ! where it rises up to the end of the panel, the end is none yet
+         ! a force that rises up to the end of the panel has no maximum in it
          if ((rises .or. peak > trajectory%max_force) .and. time > 0.0_wp &
              .and. time < panel%time(n)) call refine_force(problem, start, panel, doubt, before, &
             accuracy, change, time, peak)
@@ -123,23 +123,23 @@ contains
       end associate
    end subroutine find_peaks
 
-   !> Maximum in a panel, by improving the panel up to there: the polynomials of the panel are less
-   !> accurate inside of it than at its end
+   !> Maximum in a panel, by solving the panel up to there: its polynomials are less accurate inside
+   !> than at the end
    subroutine find_peak(problem, start, panel, value, of_indentation, accuracy, peak, change, time)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
-      !> Values at its points
+      !> Values at the points of the panel
       real(wp), intent(in) :: value(0:width)
-      !> Whether they are those of the indentation, otherwise of the force
+      !> Whether these are the indentation, otherwise the force
       logical, intent(in) :: of_indentation
       !> Wanted relative accuracy of the maximum
       real(wp), intent(in) :: accuracy
       !> Maximum
       real(wp), intent(out) :: peak
-      !> What the improvement has changed of it
+      !> Change of the maximum by the improvement
       real(wp), intent(out) :: change
-      !> Its time [s]
+      !> Time of the maximum [s]
       real(wp), intent(out) :: time
 
       type(panel_t) :: cut
@@ -148,7 +148,7 @@ contains
       integer :: n, j, other, first
 
       n = panel%stages
-      ! a maximum is next to the largest of the values, on the side to which they rise there
+      ! a maximum is next to the largest value, on the side to which the values rise
       j = maxloc(value(0:n), 1) - 1
       peak = value(j)
       change = 0.0_wp
@@ -160,7 +160,7 @@ contains
          if (other < 0 .or. other > n) return
          bend = sum(rule%derivative(j, :)*slopes)
          if ((j == 0 .or. j == n) .and. 0.5_wp*slope**2 < -bend*accuracy*value(j)) then
-            ! so close to the end of the panel that the parabola there does
+            ! so close to the end of the panel that a parabola is accurate enough
             peak = peak - 0.5_wp*slope**2/bend
             time = time - slope/bend*(panel%map(1) + 2.0_wp*panel%map(2)*rule%point(j))
             return
@@ -180,24 +180,24 @@ contains
       end associate
    end subroutine find_peak
 
-   !> Largest force anew with the panel halved that decides it, where it is not accurate enough by
-   !> the companion, which is worse by far, and by what its improvement has changed, the more the
-   !> later it comes: that feels nothing of what the panel before has left, which fades along the
-   !> panel. The force of modes that settle at once follows the rate of u, the derivative of a
-   !> polynomial: the impulse hardly feels its error, the force does. And a panel in t that begins
-   !> next to the branch point at t = 0 has an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b)
-   !> - sqrt(a)) from a to b
+   !> Compute the largest force again, with halved panels, if it may not be accurate enough. The
+   !> difference to the force of the companion exceeds its error by far, so more of it is allowed if
+   !> the improvement has changed little, the later the maximum is in the panel: the improvement
+   !> does not see what the panel before has left, which fades along the panel. Forces of modes that
+   !> settle at once follow the rate of u, the derivative of a polynomial: the impulse hardly feels
+   !> its error, but the force does. And a panel in t that starts near the branch point at t = 0 has
+   !> an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
    subroutine refine_force(problem, start, panel, doubt, before, accuracy, change, time, peak)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
-      !> Difference of its force from that of its companion, at its end [N]
+      !> Difference of its force to that of its companion at the end [N]
       real(wp), intent(in) :: doubt
-      !> The panel before it
+      !> The panel before
       type(forerunner_t), intent(in) :: before
       !> Wanted relative accuracy
       real(wp), intent(in) :: accuracy
-      !> What its improvement has changed of the largest force [N]
+      !> Change of the largest force by the improvement [N]
       real(wp), intent(in) :: change
       !> Time of the largest force [s]
       real(wp), intent(in) :: time
@@ -232,14 +232,14 @@ contains
       end associate
    end subroutine refine_force
 
-   !> Go on to a time by two panels: halves in x from first contact, otherwise in time
+   !> Advance to a given time by two panels: halves in x from first contact, otherwise in t
    subroutine solve_halves(problem, time, now, last)
       type(panel_problem_t), intent(in) :: problem
       !> The time [s]
       real(wp), intent(in) :: time
-      !> State at the start, on return that at the end
+      !> State at the start, on return at the given time
       type(start_t), intent(inout) :: now
-      !> A panel next to the start, on return that at the end; not converged on failure
+      !> A neighbouring panel, on return the second one; not converged on failure
       type(panel_t), intent(inout) :: last
 
       type(step_t) :: step
@@ -255,13 +255,13 @@ contains
       call solve_on(problem, step, now, last)
    end subroutine solve_halves
 
-   !> Go on by one panel
+   !> Advance by one panel
    subroutine solve_on(problem, step, now, last)
       type(panel_problem_t), intent(in) :: problem
       type(step_t), intent(in) :: step
-      !> State at its start, on return that at its end
+      !> State at the start, on return at the end
       type(start_t), intent(inout) :: now
-      !> A panel next to it, on return its own; not converged on failure
+      !> A neighbouring panel, on return the one solved; not converged on failure
       type(panel_t), intent(inout) :: last
 
       type(panel_t) :: next

@@ -1,4 +1,4 @@
-!> Steps of the internal-variable method: in x = sqrt(t) next to first contact, in t beyond
+!> Steps of the internal-variable method: in x = sqrt(t) near first contact, later in t
 module vcor_solver_ive_step
    use vcor_kinds, only : wp
    use vcor_numeric_radau_collocation, only : linear
@@ -10,13 +10,13 @@ module vcor_solver_ive_step
 
    !> One step
    type :: step_t
-      !> Index of its map: the step in x starts at x = index*length; `linear` for a step in t,
-      !> `closing` for one in the square root of the time that is left
+      !> Index of the map: a step in x starts at x = index*length; `linear` for a step in t,
+      !> `closing` for one in the square root of the remaining time
       integer :: index = 0
       !> Length in x [s^0.5] or in t [s]
       real(wp) :: length = 0.0_wp
-      !> Length in x that the first step was meant to have [s^0.5]; shorter ones are owed to the
-      !> start and grow as they leave it
+      !> Nominal length of the first step in x [s^0.5]; steps shortened because of the start grow
+      !> back to it
       real(wp) :: reach = 0.0_wp
    contains
       procedure :: map_scale
@@ -27,7 +27,7 @@ module vcor_solver_ive_step
 
 contains
 
-   !> The step of given duration, of a kind that goes with its start
+   !> The step of a given duration, in x if it starts at first contact, else in t
    pure function step_to(start, time) result(step)
       !> Start of the step [s], >= 0
       real(wp), intent(in) :: start
@@ -38,7 +38,7 @@ contains
       step = step_of(merge(linear, 0, start > 0.0_wp), time)
    end function step_to
 
-   !> The step of given duration and kind
+   !> The step of a given duration with a given map
    pure function step_of(kind, time) result(step)
       !> Index of the map, 0 or negative
       integer, intent(in) :: kind
@@ -71,8 +71,8 @@ contains
       if (self%index >= 0) duration = self%length**2*real(2*self%index + 1, wp)
    end function duration
 
-   !> Cut the step. Steps in x can only be halved, so that the next ones still start at multiples
-   !> of their length; from x = 2 h on, a step in t of any length does as well
+   !> Shorten the step. Steps in x can only be halved, so that the next ones still start at
+   !> multiples of their length; from x = 2 h on, the step becomes one in t of any length
    pure subroutine shorten(self, time)
       class(step_t), intent(inout) :: self
       !> Wanted duration [s], less than the present one
@@ -90,11 +90,11 @@ contains
       end select
    end subroutine shorten
 
-   !> Go on to the next step
+   !> Proceed to the next step
    pure subroutine proceed(self, growth, most)
       !> The step that was taken, on return the next one
       class(step_t), intent(inout) :: self
-      !> Factor by which a step could be longer
+      !> Factor by which the step could be longer
       real(wp), intent(in) :: growth
       !> Largest index of a step in x
       integer, intent(in) :: most

@@ -1,10 +1,10 @@
-!> The paper's own scheme: explicit time marching by Adams and Bashforth's formula, Section V of
+!> The paper's own scheme: explicit time marching by the Adams-Bashforth formula, Section V of
 !> Green's paper
 !>
-!> The sums leave an error of order dt with rectangles. With trapezoids it is of order dt^2, but for
-!> a small term of order dt^1.5 from the start, u' ~ sqrt(t). The capped kernel t^-a leaves one of
-!> order dt^(1-a). The scheme is stable for small steps only, `vcor_solver_paper_formulas` says how
-!> small: a run in which the oscillation from step to step grows is refused.
+!> With rectangles the sums have an error of order dt, with trapezoids of order dt^2 except for a
+!> small term of order dt^1.5 from the start, u' ~ sqrt(t). The capped kernel t^-a adds an error of
+!> order dt^(1-a). The scheme is stable for small steps only (`vcor_solver_paper_formulas`): a run
+!> with a growing oscillation from step to step is refused.
 module vcor_solver_paper_adams_bashforth
    use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_impact_problem, only : impact_t
@@ -32,7 +32,7 @@ contains
    pure subroutine new_adams_bashforth(self, settings, error)
       type(adams_bashforth_t), intent(out) :: self
       !> Form, quadrature, step, end and second term; a step of 0 is a 3000th of the expected
-      !> contact time, an accuracy is what the result is held against
+      !> contact time, an accuracy is only compared with the estimated error
       type(solver_settings_t), intent(in) :: settings
       type(error_t), allocatable, intent(out) :: error
 
@@ -46,7 +46,7 @@ contains
       self%settings = settings
    end subroutine new_adams_bashforth
 
-   !> Compute the course of an impact, with the error estimated from runs with longer steps
+   !> Compute the course of an impact, with errors estimated from runs with longer steps
    subroutine solve(self, impact, trajectory, error)
       class(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -61,7 +61,7 @@ contains
       contact_time = impact%law%contact_time*impact%time_scale()
       dt = self%settings%time_step
       if (.not. dt > 0.0_wp) dt = contact_time/real(usual_steps, wp)
-      ! the formulas look back over seven nodes, and the coarsest run has a quarter of the steps
+      ! the formulas use seven nodes, and the coarsest run has a quarter of the steps
       if (.not. real(fewest_steps, wp)*dt < contact_time) then
          call raise(error, error_numerical, 'solver.time_step is '//trim(in_seconds(dt)) &
             //', too long for a contact expected to last '//trim(in_seconds(contact_time)) &
@@ -74,14 +74,14 @@ contains
          call estimate_errors(self, impact, dt, trajectory)
    end subroutine solve
 
-   !> Say what the scheme cannot do
+   !> Refuse what the scheme cannot compute
    subroutine refuse(self, impact, error)
       type(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
-      !> Error of code `error_input`, unallocated if all is well
+      !> Error of code `error_input`, unallocated if there is none
       type(error_t), allocatable, intent(out) :: error
 
-      ! k' that is infinite at 0 grows by a power of the time on the way there
+      ! a k' that is infinite at 0 grows as a power of time towards it
       real(wp), parameter :: early = 1.0e-12_wp, noticeable = 1.01_wp
       type(exponential_sum_t) :: terms
       real(wp) :: time
@@ -106,13 +106,13 @@ contains
       end if
    end subroutine refuse
 
-   !> One run, its failures as errors
+   !> One run, with its failures as errors
    subroutine run(self, impact, dt, ghost, trajectory, error)
       type(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Go on after the separation
+      !> Whether to continue after the separation
       logical, intent(in) :: ghost
       type(trajectory_t), intent(out) :: trajectory
       type(error_t), allocatable, intent(out) :: error
@@ -140,10 +140,10 @@ contains
       cor = -trajectory%state([col_velocity, col_sphere_velocity], trajectory%last)/impact%velocity
    end function cor_of
 
-   !> Errors of the coefficients of restitution, by Richardson's extrapolation from runs with two
-   !> and four times the step and the order that they show, two at most; next to none where the
-   !> kernel falls within a step. Where longer steps are unstable from one other run, with the order
-   !> of rectangles or of the capped kernel
+   !> Errors of the coefficients of restitution by Richardson's extrapolation from runs with two and
+   !> four times the step, with the observed order, at most two; it is almost zero if the kernel
+   !> falls within a step. If longer steps are unstable, one other run is used with the order of
+   !> rectangles or of the capped kernel
    subroutine estimate_errors(self, impact, dt, trajectory)
       type(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -158,7 +158,7 @@ contains
       logical :: known
       integer :: i
 
-      ! 2^order, at its least: k(dt)/k(2 dt) = 2^a makes it 1 - a
+      ! smallest 2^order: k(dt)/k(2 dt) = 2^a makes the order 1 - a
       least = 2.0_wp
       if (capped(impact)) least = max(smallest_ratio, &
          2.0_wp*impact%kernel(2.0_wp*dt)/impact%kernel(dt))
@@ -170,7 +170,7 @@ contains
       end do
       select case (i)
       case (3)
-         ! where the last two agree by chance, the first two tell
+         ! the last two may agree by chance: use the first two as well
          estimate = max(abs(coarse(:, 1) - cor), abs(coarse(:, 2) - coarse(:, 1))/best_ratio)
          ratio = 4.0_wp
          where (estimate > 0.0_wp) ratio = abs(coarse(:, 2) - coarse(:, 1))/estimate
@@ -194,7 +194,7 @@ contains
          real(wp), intent(in) :: step
          !> Coefficients of restitution
          real(wp), intent(out) :: value(2)
-         !> Whether there is one
+         !> Whether there are any
          logical, intent(out) :: known
 
          type(trajectory_t) :: trajectory
@@ -207,8 +207,8 @@ contains
       end subroutine attempt
    end subroutine estimate_errors
 
-   !> Largest stable time step, estimated along a course that product integration computes: it is
-   !> stable with any step
+   !> Largest stable time step, estimated along a course from product integration, which is stable
+   !> for any step
    function stable_step(self, impact, dt) result(step)
       type(adams_bashforth_t), intent(in) :: self
       type(impact_t), intent(in) :: impact
@@ -234,7 +234,7 @@ contains
             *impact%law%slope(trajectory%state(col_indentation, i)))
       end do
 
-      ! where the damper is not the reason, the steps are too coarse for what they follow
+      ! if the damper is not the cause, the steps are too coarse to follow the course
       upper = noticeably_less*dt
       lower = 0.5_wp*dt
       if (holds(upper)) upper = lower
@@ -256,7 +256,7 @@ contains
    contains
 
       !> Whether a time step is short enough for the damper and, in form b, for the sum of k' to
-      !> leave about the k that it should: one that is too large makes the force negative
+      !> leave about k: too much of it makes the force negative
       pure function holds(trial)
          !> Time step [s]
          real(wp), intent(in) :: trial
@@ -282,8 +282,8 @@ contains
    pure function in_seconds(time) result(text)
       !> Time [s]
       real(wp), intent(in) :: time
-      !> Such as 4.00E-07 s. Of fixed length: gfortran 12 keeps the length of a text of deferred
-      !> length that a function returns in static storage, where threads collide
+      !> Text such as 4.00E-07 s, of fixed length: gfortran 12 keeps the length of a deferred-length
+      !> function result in static storage, where threads collide
       character(len=11) :: text
 
       character(len=16) :: buffer

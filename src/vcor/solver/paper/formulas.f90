@@ -1,9 +1,9 @@
-!> Formulas of the paper's time marching, Adams and Bashforth's, backward differences, Runge and
-!> Kutta's start, and how stable they are together
+!> Formulas of the paper's time marching (Adams-Bashforth, backward differences, Runge-Kutta start)
+!> and their stability
 !>
-!> What oscillates from step to step has no time to feel the inertia of the sphere or the change of
-!> s and alpha: the scheme sees s'' = -U'' = -d (k s')' with d = alpha du/ds, (3/2) alpha sqrt(s)
-!> for a sphere, a damper. On s' ~ z^n, with x = 1/z, each of its formulas is a factor:
+!> Oscillations from step to step are too fast for the inertia of the sphere and for changes of s
+!> and alpha. The scheme sees s'' = -U'' = -d (k s')' with d = alpha du/ds, (3/2) alpha sqrt(s) for
+!> a sphere: a damper. For s' ~ z^n and x = 1/z each of its formulas is a factor:
 !>
 !>     Adams-Bashforth  (1 - x)/x s' = dt sigma(x) s''
 !>     force, form a    F = (3/2) sqrt(s) dt (K(x) - (1 - g) k_0) s',  K(x) = sum_j k_j x^j
@@ -12,10 +12,9 @@
 !>     difference       U'' = alpha delta2(x)/dt^2 I, frozen plate: U'' = alpha delta1(x)/dt F
 !>
 !> with g = 1 for rectangles and 1/2 for trapezoids. Each z on the unit circle belongs to one d; the
-!> smallest d that is real and positive is where the first mode stops decaying. For form a with
-!> rectangles it is z = -1 with sigma = 551/45, delta2 = 4592/45, and for a constant kernel
-!> K = k_0/2: dt (3/2) alpha k_0 sqrt(s) < 0.0064, where the formula of Adams and Bashforth alone
-!> would bear 0.163.
+!> smallest real, positive d is where a mode first stops decaying. For form a with rectangles this
+!> is z = -1 with sigma = 551/45, delta2 = 4592/45 and, for a constant kernel, K = k_0/2:
+!> dt (3/2) alpha k_0 sqrt(s) < 0.0064, while the Adams-Bashforth formula alone allows 0.163.
 module vcor_solver_paper_formulas
    use vcor_constants, only : pi
    use vcor_impact_law, only : contact_law_t
@@ -27,9 +26,9 @@ module vcor_solver_paper_formulas
    public :: start_steps, ab_points, second_points, first_points
    public :: damping_limit, kernel_terms
 
-   !> Steps of Runge and Kutta's start
+   !> Steps of the Runge-Kutta start
    integer, parameter :: start_steps = 3
-   !> Slopes in Adams and Bashforth's formula of fifth order
+   !> Slopes in the Adams-Bashforth formula of fifth order
    integer, parameter :: ab_points = 5
    !> Points of the second backward difference of fifth order
    integer, parameter :: second_points = 7
@@ -62,12 +61,12 @@ module vcor_solver_paper_formulas
       25.0_wp/12.0_wp, -4.0_wp, 3.0_wp, -4.0_wp/3.0_wp, 0.25_wp, 0.0_wp, &
       137.0_wp/60.0_wp, -5.0_wp, 5.0_wp, -10.0_wp/3.0_wp, 1.25_wp, -0.2_wp], &
       [first_points, first_points - 1])
-   !> Number of kernel values that are summed one by one
+   !> Number of kernel values that are summed individually
    integer, parameter :: kernel_terms = 32
 
 contains
 
-   !> A step of s'' = -a u - b u' by Runge and Kutta's classical formula of fourth order
+   !> A step of s'' = -a u - b u' by the classical Runge-Kutta formula of fourth order
    pure subroutine runge_kutta(law, a, b, dt, s, velocity)
       type(contact_law_t), intent(in) :: law
       !> Firmness over mass [m^-0.5 s^-2]
@@ -76,9 +75,9 @@ contains
       real(wp), intent(in) :: b
       !> Step [s]
       real(wp), intent(in) :: dt
-      !> Indentation [m], on return that after the step
+      !> Indentation [m], on return after the step
       real(wp), intent(inout) :: s
-      !> Its rate [m/s], on return that after the step
+      !> Rate of the indentation [m/s], on return after the step
       real(wp), intent(inout) :: velocity
 
       real(wp), dimension(2) :: y, k1, k2, k3, k4
@@ -94,33 +93,33 @@ contains
 
    contains
 
-      !> Slopes of s and s'
+      !> Derivatives of s and s'
       pure function slope(y) result(f)
          !> s and s'
          real(wp), intent(in) :: y(2)
-         !> Their slopes
+         !> Their derivatives
          real(wp) :: f(2)
 
          f = [y(2), -law%secant(y(1))*(a*y(1) + law%exponent*b*y(2))]
       end function slope
    end subroutine runge_kutta
 
-   !> Largest d = (3/2) alpha sqrt(s) for which the marching is stable
+   !> Largest d = (3/2) alpha sqrt(s) for which the scheme is stable
    pure function damping_limit(dt, kernel, form, share, frozen) result(limit)
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Kernel k_j at t = j dt, j = 0 .. kernel_terms [N/m^1.5], as the scheme takes it
+      !> Kernel k_j at t = j dt, j = 0 .. kernel_terms [N/m^1.5], as used by the scheme
       real(wp), intent(in) :: kernel(0:kernel_terms)
       !> Form of the force: a or b
       character(len=1), intent(in) :: form
-      !> Share g of the newest value in the sums, 1 or 1/2
+      !> Weight g of the newest value in the sums, 1 or 1/2
       real(wp), intent(in) :: share
-      !> Whether the plate is the frozen one
+      !> Whether the plate is frozen
       logical, intent(in) :: frozen
       !> Limit [m^1.5/(N s)]
       real(wp) :: limit
 
-      ! below the first angle are the modes that the solution itself is made of
+      ! modes below the first angle belong to the solution itself
       integer, parameter :: angles = 120
       real(wp), parameter :: first_angle = 0.1_wp*pi
       complex(wp) :: d, previous
@@ -167,12 +166,12 @@ contains
             response = response*polynomial(second_difference(:, second_points), x)/dt &
                *(share + (1.0_wp - share)*x)/(1.0_wp - x)
          end if
-         ! trapezoids do not see z = -1 at all
+         ! trapezoids give no response at z = -1
          damping = (-1.0_wp, 0.0_wp)
          if (abs(response) > tiny(1.0_wp)) damping = -(1.0_wp - x)/(x*dt*sigma*response)
       end function damping_at
 
-      !> sum_j k_j x^j for |x| = 1, x /= 1: the tail, smooth, from its value and slope at its start
+      !> sum_j k_j x^j for |x| = 1, x /= 1; the smooth tail from value and slope at its start
       pure function transform(x) result(value)
          !> Argument
          complex(wp), intent(in) :: x

@@ -1,17 +1,17 @@
 !> One run of the paper's time marching, the seven steps of Section V of Green's paper
 !>
-!> On equal steps, with w the rate u' = n s^(n-1) s' and h the kernel k in form a of Eq. (8), or
+!> On equal steps, with the rate w = u' = n s^(n-1) s' and the kernel h = k in form a of Eq. (8), or
 !> w = u and h = k' in form b,
 !>
 !>     H_n = dt sum_{j=1..n} w_j h_{n-j},   F_n = H_n  or  F_n = k(0) u_n + H_n
 !>     I_n = I_{n-1} + dt F_n,   U_n = alpha_n I_n,   s''_n = -F_n/m - U''_n
 !>
-!> or, for a frozen plate, U''_n = alpha_n F'_n. The last term of the sums is halved by the
-!> trapezoidal rule, and I_n follows it too; the first one is zero. U'' is the backward difference
-!> of fifth order, of lower order while fewer points exist, the plate being at rest before contact.
-!> s and s' go forward by Adams and Bashforth's formula of fifth order, of fourth order once, after
-!> three steps by Runge and Kutta with the kernel and alpha held at their first values. An infinite
-!> k(0) is replaced by k(dt); a finite one, however steep the kernel, is taken as it is.
+!> or, for a frozen plate, U''_n = alpha_n F'_n. The trapezoidal rule halves the last term of the
+!> sums, and is used for I_n, too; the first term is zero. U'' is the backward difference of fifth
+!> order, of lower order while fewer points exist; the plate is at rest before contact. s and s'
+!> advance by the Adams-Bashforth formula of fifth order, once of fourth order, after three
+!> Runge-Kutta steps with the first values of kernel and alpha. An infinite k(0) is replaced by
+!> k(dt); a finite one is used unchanged, however steep the kernel.
 module vcor_solver_paper_march
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_impact_problem, only : impact_t
@@ -31,28 +31,28 @@ module vcor_solver_paper_march
 
    public :: march, capped, share_of_newest, stable_damping
 
-   !> A run of more steps is given up: its sums take seconds
+   !> Maximum number of steps: the sums of more take seconds
    integer, parameter :: most_steps = 60000
-   !> Velocities that are kept, enough for a sixth difference
+   !> Number of velocities kept, for a sixth difference
    integer, parameter :: kept = 7
    !> Points of the interpolation that finds the end of the contact
    integer, parameter :: points = 6
-   !> Nodes wanted beyond the first one without force, so that the root lies amid the points
+   !> Nodes needed beyond the first one without force, so that the root is amid the points
    integer, parameter :: steps_beyond = points/2 - 1
 
    !> A run with a given step, at its last node
    type :: run_t
       !> Time step [s]
       real(wp) :: dt = 0.0_wp
-      !> Share of the newest value in the sums
+      !> Weight of the newest value in the sums
       real(wp) :: share = 1.0_wp
       !> Kernel h_j
       type(convolution_t) :: kernel
-      !> What it acts on, w_j
+      !> Values w_j on which the kernel acts
       real(wp), allocatable :: w(:)
       !> Second term of the Volterra series
       type(second_term_t) :: second
-      !> First values of the kernel k [N/m^1.5] and of alpha [m/(N s)], as the scheme takes them
+      !> First values of the kernel k [N/m^1.5] and of alpha [m/(N s)], as used by the scheme
       real(wp) :: first_kernel = 0.0_wp, first_alpha = 0.0_wp
       !> Indentation [m]
       real(wp) :: s = 0.0_wp
@@ -66,7 +66,7 @@ module vcor_solver_paper_march
       real(wp) :: drift = 0.0_wp, drift_rate = 0.0_wp
       !> Deflection of the plate [m] and its rate [m/s]
       real(wp) :: plate = 0.0_wp, plate_velocity = 0.0_wp
-      !> The damper (3/2) alpha sqrt(s) that the plate is for oscillations from step to step
+      !> Damping d = (3/2) alpha sqrt(s) of oscillations from step to step by the plate
       real(wp) :: damping = 0.0_wp
    end type run_t
 
@@ -96,7 +96,7 @@ contains
       if (capped(impact)) kernel(0) = impact%kernel(dt)
    end function kernel_values
 
-   !> Share of the newest value in the sums: 1 in rectangles, 1/2 in trapezoids
+   !> Weight of the newest value in the sums: 1 for rectangles, 1/2 for trapezoids
    pure function share_of_newest(settings) result(share)
       type(solver_settings_t), intent(in) :: settings
       !> Share [-]
@@ -124,20 +124,20 @@ contains
       type(impact_t), intent(in) :: impact
       !> Time step [s]
       real(wp), intent(in) :: dt
-      !> Go on after the separation
+      !> Whether to continue after the separation
       logical, intent(in) :: ghost
       type(trajectory_t), intent(out) :: trajectory
-      !> Whether no oscillation from step to step grew
+      !> Whether no oscillation from step to step has grown
       logical, intent(out) :: stable
-      !> Whether it did not run out of steps
+      !> Whether the number of steps was sufficient
       logical, intent(out) :: complete
 
-      ! sixth difference of the velocity, 1 for what changes its sign from step to step
+      ! sixth difference of the velocity: 1 for a value that alternates in sign
       real(wp), parameter :: alternating(kept) = &
          [1.0_wp, -6.0_wp, 15.0_wp, -20.0_wp, 15.0_wp, -6.0_wp, 1.0_wp]/64.0_wp
-      ! such oscillations are seen by then, when they are below most digits of the outcome
+      ! a growing oscillation is detected before it affects most digits of the outcome
       real(wp), parameter :: noticeable = 1.0e-5_wp
-      ! beyond these factors of the first velocity no solution goes
+      ! factors of the initial velocity that no solution exceeds
       real(wp), parameter :: fastest = 1.2_wp, fastest_ghost = 20.0_wp
       type(run_t) :: run
       real(wp) :: end_time, limit, t
@@ -181,7 +181,7 @@ contains
          call sum_force(run, settings, impact, n)
          call accelerate(run, impact, n)
 
-         ! an oscillation from step to step that the damper should have stopped
+         ! an oscillation from step to step that the damping should have stopped
          beyond_limit = beyond_limit .or. run%damping > limit
          if (.not. ieee_is_finite(run%acceleration(1))) return
          if (beyond_limit .and. n > second_points) then
@@ -199,7 +199,7 @@ contains
          trajectory%last = n
          trajectory%steps = n
          if (run%force(1) <= 0.0_wp) then
-            ! while the indentation grows the force presses
+            ! while the indentation grows the force is positive
             if (run%force(1) < 0.0_wp .and. run%velocity(1) > 0.0_wp .and. n > second_points &
                 .and. .not. abs(settings%second_coefficient) > 0.0_wp) return
             if (run%velocity(1) <= 0.0_wp) then
@@ -225,7 +225,7 @@ contains
       call find_peaks(trajectory)
    end subroutine march
 
-   !> Make room for `room` steps, what is there stays
+   !> Make room for `room` steps; contents are kept
    subroutine make_room(run, settings, impact, room, trajectory)
       type(run_t), intent(inout) :: run
       type(solver_settings_t), intent(in) :: settings
@@ -239,7 +239,7 @@ contains
       integer :: i, values
       logical :: two_terms
 
-      ! one node more for the end of contact
+      ! one node more for the end of the contact
       call trajectory%reserve(room + 1)
       call lengthen(run%w, 1, room)
       two_terms = abs(settings%second_coefficient) > 0.0_wp
@@ -254,7 +254,7 @@ contains
       end if
       call run%kernel%set(kernel(:room - 1))
       if (two_terms .and. settings%form == 'b') then
-         ! k'' of a finite sum, whatever the accuracy: others are refused
+         ! k'' of a finite sum of exponentials; other kernels are refused
          call impact%kernel_exponentials(run%dt*real(room, wp), 1.0_wp, terms)
          do i = 0, 2*room - 1
             kernel(i) = sum(terms%moduli*terms%rates**2*exp(-terms%rates*(run%dt*real(i, wp))))
@@ -263,7 +263,7 @@ contains
       end if
    end subroutine make_room
 
-   !> Step (6), its second half: s and s' at node n from s'' before it
+   !> Step (6), second half: s and s' at node n from s'' at earlier nodes
    pure subroutine advance(run, impact, n)
       type(run_t), intent(inout) :: run
       type(impact_t), intent(in) :: impact
@@ -373,12 +373,13 @@ contains
       node(col_plate_velocity) = run%plate_velocity
    end function state_of
 
-   !> Put the node where F = 0 before node n, the first one with F <= 0; the nodes behind move up
+   !> Insert the node where F = 0 before node n, the first one with F <= 0, and move the later ones
+   !> up
    pure subroutine insert_separation(impact, n, trajectory)
       type(impact_t), intent(in) :: impact
-      !> Node; `steps_beyond` more have followed
+      !> Node; `steps_beyond` more nodes follow
       integer, intent(in) :: n
-      !> The trajectory, room for a node more
+      !> The trajectory, with room for one more node
       type(trajectory_t), intent(inout) :: trajectory
 
       real(wp) :: window(columns, 0:points - 1), node(columns), lower, upper, x
@@ -417,7 +418,7 @@ contains
       trajectory%last = n
    end subroutine insert_separation
 
-   !> Lagrange's polynomials of the points 0, 1 .. n
+   !> Lagrange polynomials of the points 0, 1 .. n
    pure function lagrange(n, x) result(c)
       !> Last point
       integer, intent(in) :: n
@@ -436,9 +437,9 @@ contains
       end do
    end function lagrange
 
-   !> Weights for integrals over the contact: Simpson's rule on the equal steps, with Simpson's 3/8
-   !> rule on three of them where their number is odd, and on the last step, which is shorter, the
-   !> parabola through the last three nodes
+   !> Weights of integrals over the contact: Simpson's rule on the equal steps, the 3/8 rule on
+   !> three of them if their number is odd, and on the shorter last step the parabola through the
+   !> last three nodes
    pure subroutine set_simpson_weights(dt, trajectory)
       !> Time step [s]
       real(wp), intent(in) :: dt
@@ -461,7 +462,7 @@ contains
             return
          end if
 
-         ! steps that go by pairs, up to node `even`; the other three up to node n - 1
+         ! Simpson's rule up to node `even`, the 3/8 rule from there to node n - 1
          even = n - 1
          if (mod(even, 2) == 1) even = even - 3
          if (even > 0) then
