@@ -1,6 +1,6 @@
-!> The public interface of the library: what a program needs to describe impacts, to solve one or
-!> many of them, to write the results and to fit materials. Each name is explained where it is
-!> declared, and used once in tests/unit/test_library.f90
+!> The public interface of the library: all that a program needs to describe impacts, solve one or
+!> many of them, write the results and fit materials. Each name is documented where it is declared,
+!> and used once in tests/unit/test_library.f90
 module vcor
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate

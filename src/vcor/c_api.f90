@@ -1,7 +1,8 @@
-!> The C interface, include/vcor.h: what a function does is told there
+!> The C interface; include/vcor.h documents its functions
 !>
-!> One thread at a time handles texts, in the critical section `vcor_c_api`: gfortran 12 keeps the
-!> length of a text that a function returns in static storage. Impacts are solved outside of it.
+!> Only one thread at a time handles texts, in the critical section `vcor_c_api`, because gfortran
+!> 12 keeps the length of a text returned by a function in static storage. Impacts are solved
+!> outside.
 module vcor_c_api
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_double, c_f_pointer, c_int, &
@@ -50,15 +51,15 @@ module vcor_c_api
 
    !> `vcor_column`
    type, bind(c) :: c_column_t
-      !> Name, or address of what is swept
+      !> Name, or address of a swept key
       character(kind=c_char) :: name(256) = c_null_char
       !> Symbol of the paper
       character(kind=c_char) :: symbol(16) = c_null_char
       !> Unit
       character(kind=c_char) :: unit(32) = c_null_char
-      !> What it is
+      !> Meaning
       character(kind=c_char) :: meaning(128) = c_null_char
-      !> Words that its numbers stand for
+      !> Words for which its numbers stand
       character(kind=c_char) :: labels(512) = c_null_char
       !> Number of the first word
       integer(c_int) :: first = 0
@@ -66,27 +67,27 @@ module vcor_c_api
       integer(c_int) :: is_whole = 0
    end type c_column_t
 
-   !> What `vcor_case` points at
+   !> Target of a `vcor_case`
    type :: handle_t
-      !> The case as it was read and set
+      !> The case as read and set
       type(case_t) :: case
-      !> What its impacts have in common
+      !> What is common to its impacts
       type(sweep_t) :: sweep
-      !> Addresses that `sweep` was built for; unallocated: it has to be built
+      !> Addresses for which `sweep` was built; unallocated if it must be built
       type(address_t), allocatable :: built_for(:)
    end type handle_t
 
-   !> Tables of `vcor_column_of`
+   !> Tables for `vcor_column_of`
    integer(c_int), parameter :: summary_columns = 0, history_columns = 1, compared_columns = 2
    integer :: k
-   !> The version for C
+   !> The version as a C string
    character(kind=c_char), target :: version_text(len(version) + 1) = &
       [(version(k:k), k=1, len(version)), c_null_char]
-   !> Process that has solved on several threads, 0: none
+   !> Process that has used several threads; 0: none
    integer(c_int) :: process = 0
 
    interface
-      !> Room for what the caller releases by free()
+      !> Allocate memory that the caller releases with free()
       function malloc(size) bind(c, name='malloc') result(room)
          import :: c_ptr, c_size_t
          !> Bytes
@@ -110,7 +111,7 @@ contains
       text = c_loc(version_text)
    end function vcor_library_version
 
-   !> A case from its text or its file
+   !> Read a case from text or from a file
    function vcor_read(text, name, self, error) bind(c) result(code)
       type(c_ptr), value :: text, name
       type(c_ptr), intent(out) :: self
@@ -164,7 +165,7 @@ contains
          call override(handle%case, fortran(address)//'='//fortran(value), trouble)
          call resolve(handle%case, fortran(address), place, message)
          if (allocated(handle%built_for)) then
-            ! points bring their own values of the addresses that it was built for
+            ! the points bring values for the addresses for which it was built
             if (all(.not. handle%built_for == place)) deallocate (handle%built_for)
          end if
       end if
@@ -172,7 +173,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_set
 
-   !> Value at an address
+   !> Get the value at an address
    function vcor_get(self, address, value, error) bind(c) result(code)
       type(c_ptr), value :: self, address
       type(c_ptr), intent(out) :: value
@@ -201,7 +202,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_get
 
-   !> Path, unit and meaning of an address
+   !> Get path, unit and meaning of an address
    function vcor_describe(self, address, column, error) bind(c) result(code)
       type(c_ptr), value :: self, address
       type(c_column_t), intent(out) :: column
@@ -225,7 +226,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_describe
 
-   !> The case as namelists
+   !> Get the case as namelists
    function vcor_case_text(self, complete, text, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), value :: complete
@@ -245,7 +246,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_case_text
 
-   !> A column of a table
+   !> Get the description of a column of a table
    function vcor_column_of(table, index, column) bind(c) result(found)
       integer(c_int), value :: table, index
       type(c_column_t), intent(out) :: column
@@ -280,7 +281,7 @@ contains
 !$omp end critical (vcor_c_api)
    end function vcor_column_of
 
-   !> What a &sweep group of the case varies
+   !> Get the address and the values that a &sweep group of the case varies
    function vcor_axis(self, index, column, n, values, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), value :: index
@@ -360,7 +361,7 @@ contains
       end if
       team = max(1, min(int(threads), most_threads))
       if (threads == 0) team = default_threads()
-      ! a child of fork has none of the threads that its parent works with
+      ! a child of fork does not have the threads of its parent
       current = getpid()
       if (process /= 0 .and. process /= current) team = 1
       if (process == 0 .and. team > 1 .and. n > 1) process = current
@@ -392,7 +393,7 @@ contains
       if (allocated(trouble) .or. failures%count == 0) code = report_error(trouble, error)
    end function vcor_solve
 
-   !> History of a single impact
+   !> Compute the history of a single impact
    function vcor_history(self, rows, values, error) bind(c) result(code)
       type(c_ptr), value :: self
       integer(c_int), intent(out) :: rows
@@ -431,7 +432,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_history
 
-   !> Relaxation modulus of a material
+   !> Compute the relaxation modulus of a material
    function vcor_relaxation(self, material, n, times, moduli, error) bind(c) result(code)
       type(c_ptr), value :: self, material
       integer(c_int), value :: n
@@ -450,7 +451,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_relaxation
 
-   !> Storage and loss modulus of a material
+   !> Compute storage and loss modulus of a material
    function vcor_complex_modulus(self, material, n, frequencies, storage, loss, error) bind(c) &
       result(code)
       type(c_ptr), value :: self, material
@@ -476,7 +477,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_complex_modulus
 
-   !> What the temperature of the impact multiplies all times of a material by
+   !> Get the factor by which the temperature of the impact multiplies all times of a material
    function vcor_time_factor(self, material, factor, error) bind(c) result(code)
       type(c_ptr), value :: self, material
       real(c_double), intent(inout) :: factor
@@ -491,7 +492,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_time_factor
 
-   !> The case by all methods
+   !> Solve the case by all methods
    function vcor_verify(self, results, error) bind(c) result(code)
       type(c_ptr), value :: self
       real(c_double), intent(inout) :: results(4, size(compared_names))
@@ -534,7 +535,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_verify
 
-   !> The place of an address in a case
+   !> Find the place of an address in a case
    subroutine find_place(case, address, place, error)
       type(case_t), intent(in) :: case
       character(len=*), intent(in) :: address
@@ -548,13 +549,13 @@ contains
       if (allocated(message)) call raise(error, error_usage, shortened(address)//': '//message)
    end subroutine find_place
 
-   !> Build what the impacts of a case have in common, unless it is there already
+   !> Build what is common to the impacts of a case, unless it has been built
    subroutine build(handle, addresses, values, error)
       !> The case
       type(handle_t), intent(inout) :: handle
-      !> Addresses that have values of their own
+      !> Addresses with values for each point
       type(c_ptr), intent(in) :: addresses(:)
-      !> The values, a column for each point
+      !> Values, one column per point
       real(wp), intent(in) :: values(:, :)
       type(error_t), allocatable, intent(out) :: error
 
@@ -578,7 +579,7 @@ contains
       allocate (own, source=swept_addresses(case))
       do i = 1, size(addresses)
          if (any(own == places(i))) cycle
-         ! a value that was set, or a list of them, has no say in a point that brings its own
+         ! a value or a list in the case has no effect on points that bring their own
          address = places(i)
          address%element = 0
          call case%oust(address, always=.true.)
@@ -588,7 +589,7 @@ contains
             call case%set(address, entry)
          end if
          entry = entry_t()
-         ! the &sweep group that a file would have; its values come later
+         ! the &sweep group that a file would have; its values are set later
          call case%add(find_group('sweep'), 0, item)
          entry%given = .true.
          entry%text = fortran(addresses(i))
@@ -614,7 +615,7 @@ contains
    !> Check a case and read its data files
    subroutine check(case, all_materials, error)
       type(case_t), intent(inout) :: case
-      !> Whether materials are read that are in no body
+      !> Whether to read materials that belong to no body
       logical, intent(in) :: all_materials
       type(error_t), allocatable, intent(out) :: error
 
@@ -623,7 +624,7 @@ contains
       if (.not. allocated(error)) call read_data(case, error)
    end subroutine check
 
-   !> A material of a case
+   !> Build a material of a case
    subroutine find_body(self, name, material, error)
       type(c_ptr), intent(in) :: self
       !> Name of the material
@@ -650,10 +651,10 @@ contains
 !$omp end critical (vcor_c_api)
    end subroutine find_body
 
-   !> What a `vcor_case` points at
+   !> Get the target of a `vcor_case`
    subroutine open_case(self, handle, error)
       type(c_ptr), intent(in) :: self
-      !> The case, null without one
+      !> The case, null if there is none
       type(handle_t), pointer, intent(out) :: handle
       !> Error of code `error_usage` if there is none, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -666,13 +667,13 @@ contains
       end if
    end subroutine open_case
 
-   !> Code of an error, which goes to the caller with its message
+   !> Report an error to the caller, and return its code
    function report_error(trouble, error) result(code)
       !> The error, unallocated for success
       type(error_t), allocatable, intent(in) :: trouble
       !> `vcor_error`, or null
       type(c_ptr), intent(in) :: error
-      !> 0 or its code
+      !> 0 on success, else the code of the error
       integer(c_int) :: code
 
       code = 0
@@ -684,7 +685,7 @@ contains
       end if
    end function report_error
 
-   !> Tell the caller a code and a line
+   !> Report a code and a line to the caller
    subroutine put_error(error, code, message)
       !> `vcor_error`, or null
       type(c_ptr), intent(in) :: error
@@ -700,9 +701,9 @@ contains
       call put_text(message, to%message)
    end subroutine put_error
 
-   !> Name, unit and meaning of a column
+   !> Set name, unit and meaning of a column
    pure subroutine put_column(column, name, unit, meaning)
-      !> The column, the rest of it empty
+      !> The column; other components are empty
       type(c_column_t), intent(out) :: column
       character(len=*), intent(in) :: name, unit, meaning
 
@@ -712,7 +713,7 @@ contains
       call put_text(trim(meaning), column%meaning)
    end subroutine put_column
 
-   !> A text into room of C, cut if it does not fit
+   !> Copy a text into a C array, cut if it does not fit
    pure subroutine put_text(text, room)
       character(len=*), intent(in) :: text
       character(kind=c_char), intent(inout) :: room(:)
@@ -726,10 +727,10 @@ contains
       room(n + 1) = c_null_char
    end subroutine put_text
 
-   !> A text for C, released by free()
+   !> Copy of a text for C, to be released with free()
    function c_text(text) result(copy)
       character(len=*), intent(in) :: text
-      !> The same; null without memory
+      !> The copy; null if there is no memory
       type(c_ptr) :: copy
 
       character(kind=c_char), pointer :: letters(:)
@@ -740,10 +741,10 @@ contains
       call put_text(text, letters)
    end function c_text
 
-   !> Numbers for C, released by free()
+   !> Copy of numbers for C, to be released with free()
    function c_numbers(numbers) result(copy)
       real(wp), intent(in) :: numbers(:)
-      !> The same; null without memory
+      !> The copy; null if there is no memory
       type(c_ptr) :: copy
 
       real(c_double), pointer :: room(:)

@@ -8,7 +8,7 @@ module vcor_error
    public :: error_internal, error_usage, error_input, error_file, error_numerical
    public :: code_names, code_meanings
 
-   !> Exit codes of the program; 0 is success
+   !> Exit codes of the program (0: success): a fault of the program
    integer, parameter :: error_internal = 1
    !> The command line is wrong
    integer, parameter :: error_usage = 2
@@ -19,10 +19,10 @@ module vcor_error
    !> The numerical solution failed
    integer, parameter :: error_numerical = 5
 
-   !> What the program's exit codes are called, from 0 on
+   !> Names of the exit codes
    character(len=*), parameter :: code_names(0:5) = [character(len=17) :: "success", &
       "internal error", "usage", "input", "file", "numerical failure"]
-   !> What they mean, from 0 on
+   !> Meanings of the exit codes
    character(len=*), parameter :: code_meanings(0:5) = [character(len=64) :: &
       "what was asked for is done", &
       "a fault of the program, please report it", &
@@ -33,14 +33,14 @@ module vcor_error
 
    !> One failure
    type :: error_t
-      !> What kind of failure: one of the `error_*` constants, the program's exit code
+      !> One of the `error_*` constants, which is the exit code of the program
       integer :: code = error_internal
       !> One line: what was found and what is expected
       character(len=:), allocatable :: message
-      !> Names of the arguments that it is about, separated by blanks: the one that is missing, or
-      !> those that contradict each other; unallocated where nobody can say
+      !> Names of the arguments concerned, separated by blanks: the missing one, or those that
+      !> contradict each other; unallocated if unknown
       character(len=:), allocatable :: about
-      !> Which of several things has these arguments: the number of a material; 0: none of them
+      !> Number of the material to which these arguments belong; 0 for others
       integer :: item = 0
    end type error_t
 
@@ -54,7 +54,7 @@ contains
       integer, intent(in) :: code
       !> One line: what was found and what is expected
       character(len=*), intent(in) :: message
-      !> Names of the arguments that it is about
+      !> Names of the arguments concerned, separated by blanks
       character(len=*), intent(in), optional :: about
 
       if (allocated(error)) deallocate(error)

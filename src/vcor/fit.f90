@@ -1,4 +1,4 @@
-!> Identification of a material: the parameters of a model from samples of its moduli
+!> Identification of a material: fits the parameters of a model to samples of its moduli
 module vcor_fit
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_kinds, only : wp
@@ -17,12 +17,12 @@ module vcor_fit
    public :: fit_t, estimate_t, samples_t, moduli_of, fit_material, check_fixed, fixable_parameters
    public :: state_free, state_fixed, state_bound, unseen_earlier, unseen_later
 
-   !> Relative change of the modulus below which nothing relaxes
+   !> Relative change of the modulus below which it counts as constant
    real(wp), parameter :: constant = 1.0e-6_wp
 
 contains
 
-   !> Names of the parameters of a model that can be given, separated by blanks
+   !> Names of the parameters of a model that can be fixed, separated by blanks
    pure function fixable_parameters(model) result(names)
       character(len=*), intent(in) :: model
       character(len=:), allocatable :: names
@@ -37,14 +37,14 @@ contains
       end do
    end function fixable_parameters
 
-   !> Check parameters that are to have a given value
+   !> Check parameters that are to be fixed at given values
    pure subroutine check_fixed(model, fixed, error)
       !> One of `identifiable_models`
       character(len=*), intent(in) :: model
       !> The parameters, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
-      !> Error of code `error_usage`, unallocated if the model has them, each is given once, and all
-      !> are within their ranges
+      !> Error of code `error_usage`; unallocated if all are parameters of the model, given once and
+      !> within range
       type(error_t), allocatable, intent(out) :: error
 
       real(wp), parameter :: largest = 1.0e30_wp, smallest = 1.0e-30_wp
@@ -90,13 +90,13 @@ contains
       type(fit_t), intent(out) :: fit
       !> One of `identifiable_models`
       character(len=*), intent(in) :: model
-      !> Terms of a Prony series; 0: as many as the data support
+      !> Number of terms of a Prony series; 0: as many as the data support
       integer, intent(in) :: terms
-      !> Parameters that have a given value, shape (n)
+      !> Fixed parameters, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
       type(samples_t), intent(in) :: samples
-      !> Error of code `error_usage` if parameters cannot have their given values, `error_input` if
-      !> the data cannot be fitted, `error_numerical` if the fit fails; unallocated on success
+      !> Error of code `error_usage` if the fixed values are not possible, `error_input` if the data
+      !> cannot be fitted, `error_numerical` if the fit fails; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: equilibrium
@@ -131,10 +131,10 @@ contains
       end if
    end subroutine fit_material
 
-   !> Whether the modulus falls with time, or rises with frequency, on the whole: by the slope of
-   !> its logarithm over that of time or frequency
+   !> Whether the modulus falls with time, or rises with frequency, on the whole: by the sign of its
+   !> regression slope on logarithmic scales
    pure function falls(samples) result(yes)
-      !> The samples, two or more
+      !> The samples, at least two
       type(samples_t), intent(in) :: samples
       logical :: yes
 

@@ -1,5 +1,5 @@
-!> Parts of a JSON document, UTF-8. A comma and a blank, or the end of a line, stand at the end of
-!> each part; `object` and `array` take those of their last part away
+!> Parts of a JSON document, UTF-8. Each part ends with a comma and a blank or a line end, which
+!> `object` and `array` remove from their last part
 module vcor_json
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite
    use vcor_kinds, only : wp
@@ -9,7 +9,7 @@ module vcor_json
 
    public :: object, array, member, words, strings, numbers
 
-   !> A member of an object: a text, a number, or true or false
+   !> A member of an object with a text, a real or a logical value
    interface member
       module procedure text_member
       module procedure real_member
@@ -21,7 +21,7 @@ module vcor_json
 
 contains
 
-   !> Texts as strings
+   !> Texts as a list of strings
    pure function strings(texts) result(list)
       character(len=*), intent(in) :: texts(:)
       character(len=:), allocatable :: list
@@ -34,7 +34,7 @@ contains
       end do
    end function strings
 
-   !> Numbers in the digits that read back as the same bits; null for what is not finite
+   !> Numbers with the digits that restore the same bits; null if not finite
    pure function numbers(values) result(list)
       real(wp), intent(in) :: values(:)
       character(len=:), allocatable :: list
@@ -59,7 +59,7 @@ contains
       text = '{'//members(:len(members) - 2)//'},'//nl
    end function object
 
-   !> A list, or a member whose value is one
+   !> A list as an array, or as a member with this value
    pure function array(list, name) result(text)
       character(len=*), intent(in) :: list
       character(len=*), intent(in), optional :: name
@@ -69,7 +69,7 @@ contains
       if (present(name)) text = quoted(name)//': '//text
    end function array
 
-   !> A member whose value is a list of words, given with single blanks between them
+   !> A member whose value is an array of words; the list has single blanks between them
    pure function words(name, list) result(text)
       character(len=*), intent(in) :: name, list
       character(len=:), allocatable :: text
@@ -111,7 +111,7 @@ contains
       text = quoted(name)//': '//trim(merge('true ', 'false', value))//', '
    end function logical_member
 
-   !> A text as a string; blanks at its ends do not count
+   !> A text as a string, without blanks at its ends
    pure function quoted(words) result(text)
       character(len=*), intent(in) :: words
       character(len=:), allocatable :: text

@@ -1,5 +1,5 @@
-!> Texts, that is case, names, numbers in their shortest form, and what others wrote made fit for
-!> one line of a message
+!> Texts: case, names, numbers in their shortest form, and foreign text made safe for a one-line
+!> message
 module vcor_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_kinds, only : wp
@@ -10,16 +10,16 @@ module vcor_text
    public :: printable, shortened, is_utf8, has_control, is_control, control_in, name_flaw
    public :: buffer_t
 
-   !> Longest part of somebody's text that a message repeats [bytes]
+   !> Longest part of a foreign text that a message repeats [bytes]
    integer, parameter :: shown_bytes = 60
-   !> Largest magnitude whose rounding to fewer digits cannot overflow
+   !> Largest magnitude that can be rounded to fewer digits without overflow
    real(wp), parameter :: round_limit = 1.0e300_wp
 
    !> A growing text
    type :: buffer_t
       !> Bytes so far
       integer :: length = 0
-      !> Room for bytes, the first `length` are in use
+      !> Space for bytes, of which the first `length` are in use
       character(len=:), allocatable, private :: room
    contains
       procedure :: add, text
@@ -41,7 +41,7 @@ contains
       end do
    end function lower
 
-   !> A name in the form that is compared: lower case, underscores for blanks
+   !> A name in its form for comparison: lower case, underscores for blanks
    pure function canonical_name(name) result(canonical)
       !> Name of a material
       character(len=*), intent(in) :: name
@@ -66,10 +66,10 @@ contains
       text = trim(buffer)
    end function integer_text
 
-   !> A text in quotes, as a namelist has it
+   !> A text in quotes, as in a namelist
    pure function quoted(text) result(between)
       character(len=*), intent(in) :: text
-      !> The text between single quotes, single quotes inside doubled
+      !> The text between single quotes, with single quotes inside doubled
       character(len=:), allocatable :: between
       integer :: i, start
 
@@ -84,7 +84,7 @@ contains
       between = between//text(start:)//"'"
    end function quoted
 
-   !> A real number in the shortest form that reads back as the same number: `0.01`, `7.0e10`
+   !> A real number in the shortest form that restores the same bits: `0.01`, `7.0e10`
    pure function real_text(number) result(text)
       !> The number, finite or not
       real(wp), intent(in) :: number
@@ -108,7 +108,7 @@ contains
       text = tidied(trim(adjustl(buffer)))
    end function real_text
 
-   !> A number from an `es` format without the zeros nobody needs
+   !> A number from an `es` format, without superfluous zeros
    pure function tidied(scientific) result(text)
       !> Such as `-1.50000000000000E+003`
       character(len=*), intent(in) :: scientific
@@ -141,7 +141,7 @@ contains
       end if
    end function tidied
 
-   !> Whether a text holds control characters
+   !> Whether a text contains control characters
    pure function has_control(text) result(yes)
       character(len=*), intent(in) :: text
       !> True if it does; a tab does not count
@@ -180,11 +180,11 @@ contains
       end do
    end function is_utf8
 
-   !> Bytes of the UTF-8 character a text begins with
+   !> Number of bytes of the UTF-8 character at the start of a text
    pure function utf8_width(text) result(width)
       !> At least one byte
       character(len=*), intent(in) :: text
-      !> 1 to 4, 0 when it is not UTF-8
+      !> 1 to 4, 0 if it is not UTF-8
       integer :: width
       integer :: first, i
 
@@ -206,19 +206,19 @@ contains
          if (ichar(text(i:i)) < 128 .or. ichar(text(i:i)) > 191) width = 0
          if (width == 0) return
       end do
-      ! Forms that are longer than they need be, surrogates, and what is beyond Unicode
+      ! overlong forms, surrogates, and code points beyond Unicode
       if (width < 3) return
       i = ichar(text(2:2))
       if (first == 224 .and. i < 160 .or. first == 237 .and. i > 159 &
          .or. first == 240 .and. i < 144 .or. first == 244 .and. i > 143) width = 0
    end function utf8_width
 
-   !> A text as a message may show it: no control characters, nothing that is not UTF-8
+   !> A text that a message may show: no control characters, only valid UTF-8
    pure function printable(text) result(shown)
       !> Any bytes
       character(len=*), intent(in) :: text
-      !> The same with a blank for tabs and line ends, a question mark for each other byte that
-      !> cannot be shown
+      !> The text with a blank for each tab and line end, and a question mark for each other byte
+      !> that cannot be shown
       character(len=len(text)) :: shown
       character(len=*), parameter :: white = achar(9)//achar(10)//achar(13)
       integer :: i, width
@@ -230,7 +230,7 @@ contains
          if (width == 1) then
             if (is_control(text(i:i))) shown(i:i) = merge(" ", "?", index(white, text(i:i)) > 0)
          else if (width == 2) then
-            ! The second set of control characters, U+0080 to U+009F
+            ! the second set of control characters, U+0080 to U+009F
             if (ichar(text(i:i)) == 194 .and. ichar(text(i+1:i+1)) < 160) shown(i:i+1) = "??"
          else if (width == 0) then
             shown(i:i) = "?"
@@ -239,7 +239,7 @@ contains
       end do
    end function printable
 
-   !> A text as a message may repeat it: printable, and cut with three dots where it is long
+   !> A text that a message may repeat: printable, and cut with three dots if it is long
    pure function shortened(text) result(shown)
       !> Any bytes
       character(len=*), intent(in) :: text
@@ -251,7 +251,7 @@ contains
          shown = printable(text)
          return
       end if
-      ! Not in the middle of a UTF-8 character
+      ! do not cut a UTF-8 character
       last = shown_bytes - 3
       do while (last > 1 .and. ichar(text(last+1:last+1)) >= 128 &
          .and. ichar(text(last+1:last+1)) < 192)
@@ -289,8 +289,8 @@ contains
       end do
    end function control_in
 
-   !> What is wrong with a name: the one rule for names of files, wherever they are written. A line
-   !> end leaves the comment of a script, an escape sequence goes to a terminal, and some
+   !> What is wrong with a name of a file; this rule holds wherever files are written. A line end
+   !> would leave the comment of a script, an escape sequence would act on the terminal, and some
    !> programs run what follows `|` or `<` at the beginning of a name
    pure function name_flaw(name) result(flaw)
       !> Name of a file or a folder, or a path of such names
@@ -315,7 +315,7 @@ contains
       end do
    end function name_flaw
 
-   !> Put a text at the end
+   !> Append a text
    pure subroutine add(self, part)
       class(buffer_t), intent(inout) :: self
       character(len=*), intent(in) :: part
@@ -335,7 +335,7 @@ contains
    !> The text so far
    pure function text(self) result(all)
       class(buffer_t), intent(in) :: self
-      !> Everything that was added
+      !> All that was added
       character(len=self%length) :: all
 
       if (self%length > 0) all = self%room(:self%length)

@@ -1,5 +1,5 @@
-!> The verification table: laws of impact that need no reference, and independent numbers. What each
-!> law says and expects stands under verify/
+!> Laws of impact for the verification table, which need no reference solution or have an
+!> independent one. Each law is explained under verify/
 module vcor_verify
    use vcor_error, only : error_internal, error_t, raise
    use vcor_verify_body, only : thick_body, thin_body

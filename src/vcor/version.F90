@@ -9,9 +9,9 @@ module vcor_version
 #error "VCOR_VERSION is not defined, expected the version of fpm.toml, as in -DVCOR_VERSION=1.2.3"
 #endif
 
-   ! The macro is a bare token (fpm passes no other form of the version), and the preprocessor of
-   ! gfortran makes no string of a token. It works line by line, so it replaces a token that has a
-   ! line of the string for itself.
+   ! The macro is a bare token, since fpm passes the version in no other form, and gfortran's
+   ! preprocessor cannot turn a token into a string. But it works line by line, and replaces a token
+   ! that has a line of the string to itself.
    !> Version as in fpm.toml, such as `1.2.3`
    character(len=*), parameter :: version = "&
       &VCOR_VERSION&

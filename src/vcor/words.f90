@@ -1,5 +1,5 @@
-!> Lists of words in one text, with blanks between them: the choices of a key, the names of groups;
-!> and the known word nearest to a misspelt one
+!> Lists of words, separated by blanks in one text, such as the choices of a key or the names of
+!> groups; and the known word that is nearest to a misspelt one
 module vcor_words
    use vcor_text, only : lower
    implicit none
@@ -8,14 +8,14 @@ module vcor_words
    public :: contains_word, list_of_words, spelled, join_words, nearest_name, edit_distance, &
       suggestion, longest_name
 
-   !> Longest name that is compared, or taken from a list [bytes]
+   !> Longest name that is compared or taken from a list [bytes]
    integer, parameter :: longest_name = 64
-   !> Shortest name that is taken for the beginning of a known one [bytes]
+   !> Shortest name that counts as the beginning of a known one [bytes]
    integer, parameter :: shortest_beginning = 3
 
 contains
 
-   !> The words of a list one by one
+   !> The words of a list as an array
    pure function list_of_words(words) result(list)
       !> Words separated by single blanks, each of at most `longest_name` bytes
       character(len=*), intent(in) :: words
@@ -31,24 +31,24 @@ contains
       end do
    end function list_of_words
 
-   !> Whether a list of words holds a word
+   !> Whether a list contains a word
    pure function contains_word(words, word) result(yes)
       !> Words separated by blanks
       character(len=*), intent(in) :: words
       character(len=*), intent(in) :: word
-      !> True if it is there
+      !> True if it does
       logical :: yes
 
       yes = len_trim(word) > 0 .and. index(trim(word), " ") == 0
       if (yes) yes = index(" "//words//" ", " "//trim(word)//" ") > 0
    end function contains_word
 
-   !> A word as it is spelled in a list of words: upper and lower case make no difference
+   !> A word as spelled in a list; upper and lower case are equal
    pure function spelled(words, word) result(same)
       !> Words separated by blanks
       character(len=*), intent(in) :: words
       character(len=*), intent(in) :: word
-      !> The word of the list; in lower case when it is not there
+      !> The word as in the list; in lower case if it is not there
       character(len=len(word)) :: same
       integer :: place
 
@@ -62,7 +62,7 @@ contains
    pure function join_words(words) result(text)
       !> Words separated by blanks
       character(len=*), intent(in) :: words
-      !> The same separated by a comma and a blank
+      !> Words separated by a comma and a blank
       character(len=:), allocatable :: text
       integer :: position
 
@@ -76,7 +76,7 @@ contains
       end do
    end function join_words
 
-   !> What to say about an unknown name: the nearest known one, or as many as a line takes
+   !> Suggestion for an unknown name: the nearest known one, or as many as fit in a line
    pure function suggestion(name, known) result(text)
       !> The unknown name
       character(len=*), intent(in) :: name
@@ -105,13 +105,13 @@ contains
       character(len=*), intent(in) :: name
       !> Known names separated by single blanks, any case
       character(len=*), intent(in) :: known
-      !> The nearest, empty when none is near
+      !> The nearest one, empty if none is near
       character(len=:), allocatable :: word
       integer :: first, last, distance, least, most
 
       word = ""
       if (len_trim(name) == 0 .or. len_trim(name) > longest_name) return
-      ! One slip in a short name, one in three letters of a long one
+      ! one error in a short name, one per three letters in a long one
       most = max(1, (len_trim(name) + 1)/3)
       least = most + 1
       first = 1
@@ -128,7 +128,7 @@ contains
       end do
    end function nearest_name
 
-   !> Whether a name is the beginning of a part of a known one, as thickness of half_thickness
+   !> Whether a name is the beginning of a part of a known one, such as thickness of half_thickness
    pure function is_beginning(name, word) result(yes)
       !> The unknown name, any case
       character(len=*), intent(in) :: name
@@ -140,8 +140,8 @@ contains
       if (yes) yes = index("_"//lower(word), "_"//lower(trim(name))) > 0
    end function is_beginning
 
-   !> Least number of letters put in, left out, changed, or swapped with their neighbour that makes
-   !> one word the other
+   !> Smallest number of letters to insert, delete, change, or swap with a neighbour that turns one
+   !> word into the other
    pure function edit_distance(a, b) result(distance)
       !> One word
       character(len=*), intent(in) :: a
@@ -151,7 +151,7 @@ contains
       integer :: d(-1:len(a), -1:len(b))
       integer :: i, j, change
 
-      ! The rows and columns of index -1 are for swaps only and never the least
+      ! index -1 serves swaps only and is never the minimum
       d = len(a) + len(b)
       d(0:, 0) = [(i, i = 0, len(a))]
       d(0, 0:) = [(j, j = 0, len(b))]
