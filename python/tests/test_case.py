@@ -13,6 +13,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from conftest import PAPER, ROOT, SWEEPS
@@ -138,6 +139,18 @@ def test_numbers_that_are_set_in_a_loop(sls, program):
     assert sls.points({"rubber.beta": [2400.0]}).cor[0] == float(cor)
 
 
+def test_what_is_set_by_another_name_of_an_address(sls):
+    """The last one counts in solve as it does in run."""
+    sls["impact.velocity"] = 1.0
+    for name, value in [("IMPACT.VELOCITY", 2), ("Impact.velocity", 3.0), ("impact.velocity", 4)]:
+        sls[name] = value
+        assert sls.solve()["cor"] == sls.run().cor
+    case = vcor.Case(GROUPS)
+    case["rubber.moduli(2)"] = 5e6
+    case["rubber.moduli"] = [1e6, 2e6]
+    assert case.solve()["cor"] == case.run().cor == vcor.Case(GROUPS).run().cor
+
+
 def test_a_height_in_place_of_a_velocity(sls):
     """The last one set counts, and one that varies before both."""
     sls["impact.drop_height"] = 0.5
@@ -178,6 +191,27 @@ def test_a_data_file_is_found_from_the_case(tmp_path):
     case = vcor.read(ROOT / "examples/steel_on_measured_rubber.nml")
     assert 0.0 < case.solve()["cor"] < 1.0
     assert repr(pickle.loads(pickle.dumps(case)).solve()) == repr(case.solve())
+
+
+def test_a_data_file_is_found_from_elsewhere(tmp_path, monkeypatch):
+    """From a copy, a pickle and a saved case, in another folder or process than at first."""
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    (tmp_path / "a" / "points.csv").write_text("1e-6 2e6\n1e-3 1e6\n")
+    material = "&material name = 'x', model = 'table', poisson_ratio = 0.4, file = 'points.csv' /\n"
+    rest = "&impact velocity = 1 /\n&sphere radius = 0.01, mass = 0.01, material = 'x' /\n"
+    (tmp_path / "a" / "c.nml").write_text(
+        material + rest + "&plate waves = 'none', material = 'x' /\n"
+    )
+    monkeypatch.chdir(tmp_path / "a")
+    case = vcor.read("c.nml")
+    wanted = case.solve()["cor"]
+    case.save("again.nml")
+    assert "file = 'points.csv'" in (tmp_path / "a" / "again.nml").read_text()
+    monkeypatch.chdir(tmp_path / "b")
+    case.save("c.nml")
+    for one in (case.copy(), pickle.loads(pickle.dumps(case)), vcor.read("c.nml")):
+        assert one.solve()["cor"] == wanted
 
 
 def test_files_of_materials_complete_a_case(tmp_path):
@@ -354,6 +388,13 @@ def test_numbers_of_other_kinds(sls):
     assert sls.solve({"impact.velocity": np.float32(2)})["cor"] == expected[1]
 
 
+def test_tables_and_series_of_pandas(sls):
+    table = pd.DataFrame({"impact.velocity": [1.0, 2.0], "rubber.beta": [600, 1200]})
+    found = sls.points(table, ["cor"])
+    assert sls.points(table[:0], ["cor"]).sizes == {"point": 0}
+    assert sls.solve(table.iloc[1], ["cor"])["cor"] == found.cor[1]
+
+
 def test_whether_an_address_exists(sls):
     assert "impact.velocity" in sls
     assert "solver.time_step" in sls
@@ -462,6 +503,17 @@ def test_the_progress_bar(sls, capsys, monkeypatch):
     assert "2/2" in capsys.readouterr().err
     sls.points({"impact.velocity": [1.0, 2.0]})
     assert capsys.readouterr().err == ""
+
+
+def test_a_case_may_outlive_the_modules():
+    """The interpreter empties them when it ends, some before the last case."""
+    script = (
+        f"import vcor\ncase = vcor.read({str(PAPER / 'sls.nml')!r})\n"
+        "for name in list(vars(vcor._library)): setattr(vcor._library, name, None)\n"
+        "del case\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, check=True)
+    assert done.stdout == done.stderr == b""
 
 
 def test_nothing_is_printed(tmp_path):

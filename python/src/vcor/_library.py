@@ -16,6 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+#: Largest seed of random numbers
+MOST_SEED = 2**63 - 1
 
 
 class Error(Exception):
@@ -191,6 +193,23 @@ def encoded(text: str | bytes) -> bytes:
     return data
 
 
+def whole(given: Any, name: str, low: int, high: int) -> int:
+    """A whole number in a range; anything else is refused by its name."""
+    if not isinstance(given, (int, np.integer)) or not low <= given <= high:
+        raise UsageError(f"{name}: found {given!r:.60}, expected a whole number from {low} to "
+                         f"{high}")  # fmt: skip
+    return int(given)
+
+
+def within(given: Any, name: str, low: float, high: float) -> float:
+    """A number above an end, up to another; anything else is refused by its name."""
+    expected = f"a number in ({low:g}, {high:g}]"
+    number = float(numbers(given, name, 0, expected))
+    if not low < number <= high:
+        raise UsageError(f"{name}: found {number:g}, expected {expected}")
+    return number
+
+
 def numbers(
     given: Any, name: str, dimensions: float = 1, expected: str = "numbers in one dimension"
 ) -> Floats:
@@ -249,6 +268,5 @@ def is_altered(path: str) -> bool:
     return bool(_library.vcor_is_altered(os.fsencode(path)))
 
 
-def free_case(case: c_void_p) -> None:
-    """Release a case of the library."""
-    _library.vcor_free(case)
+#: Release a case
+free_case = _library.vcor_free

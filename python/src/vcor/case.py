@@ -21,7 +21,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _library
 from ._command import read_text, write
-from ._library import Error, Floats, InputError, NoResultWarning, NumericalError, call, numbers
+from ._library import (
+    Error,
+    Floats,
+    InputError,
+    NoResultWarning,
+    NumericalError,
+    call,
+    encoded,
+    numbers,
+    whole,
+)
 
 Value = bool | int | float | str | Sequence[float]
 Groups = Mapping[str, Mapping[str, Any] | Sequence[Mapping[str, Any]]]
@@ -31,7 +41,7 @@ _CHUNK_TIME = 0.3
 #: Status of a point whose values make no impact
 _INVALID = 3
 #: Most threads and points, as the program has them
-_MOST_THREADS, _MOST_POINTS = 1024, 100_000_000
+_MOST_THREADS, MOST_POINTS = 1024, 100_000_000
 #: Sweeps that take longer show a progress bar in a terminal [s]
 _BAR_DELAY = 1.0
 
@@ -109,6 +119,8 @@ class Case:
     def _read(self, text: str | None, name: str) -> None:
         """Begin with a text, or with the file `name` if it is None."""
         self.name = name
+        # the folder of the process may change
+        self._path = str(Path(name).absolute())
         self._pointer = c_void_p()
         call("vcor_read", text or c_char_p(), os.fsencode(name), byref(self._pointer))
         if text is None:
@@ -117,18 +129,18 @@ class Case:
         self._settings: dict[str, str] = {}
         self._numbers: dict[str, float] = {}
 
-    def __del__(self) -> None:
+    # what modules hold may be gone when the interpreter ends
+    def __del__(self, free: Any = _library.free_case) -> None:
         if getattr(self, "_pointer", None):
-            _library.free_case(self._pointer)
+            free(self._pointer)
 
     def __setitem__(self, address: str, value: Value) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         written = _written(value, address) if not isinstance(value, str) else value
         call("vcor_set", self._pointer, address, written)
-        self._settings[address] = written
-        self._numbers.pop(address, None)
-        if isinstance(value, float):
-            self._numbers[address] = value
+        self._settings = {**self._settings, address: written}
+        # a text or a list may set what is known by another address, too
+        self._numbers = {**self._numbers, address: value} if isinstance(value, float) else {}
 
     def __getitem__(self, address: str) -> Value | None:
         """Value at an address, given or by default; None if there is none."""
@@ -148,7 +160,7 @@ class Case:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle: the text and what was set; data files stay where they are."""
-        return _restored, (self._text, str(Path(self.name).absolute()), self.name, self._settings)
+        return _restored, (self._text, self._path, self.name, self._settings)
 
     def __str__(self) -> str:
         """The case as namelists, what was given."""
@@ -159,15 +171,18 @@ class Case:
 
     def copy(self) -> Case:
         """Another case of the same values."""
-        return _restored(self._text, self.name, self.name, self._settings)
+        return _restored(self._text, self._path, self.name, self._settings)
 
     def text(self, *, complete: bool = False) -> str:
         """The case as namelists, with `complete` also every default; the case is checked."""
         return _library.text_of("vcor_case_text", self._pointer, int(complete)) or ""
 
     def save(self, path: str | os.PathLike[str], *, complete: bool = False) -> None:
-        """Write the case to a file that the program reads."""
-        write(Path(path), self.text(complete=complete).encode())
+        """Write the case to a file that the program reads; data files stay where they are."""
+        text, folder = self.text(complete=complete), Path(self._path).parent
+        if Path(path).absolute().parent != folder:
+            text = with_folder(text, folder)
+        write(Path(path), text.encode())
 
     def material(self, name: str) -> Material:
         """Material of the case by its name."""
@@ -237,10 +252,10 @@ class Case:
         columns = _library.columns(0)
         names = _names(quantities)
         # numbers that were set go in as those of a point: nothing is checked and built anew then
-        point = self._numbers if values is None else values
+        point = self._numbers if values is None else scalars(values)
         remark = ""
         if point:
-            row = np.array([*arrays(point, 0, "a number").values()]).T
+            row = np.array([[*point.values()]])
             try:
                 found, remark = self._solve(list(point), row, [*names, "status"], 1)
             except Error:
@@ -289,7 +304,7 @@ class Case:
         columns = np.broadcast_arrays(*given.values())
         names = _names(quantities)
         table = np.stack(columns, axis=1)
-        results = self._solve_all(list(values), table, names, threads, progress)
+        results = self._solve_all(list(given), table, names, threads, progress)
         coords = {
             address: ("point", column) for address, column in zip(values, columns, strict=True)
         }
@@ -320,9 +335,9 @@ class Case:
             The columns over a dimension for each address, named by it. Otherwise as `points`.
         """
         axes = arrays(values)
-        if (count := math.prod(map(len, axes.values()))) > _MOST_POINTS:
+        if (count := math.prod(map(len, axes.values()))) > MOST_POINTS:
             raise InputError(f"{self.name}: the grid has {count} points, expected at most "
-                             f"{_MOST_POINTS}")  # fmt: skip
+                             f"{MOST_POINTS}")  # fmt: skip
         grid = np.meshgrid(*axes.values(), indexing="ij")
         table = np.stack([axis.ravel() for axis in grid], axis=1)
         names = _names(quantities)
@@ -422,10 +437,8 @@ class Case:
         """Solve points in parts that take a moment each, for the bar and Ctrl-C."""
         if threads is None:
             threads = int(os.environ.get("SLURM_CPUS_PER_TASK", "0"))
-        elif not isinstance(threads, (int, np.integer)) or not 1 <= threads <= _MOST_THREADS:
-            raise _library.UsageError(f"threads: found {threads!r}, expected a whole number from 1 "
-                                      f"to {_MOST_THREADS}")  # fmt: skip
-        threads = int(threads)
+        else:
+            threads = whole(threads, "threads", 1, _MOST_THREADS)
         results = np.empty((len(table), len(names)))
         remarks = []
         length, start = 64, 0
@@ -585,9 +598,18 @@ def _value(text: str) -> Value:
 
 def arrays(values: Mapping[str, ArrayLike], *expected: Any) -> dict[str, Floats]:
     """Columns of numbers, each as an array of one dimension."""
-    if not hasattr(values, "items") or not len(values):
+    if not hasattr(values, "items") or not len(values.keys()):
         raise InputError("expected at least one column of numbers, by its address or name")
+    for name in values.keys():  # noqa: SIM118  (those of a Series are no values)
+        encoded(name)
     return {name: np.atleast_1d(numbers(given, name, *expected)) for name, given in values.items()}
+
+
+def scalars(values: Mapping[str, float] | None) -> dict[str, float]:
+    """Numbers by their addresses or names; None: none."""
+    if values is None or isinstance(values, Mapping) and not values:
+        return {}
+    return {name: float(one[0]) for name, one in arrays(values, 0, "a number").items()}
 
 
 def _names(quantities: Sequence[str] | None) -> list[str]:
@@ -595,7 +617,7 @@ def _names(quantities: Sequence[str] | None) -> list[str]:
     return listed(list(_library.columns(0)) if quantities is None else quantities)
 
 
-def listed(names: Sequence[str]) -> list[str]:
+def listed(names: Any) -> list[Any]:
     """Names as a list; a text is one."""
     return [names] if isinstance(names, str) or not np.iterable(names) else list(names)
 
