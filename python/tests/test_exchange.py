@@ -296,7 +296,7 @@ def test_laws_that_are_not_there():
     # below exp(-2) a dashpot that never pulls is overdamped: there is no number to enter
     low = np.full(3, 0.13)
     assert math.isnan(clipped(LINEAR).fit(VELOCITIES[:3], low, np.ones(3), 1e-3).entered)
-    with pytest.raises(vcor.UsageError, match="expected 1 to 2"):
+    with pytest.raises(vcor.UsageError, match="from 1 to 2"):
         vcor.export(BEADS, "yade", [1.0, 2.0], law=3)
 
 

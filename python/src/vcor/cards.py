@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import re
 import sys
@@ -13,9 +14,9 @@ import numpy as np
 
 from . import _command
 from ._command import number
-from ._library import InputError, NumericalError, UsageError
+from ._library import InputError, NumericalError, UsageError, numbers, whole, within
 from .card_formats import FORMATS, UNITS, Card, Source, Terms
-from .case import Case
+from .case import MOST_POINTS, Case
 from .sources import material_case
 
 #: Times of an impact that matter, over the time of contact
@@ -67,7 +68,10 @@ def card(
     InputError
         No card holds the material, or no sum of so many terms is accurate enough.
     """
-    if not 0 < accuracy < 1:
+    if poisson_ratio is not None:
+        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+    whole(terms, "terms", 1, MOST_POINTS)
+    if not 0 < numbers(accuracy, "accuracy", 0, "a number") < 1:
         raise UsageError(f"found --accuracy {accuracy:g}, expected more than 0 and less than 1")
     has_impact = True
     if isinstance(case, Case):
@@ -148,9 +152,11 @@ def _sum(
     from scipy.integrate import trapezoid
     from scipy.optimize import nnls
 
-    first, last = band
-    if not 0 < first < last:
-        raise UsageError(f"found --band {first:g}:{last:g}, expected 0 < FROM < TO")
+    ends = numbers(band, "band", 1, "two times [s]")
+    if ends.shape != (2,) or not 1e-30 <= ends[0] < ends[1] <= 1e30:
+        found = ":".join(f"{end:g}" for end in np.atleast_1d(ends))
+        raise UsageError(f"found --band {found}, expected 1e-30 <= FROM < TO <= 1e30")
+    first, last = ends
     t = np.geomspace(first, last, int(_POINTS * np.log10(last / first)) + 2)
     relaxation = case.material(material).relaxation(t)
     before = np.geomspace(first * 1e-35, first, 4001)
@@ -209,6 +215,10 @@ def read_card(
     Card
         The material in SI units; `str` of it is a &material group.
     """
+    if poisson_ratio is not None:
+        within(poisson_ratio, "--poisson-ratio", -1, 0.5)
+    if modulus is not None:
+        within(modulus, "modulus", 0, math.inf)
     text = _command.read_text(path)
     if code is None:
         code = next((code for code, mark in _MARKS if re.search(mark, text)), None)
@@ -259,8 +269,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _work(options: argparse.Namespace) -> None:
     nu = options.poisson_ratio
-    if nu is not None and not -1 < nu <= 0.5:
-        raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")
     if re.search(r"(?im)^\s*&material\b", _command.read_text(options.file)):
         if not options.code:
             raise UsageError(f"{options.file} is a case, expected --material and --for")

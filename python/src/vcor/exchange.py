@@ -26,7 +26,15 @@ from scipy.interpolate import PchipInterpolator
 
 from . import _command, _library
 from ._command import number
-from ._library import Floats, InputError, NoResultWarning, NumericalError, UsageError
+from ._library import (
+    Floats,
+    InputError,
+    NoResultWarning,
+    NumericalError,
+    UsageError,
+    numbers,
+    whole,
+)
 from .case import Case, read
 from .contact_laws import LAWS, Twin
 
@@ -131,21 +139,28 @@ def pair(
     both = [materials] * 2 if isinstance(materials, Mapping) else list(materials)
     try:
         first, second = np.append(np.asarray(radii, dtype=float), math.inf)[:2]
-        weights = masses or [4 / 3 * math.pi * r**3 * float(one["density"])
-                             for r, one in zip((first, second), both, strict=True)
-                             if r < math.inf]  # fmt: skip
-    except KeyError:
-        raise InputError("expected the density of the material of each bead, or masses") from None
+        beads = [(r, one) for r, one in zip((first, second), both, strict=True) if r < math.inf]
+        weights = np.array([4 / 3 * math.pi * r**3 * float(one["density"]) for r, one in beads]
+                           if masses is None else masses, dtype=float)  # fmt: skip
+        known = {str(one["name"]): one for one in both}
+    except KeyError as error:
+        raise InputError(f"expected the {error.args[0]} of the material of each bead"
+                         f"{', or masses' * (error.args[0] == 'density')}") from None  # fmt: skip
     except (TypeError, ValueError):
         first = math.nan
-    if not (0 < first < math.inf and second > 0 and np.size(radii) < 3 and min(weights) > 0):
+    if not (
+        0 < first < math.inf
+        and second > 0
+        and np.size(radii) < 3
+        and weights.shape == (len(beads),)
+        and all((weights > 0) & (weights < math.inf))
+    ):
         raise InputError("expected two radii > 0 [m], of which the second may be infinite, one or "
-                         "two materials, and masses > 0")  # fmt: skip
-    reduced = 1 / sum(1 / weight for weight in (*weights, math.inf)[:2])
-    known = {str(one["name"]): one for one in both}
+                         "two materials, and masses > 0, one of each bead")  # fmt: skip
+    reduced = 1 / sum(1 / weights)
     if len(known) == 1 and dict(both[0]) != dict(both[1]):
         raise InputError(f"found two different materials of the name '{both[0]['name']}'")
-    given: dict[str, dict[str, Any]] = {
+    given: dict[str, Any] = {
         "impact": {"velocity": velocity},
         "sphere": {"radius": first, "mass": reduced, "material": both[0]["name"]},
         "plate": {"material": both[1]["name"], "waves": "none"},
@@ -153,7 +168,10 @@ def pair(
     if second < math.inf:
         given["plate"]["surface_radius"] = second
     for name, keys in groups.items():
-        given[name] = given.get(name, {}) | dict(keys)
+        # what is no group is refused by Case
+        given[name] = (
+            {**given[name], **keys} if name in given and isinstance(keys, Mapping) else keys
+        )
     return Case({**given, "material": list(known.values())}, name="pair.nml")
 
 
@@ -194,12 +212,12 @@ def export(
         An impact has no result.
     """
     case = case if isinstance(case, Case) else read(case)
-    given = np.asarray(velocities, dtype=float)
-    if target not in TARGETS:
+    given = numbers(velocities, "velocities")
+    if target not in list(TARGETS):
         raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")
     if quantity not in MEANING:
         raise UsageError(f"unknown quantity '{quantity}', known: {', '.join(MEANING)}")
-    if given.ndim != 1 or len(given) < 2 or not (np.diff(given, prepend=0) > 0).all():
+    if given.size < 2 or not (np.diff(given, prepend=0) > 0).all():
         raise UsageError("expected two or more velocities > 0 that rise")
     curve = _solved(case, given, quantity, threads)
     if master:
@@ -351,7 +369,7 @@ def _tabulated(case: Case, target: Target, curve: xr.Dataset) -> Export:
     return _finished(case, target, shown, lines, values, misfit)
 
 
-def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Export:
+def _fitted(case: Case, target: Target, curve: xr.Dataset, law: int) -> Export:
     """A program with laws of its own, in the order of their misfits."""
     if case["sphere.shape"] != "sphere" or _radii(case)[1] < 0:
         raise InputError(f"{case.name}: {target.name} has contacts of spheres and flat walls only, "
@@ -360,17 +378,15 @@ def _fitted(case: Case, target: Target, curve: xr.Dataset, number: int) -> Expor
     e = curve[curve.attrs["e"]].values
     found = []
     for entry in target.laws:
-        law = replace(LAWS[entry["law"]], clipped=entry.get("clipped", False))
-        twin = law.fit(velocity, e, time, curve.attrs["mass"])
+        form = replace(LAWS[entry["law"]], clipped=entry.get("clipped", False))
+        twin = form.fit(velocity, e, time, curve.attrs["mass"])
         numbers = _numbers(case, curve, twin)
         filled = {key: one.format(**numbers) for key, one in entry.items() if key != "clipped"}
         # a program that takes e has no damping beyond the critical one
         if "nan" not in filled["text"]:
             found.append((filled["text"], twin, numbers | filled))
     found.sort(key=lambda one: (round(one[1].misfit, 6), one[1].time_misfit))
-    if not 1 <= number <= len(found):
-        raise UsageError(f"--law {number}: expected 1 to {len(found)} for {target.name}")
-    text, twin, filled = found[number - 1]
+    text, twin, filled = found[whole(law, "--law", 1, len(found)) - 1]
     columns = {"e_law": twin.cor, "contact_time_law": twin.time}
     shown = curve.assign({name: ("velocity", one) for name, one in columns.items()})
     shown = shown.isel(velocity=slice(None, None, 2))

@@ -14,10 +14,18 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _library
-from ._library import InputError, numbers
+from ._library import InputError, numbers, whole, within
+from .case import scalars
 
 #: Poisson's ratio that says that there is none
 NOT_GIVEN = 1.0
+#: Most terms of a Prony series, as the program has them
+_MOST_TERMS = 60
+
+
+def ratio_of(poisson_ratio: float | None) -> float:
+    """Poisson's ratio as the library takes it, checked."""
+    return NOT_GIVEN if poisson_ratio is None else within(poisson_ratio, "--poisson-ratio", -1, 0.5)
 
 
 @dataclass(frozen=True)
@@ -109,7 +117,7 @@ def fit(
     NumericalError
         The fit fails, or the data do not determine the parameters.
     """
-    fix = fix or {}
+    fixed = scalars(fix)
     file: bytes | c_char_p = c_char_p()
     samples = np.empty((0, 0))
     if isinstance(data, (str, os.PathLike)):
@@ -120,16 +128,16 @@ def fit(
         columns = [numbers(part, "data", np.inf, "numbers").ravel() for part in parts]
         if len({len(column) for column in columns}) == 1:
             samples = np.array(columns)
-        if len(samples) not in (2, 3) or not (np.isfinite(samples) & (samples > 0)).all():
+        if len(samples) not in (2, 3) or not ((samples >= 1e-30) & (samples <= 1e30)).all():
             raise InputError(
-                "expected two or three arrays of one length with numbers > 0: times and moduli, "
-                "or angular frequencies, storage and loss moduli"
+                "expected two or three arrays of one length with numbers > 0, from 1e-30 to 1e30: "
+                "times and moduli, or angular frequencies, storage and loss moduli"
             )
         samples = np.ascontiguousarray(samples[:, np.argsort(samples[0], kind="stable")])
-    fixed = np.array([numbers(value, key, 0, "a number") for key, value in fix.items()])
-    given = len(fix), _library.texts(tuple(fix)), fixed
-    ratio = NOT_GIVEN if poisson_ratio is None else poisson_ratio
-    wish = (model, name or "material", terms or 0, *given, ratio, density or 0.0)
+    given = len(fixed), _library.texts(tuple(fixed)), np.array([*fixed.values()], dtype=float)
+    count = 0 if terms is None else whole(terms, "terms", 1, _MOST_TERMS)
+    rho = 0.0 if density is None else within(density, "density", 0, 1e30)
+    wish = (model, name or "material", count, *given, ratio_of(poisson_ratio), rho)
     document = _library.text_of("vcor_fit_data", file, *samples.shape[::-1], samples, *wish)
     found = json.loads(document or "")
     parameters = tuple(

@@ -22,8 +22,8 @@ from scipy.special import chdtri, ndtri, stdtrit
 
 from . import _command, _library
 from ._command import number
-from ._library import Error, Floats, InputError, NumericalError, UsageError
-from .case import Case, progress_bar, read
+from ._library import MOST_SEED, Error, Floats, InputError, NumericalError, UsageError, whole
+from .case import Case, listed, progress_bar, read, scalars
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
@@ -459,27 +459,32 @@ def identify(
         determine, and what would help.
     """
     case = (case if isinstance(case, Case) else read(case)).copy()
-    free = free.split(",") if isinstance(free, str) else free
-    for address, value in (fix or {}).items():
-        case[address] = float(value)
-    alone: Any = [data] if isinstance(data, (str, os.PathLike)) or hasattr(data, "keys") else data
+    free = free.split(",") if isinstance(free, str) else listed(free)
+    for address in free:
+        if b"solver." in _library.encoded(address).lower():
+            raise UsageError(f"{address}: found a setting of the solver, expected a parameter")
+    fix = scalars(fix)
+    for address, value in fix.items():
+        case[address] = value
+    alone: Any = [data] if hasattr(data, "keys") else listed(data)
     # a DataFrame is no Mapping
     sources = [dict(one.items()) if hasattr(one, "keys") else one for one in alone]
-    free = [address for address in free if address not in (fix or {})]
+    if not sources:
+        raise UsageError("expected at least one file or table of data")
+    free = [address for address in free if address not in fix]
     if model:
-        case, free = _with_model(case, free, model, fix or {}, sources)
+        case, free = _with_model(case, free, model, fix, sources)
     if not free:
         also = f" that --fix does not give, found {', '.join(fix)}" if fix else ""
         raise UsageError(f"expected at least one free parameter{also}")
-    if seed < 0:
-        raise UsageError(f"--seed: found {seed}, expected 0 or more")
+    whole(seed, "--seed", 0, MOST_SEED)
     if len(set(free)) < len(free):
         raise UsageError("a free parameter is named twice")
     blocks = [observations(case, source, free) for source in sources]
     if case["solver.method"] != "direct":
         sharpen(case, ACCURACY)
     with progress_bar(None, None) as bar:
-        problem = _Problem(case, free, blocks, errors or {}, bar)
+        problem = _Problem(case, free, blocks, scalars(errors), bar)
         x, chi2 = problem.best(seed)
         return _judged(problem, x, chi2, model or "")
 
@@ -731,8 +736,8 @@ def _with_model(
     if len(names) != 1 or not all(address.startswith(f"{names[0]}.") for address in free):
         raise UsageError("--model: the free parameters must be those of one material")
     name = names[0]
-    kind, _, terms = model.partition(":")
-    if not re.fullmatch(r"(prony:0*[1-9]\d*)?[^:]*", model):
+    kind, _, terms = str(model).partition(":")
+    if not re.fullmatch(r"prony:0*[1-9]\d*|[^:]*", str(model)):
         raise UsageError(f"--model {model}: expected the name of a model, or such as prony:2")
     first, last = window([observations(case, one, free) for one in sources], case, name)
     times = np.geomspace(first, last, 60)

@@ -25,10 +25,10 @@ import numpy as np
 from scipy.optimize import least_squares, minimize_scalar
 
 from . import _command, _library
-from ._library import Error, Floats, InputError, NumericalError, UsageError
+from ._library import Error, Floats, InputError, NumericalError, UsageError, within
 from .card_formats import GAS
 from .data import ZERO_C
-from .fit import NOT_GIVEN
+from .fit import NOT_GIVEN, ratio_of
 
 #: Degree of the polynomial in ln E over ln omega that two curves share
 DEGREE = 4
@@ -235,7 +235,7 @@ def master(
         Two neighbouring temperatures have no storage or relaxation modulus in common.
     """
     names = [data] if isinstance(data, (str, os.PathLike)) else list(data)
-    ratio = NOT_GIVEN if poisson_ratio is None else poisson_ratio
+    ratio = ratio_of(poisson_ratio)
     read = (one for name in names for one in read_curves(name, ratio))
     curves = sorted(read, key=lambda one: one.temperature)
     if any(math.isnan(curve.temperature) for curve in curves):
@@ -250,6 +250,7 @@ def master(
     if reference_temperature is None:
         middle = len(curves) // 2
     else:
+        within(reference_temperature, "reference_temperature", -math.inf, math.inf)
         middle = int(np.argmin(np.abs(temperatures - reference_temperature)))
         if abs(temperatures[middle] - reference_temperature) > 3:
             slip = "; a temperature in degrees Celsius ends in C, as 25C"
@@ -461,10 +462,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _work(options: argparse.Namespace) -> None:
     given = options.reference
     reference = _kelvin(given, "--reference") if given is not None else None
-    nu = options.poisson_ratio
-    if nu is not None and not -1 < nu <= 0.5:
-        raise UsageError(f"found --poisson-ratio {nu:g}, expected more than -1 and at most 0.5")
-    found = master(options.data, reference_temperature=reference, poisson_ratio=nu)
+    ratio = options.poisson_ratio
+    found = master(options.data, reference_temperature=reference, poisson_ratio=ratio)
     dynamic = found.curves[0].dynamic
     head = "omega [rad/s],E_stor [Pa],E_loss [Pa]" if dynamic else "t [s],E [Pa]"
     reference = found.reference_temperature

@@ -31,7 +31,8 @@ from matplotlib.ticker import FixedLocator, MaxNLocator
 
 from . import _command
 from ._command import FORMATS, printable
-from ._library import Floats, InputError, UsageError
+from ._library import Floats, InputError, UsageError, numbers, whole
+from .case import listed
 from .data import NAMES, PREFIXES, Data
 from .sources import Result, Source, is_result, legends_of
 
@@ -39,6 +40,8 @@ STYLE = Path(__file__).with_name("vcor.mplstyle")
 KINDS = ("history", "loop", "moduli", "sweep", "map")
 #: Width of a column and of a page, height of a panel [cm]
 COLUMN, PAGE, HEIGHT = 8.5, 17.0, 6.5
+#: Most levels of a map by their number
+_MOST_LEVELS = 50
 #: Widths that are drawn [cm], and units of length [cm]
 _WIDTHS, _UNITS = (4.25, 60.0), {"cm": 1.0, "mm": 0.1, "in": 2.54}
 #: Results or curves that can be told apart
@@ -120,12 +123,15 @@ def figure(
     matplotlib.figure.Figure
         The figure, to be changed or saved.
     """
+    # a Dataset and a name are iterable, too
+    files = [files] if isinstance(files, (xr.Dataset, str)) else listed(files)
     results = [Result(source) for source in files if is_result(source)]
     data = [Data(name) for name in files if not (isinstance(name, xr.Dataset) or is_result(name))]
     if not results:
         raise UsageError("expected at least one file of results, such as sls.h5")
     if len(results) > MOST:
         raise UsageError(f"found {len(results)} results, expected at most {MOST} in one figure")
+    legends = listed(legends)
     if legends and len(legends) != len(results):
         raise UsageError(
             f"found {len(legends)} --legend for {len(results)} file(s) of results, expected one "
@@ -136,7 +142,8 @@ def figure(
         raise UsageError(f"unknown kind '{kind}', expected one of {', '.join(KINDS)}")
     if quantities and kind not in ("sweep", "map"):
         raise UsageError(f"found --quantity, which a figure of kind {kind} does not show")
-    if width is not None and not _WIDTHS[0] <= width <= _WIDTHS[1]:
+    _check_axes(log, ranges or {}, levels)
+    if width is not None and not _WIDTHS[0] <= numbers(width, "width", 0, "cm") <= _WIDTHS[1]:
         raise UsageError(f"found a width of {width:g} cm, expected {_WIDTHS[0]:g} to "
                          f"{_WIDTHS[1]:g}, or with a unit such as 85mm")  # fmt: skip
     for result in results[1:]:
@@ -146,8 +153,8 @@ def figure(
                 f"{results[0].path} for one of kind {results[0].kind()}"
             )
     for result, text in zip(results, legends or legends_of(results), strict=True):
-        result.text = printable(text)
-    names = [NAMES.get(name, name) for name in quantities or ("cor",)]
+        result.text = printable(str(text))
+    names = [NAMES.get(name, name) for name in listed(quantities or "cor")]
     wishes = _Wishes(results, bool(legends), data, names, log, ranges or {}, levels, hatch, width)
     draw: Callable[[_Wishes], Figure] = globals()[f"_{kind}"]
     with mpl.style.context(STYLE):
@@ -165,6 +172,24 @@ def figure(
 
 
 # ------------------------------------------------------------------------------- kinds
+
+
+def _check_axes(
+    log: str | None, ranges: Mapping[str, _Range], levels: int | Sequence[float]
+) -> None:
+    """Refuse axes that there are not, and ranges and levels that are none."""
+    if log is not None and (not isinstance(log, str) or set(log) - set("xyz")):
+        raise UsageError(f"--log {log}: expected letters among x, y, z, or none")
+    for name, ends in ranges.items():
+        with contextlib.suppress(TypeError, ValueError):
+            low, high = (None if end is None else float(end) for end in ends)
+            if name in ("x", "y", "z") and low != high and np.isfinite([low or 0, high or 0]).all():
+                continue
+        raise UsageError(f"found '{name}={ends}', expected a range such as x=0.1:10 or y=0:")
+    if np.ndim(levels) == 0:
+        whole(levels, "levels", 2, _MOST_LEVELS)
+    elif not np.isfinite(numbers(levels, "levels")).all():
+        raise UsageError("found a level that is no finite number, expected such as 0.2,0.5")
 
 
 def _courses(results: list[Result]) -> list[dict[str, Any]]:
@@ -468,10 +493,8 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
     """Levels of a map: those that are wanted, or round numbers over its range."""
     bounds = wishes.ranges.get("z", (None, None))
     low, high = (end if end is not None else e for end, e in zip(bounds, (low, high), strict=True))
-    if not isinstance(wishes.levels, int):
+    if not isinstance(wishes.levels, (int, np.integer)):
         levels = sorted({float(level) for level in wishes.levels})
-        if not np.isfinite(levels).all():
-            raise UsageError("found a level that is no finite number, expected such as 0.2,0.5")
     elif "z" in (wishes.log or ""):
         if not 0 < low < high:
             raise InputError(f"found values from {low:g} to {high:g}, of which no logarithm is")
@@ -669,6 +692,8 @@ def _label_decades(which: Any) -> None:
 def save(made: Figure, path: str | os.PathLike[str]) -> None:
     """Write a figure as SVG, PDF or PNG; the same results give the same bytes."""
     path = Path(path)
+    if path.suffix[1:].lower() not in FORMATS:
+        raise UsageError(f"{path}: expected a name that ends with .{', .'.join(FORMATS)}")
     dated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     bytes_ = io.BytesIO()
     with mpl.style.context(STYLE):
@@ -709,24 +734,16 @@ def _settings(options: Any) -> dict[str, Any]:
     settings["legends"] = options.legend or None
     settings["hatch"] = False if options.no_hatch else None
     if options.log is not None:
-        settings["log"] = "" if options.log == "none" else options.log
-        if options.log != "none" and (not options.log or set(options.log) - set("xyz")):
-            raise UsageError(f"--log {options.log}: expected letters among x, y, z, or none")
+        settings["log"] = "" if options.log == "none" else options.log or "none"
     try:
         word = options.levels
         if word:
             levels = [float(level) for level in word.split(",")]
-            settings["levels"] = int(word) if word.isdigit() and 1 < int(word) <= 50 else levels
+            settings["levels"] = int(word) if word.isdigit() else levels
         ranges = {}
         for word in options.range:
             name, _, ends = word.partition("=")
             low, high = (float(end) if end else None for end in ends.split(":"))
-            if (
-                name not in ("x", "y", "z")
-                or low == high
-                or not np.isfinite([low or 0, high or 0]).all()
-            ):
-                raise ValueError
             ranges[name] = (low, high)
     except ValueError:
         raise UsageError(

@@ -19,8 +19,8 @@ import xarray as xr
 from scipy.special import ndtri
 
 from . import _command, _library
-from ._library import Floats, InputError, NumericalError, UsageError
-from .case import Case, listed, read, with_folder
+from ._library import MOST_SEED, Floats, InputError, NumericalError, UsageError, whole, within
+from .case import MOST_POINTS, Case, listed, read, with_folder
 from .observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -67,7 +67,8 @@ class Spread:
             one = f"one of them, such as {address}(1)" if isinstance(given, list) else "a number"
             raise UsageError(f"{address}: found {given}, expected {one}")
         value = float(given)
-        text = text if isinstance(text, str) else f"{100 * text!r}%"
+        if not isinstance(text, str):
+            text = f"{100 * within(text, address, 0, math.inf)}%"
 
         def spread(deviation: float, sample: Callable[[Floats], Floats]) -> Spread:
             ends = value + deviation * np.array([[-1.0], [1.0]])
@@ -184,6 +185,9 @@ class Uncertainty:
         """Tornado figure (matplotlib) of a quantity: its change by one standard deviation."""
         from .plot import COLUMN, _labelled, _name_of, drawn
 
+        if quantity not in self.table.quantity.values:
+            raise UsageError(f"found no quantity '{quantity}', expected one of "
+                             f"{', '.join(self.table.quantity.values)}")  # fmt: skip
         row = self.table.sel(quantity=quantity)
         below, above = (row["swing"].sel(side=side).values for side in ("below", "above"))
         order = np.argsort(np.abs(above - below))
@@ -233,7 +237,7 @@ def sensitivities(
         Elasticity [1] over `quantity` and `parameter`; nan where the quantity is 0.
     """
     case = _accurate(case)
-    parameters, quantities = listed(parameters), listed(quantities)
+    parameters, quantities = listed(parameters), _checked(quantities)
     if not parameters:
         raise UsageError("expected at least one parameter")
     values = np.array([_number(case, address) for address in parameters])
@@ -300,20 +304,18 @@ def propagate(
     """
     from SALib.sample import sobol as sampling
 
-    quantities = listed(quantities)
-    columns = _library.columns(0)
-    for name in quantities:
-        if name in columns and columns[name].labels:
-            raise UsageError(f"{name}: found a column of words, expected one of numbers")
-    if samples < 1 or seed < 0:
-        wrong = f"samples: found {samples}, expected a number > 0"
-        raise UsageError(wrong if samples < 1 else f"seed: found {seed}, expected a number >= 0")
+    quantities = _checked(quantities)
+    whole(samples, "samples", 1, MOST_POINTS)
+    whole(seed, "seed", 0, MOST_SEED)
+    if vary is not None and not hasattr(vary, "items"):
+        raise UsageError("vary: expected a distribution by each address")
     case = (case if isinstance(case, Case) else read(case)).copy()
     joint = []
     if covariance is not None:
         case, found_together = Spread.joint(case, covariance)
         joint = [found_together]
-    spreads = [Spread.read(case, address, text) for address, text in (vary or {}).items()] + joint
+    wanted = {} if vary is None else dict(vary.items())
+    spreads = [Spread.read(case, address, text) for address, text in wanted.items()] + joint
     addresses = [address for spread in spreads for address in spread.addresses]
     if not addresses:
         raise UsageError("expected at least one parameter that varies")
@@ -366,7 +368,7 @@ def propagate(
         },
         coords={
             "quantity": quantities,
-            "units": ("quantity", [columns[name].unit for name in quantities]),
+            "units": ("quantity", [_library.columns(0)[name].unit for name in quantities]),
             "parameter": addresses,
             "source": names,
             "percent": list(PERCENTILES),
@@ -379,6 +381,17 @@ def propagate(
     dominant = max(errors, key=errors.__getitem__)
     words = [str(judged[name]) for name in ("validity", "validity_cause")]
     return Uncertainty(table, len(found), len(found) - len(shown), dominant, *words)
+
+
+def _checked(quantities: Sequence[str]) -> list[str]:
+    """Columns of the summary that are numbers, each once."""
+    quantities, columns = listed(quantities), _library.columns(0)
+    if not quantities or len(set(quantities)) < len(quantities):
+        raise UsageError("quantities: expected one or more columns of the summary, each once")
+    for name in quantities:
+        if name in columns and columns[name].labels:
+            raise UsageError(f"{name}: found a column of words, expected one of numbers")
+    return quantities
 
 
 def _with_group(case: Case, name: str, group: str) -> Case:
