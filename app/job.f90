@@ -21,7 +21,7 @@ module vcor_app_job
    use vcor_solver, only : method_for
    use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : quantity_names
-   use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
+   use vcor_sweep_points, only : new_sweep, solve_point, sweep_t, worker_t
    implicit none
    private
 

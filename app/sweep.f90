@@ -314,7 +314,7 @@ contains
       call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
          //' of '//integer_text(job%part%count())//' points'//shard_text(job%part) &
          //' without result, the first at ' &
-         //job%coordinates(failures%reason(1)%first)//': '//failures%reason(1)%message)
+         //job%coordinates(failures%reason(1)%first)//': '//trim(failures%reason(1)%message))
    end subroutine end_of_sweep
 
    !> What the screen shows of a sweep or a shard: what is swept, between what the outcomes lie,
@@ -411,7 +411,7 @@ contains
          //' points'//shard_text(job%part)//' without result:'//nl
       do i = 1, failures%reasons
          associate (reason => failures%reason(i))
-            text = text//'  '//right(integer_text(reason%count), 8)//'  '//reason%message//nl &
+            text = text//'  '//right(integer_text(reason%count), 8)//'  '//trim(reason%message)//nl &
                //'            first at point '//integer_text(reason%first)//': ' &
                //job%coordinates(reason%first)//nl
          end associate

@@ -5,7 +5,7 @@ module vcor
    use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
    use vcor_case_printed, only : case_text
-   use vcor_case_problem, only : material_of_case, problem_of_case, problem_t
+   use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, error_usage
    use vcor_fit, only : estimate_t, fit_material, fit_t, samples_t
    use vcor_impact_contact, only : contact_modulus_t, new_contact_modulus, pair_eq1, pair_series
@@ -30,9 +30,8 @@ module vcor
    use vcor_material_table, only : new_tabulated, tabulated_t
    use vcor_material_type, only : material_t
    use vcor_solver, only : new_solver, solve_impact, solver_settings_t, solver_t
-   use vcor_sweep_points, only : failures_t, solve_sweep
+   use vcor_sweep_points, only : failures_t, new_sweep, solve_sweep, sweep_t
    use vcor_sweep_quantity, only : summary_t
-   use vcor_sweep_sweep, only : new_sweep, sweep_t
    use vcor_version, only : version
    implicit none
    private
@@ -54,7 +53,7 @@ module vcor
    public :: contact_separated, contact_lasting, contact_sticking, contact_resting
    ! cases
    public :: case_t, read_case, read_case_text, override, read_data
-   public :: validate, case_text, problem_t, problem_of_case, material_of_case
+   public :: validate, case_text, problem_t, problem_of_case
    ! sweeps
    public :: sweep_t, new_sweep, solve_sweep, summary_t, failures_t
    ! results

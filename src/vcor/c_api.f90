@@ -24,10 +24,10 @@ module vcor_c_api
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_sweep_part, only : most_threads, new_part
-   use vcor_sweep_points, only : default_threads, failures_t, solve_points
+   use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, solve_points, &
+      sweep_t, worker_t
    use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
       quantity_names, quantity_place, quantity_t, summary_t
-   use vcor_sweep_sweep, only : new_sweep, solve_point, sweep_t, worker_t
    use vcor_text, only : canonical_name, integer_text, real_text, shortened
    use vcor_verify_comparison, only : compare
    use vcor_verify_solutions, only : attempt_first, compared_names, comparison_t
@@ -382,11 +382,11 @@ contains
       if (failures%count > 0 .and. m == 0) then
          call raise(trouble, merge(error_input, error_numerical, &
             summary%status(1) == point_invalid), handle%case%source//': ' &
-            //failures%reason(1)%message)
+            //trim(failures%reason(1)%message))
       else if (failures%count > 0) then
          call put_error(error, 0_c_int, integer_text(failures%count)//' of '//integer_text(int(n)) &
             //' points have no result, the first is point ' &
-            //integer_text(failures%reason(1)%first)//': '//failures%reason(1)%message)
+            //integer_text(failures%reason(1)%first)//': '//trim(failures%reason(1)%message))
       end if
 !$omp end critical (vcor_c_api)
       code = 0

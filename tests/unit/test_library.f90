@@ -6,7 +6,7 @@ program test_library
    use vcor, only : case_t, case_text, cerf_t, contact_lasting, contact_law_t, contact_modulus_t, &
       contact_resting, contact_separated, contact_sticking, error_file, error_input, &
       error_numerical, error_t, error_usage, estimate_t, failures_t, fit_material, fit_t, &
-      history_table, impact_t, material_of_case, material_t, mittag_leffler_t, new_cerf, &
+      history_table, impact_t, material_t, mittag_leffler_t, new_cerf, &
       new_contact_law, new_contact_modulus, new_elastic, new_impact, new_mittag_leffler, &
       new_plate, new_power_law, new_prony, new_rigid, new_sls, new_solver, new_sweep, &
       new_tabulated, outcome_t, override, pair_eq1, pair_series, plate_t, power_law_t, &
@@ -219,7 +219,6 @@ contains
       type(problem_t) :: problem
       type(outcome_t) :: outcome
       type(trajectory_t) :: trajectory
-      class(material_t), allocatable :: material
       type(error_t), allocatable :: error
       type(table_t) :: table
 
@@ -228,9 +227,6 @@ contains
       if (.not. allocated(error)) call validate(case, error)
       if (.not. allocated(error)) call read_data(case, error)
       call success(error, "a case is read")
-      call material_of_case(case, 2, material, error)
-      call success(error, "a material of a case is built")
-      call check_close(material%glassy(), 15.0e6_wp, 0.0_wp, "its glassy modulus")
       call problem_of_case(problem, case, error)
       call success(error, "impact and solver of a case are built")
       call problem%solve(trajectory, outcome, error)

@@ -1,27 +1,69 @@
-!> The points of a sweep, or of a part of it, solved by all ranks and their threads
+!> The points of a sweep, or of a part of it, solved by all ranks and their threads. An impact by
+!> itself is a sweep of one point
+!>
+!> A point is the case with some numbers set, which the problem of the case follows, so nothing is
+!> read, looked up or checked as a whole for it, and no rules of a solver are made. A point that
+!> makes no sense, or cannot be solved, has a status instead of numbers and stops no other.
 !>
 !> The work goes in rounds. In a round each rank solves its part of the next points, the first rank
 !> takes the outcomes of all, and all agree on how long the next round is and whether there is one.
 !> Outcomes are kept by the place of their point, so they are the same bits for any number of ranks
 !> and threads. Points without a result are grouped by the reason, and those whose result is less
 !> accurate than asked for are counted.
+!>
+!> What threads call has no static storage. That includes the functions that return a text of
+!> deferred length, whose length gfortran 12 keeps there: such a function is called before the
+!> threads begin, or by one at a time.
 module vcor_sweep_points
    use, intrinsic :: iso_fortran_env, only : int64
 !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
-   use vcor_error, only : error_t
+   use vcor_case_case, only : case_t
+   use vcor_case_catalogue, only : catalogue, wanted
+   use vcor_case_grid, only : grid_t, new_grid
+   use vcor_case_problem, only : has_part, problem_of_case, problem_t
+   use vcor_error, only : error_input, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_lasting, contact_resting, contact_separated, &
-      contact_sticking
+      contact_sticking, trajectory_t
    use vcor_kinds, only : wp
-   use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, numbers_of, rank_count, &
-      text_of, this_rank
+   use vcor_material_parameter, only : contains_number, interval_t
+   use vcor_sweep_mpi, only : from_first_rank, gathered, largest_of_ranks, rank_count, this_rank
    use vcor_sweep_part, only : most_threads, new_part, part_t
-   use vcor_sweep_quantity, only : new_summary, point_pending, summary_t, values_of
-   use vcor_sweep_sweep, only : lacking, solve_point, sweep_t, worker_t
+   use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
+      summary_t, values_of
    implicit none
    private
 
+   public :: sweep_t, new_sweep, worker_t, solve_point
    public :: failure_t, failures_t, solve_sweep, solve_points, monitor_t, default_threads, clock
+
+   !> All impacts of a case; immutable once built, so that threads can share it
+   type :: sweep_t
+      !> Its points
+      type(grid_t) :: grid
+      !> The case; what varies has its first values
+      type(case_t), private :: case
+      !> Its problem
+      type(problem_t) :: problem
+      !> Ranges of what varies, shape (axes)
+      type(interval_t), allocatable, private :: ranges(:)
+      !> What to say about a value that is out of range, shape (axes)
+      type(error_t), allocatable, private :: objections(:)
+   contains
+      procedure :: is_grid
+   end type sweep_t
+
+   !> What one thread works with: the impact it is at
+   type :: worker_t
+      !> The impact and its solver
+      type(problem_t) :: problem
+      !> Its course
+      type(trajectory_t) :: trajectory
+      !> The case with the numbers of the impact
+      type(case_t), private :: case
+      !> Whether case and problem are those of the sweep, at one of its points
+      logical, private :: is_ready = .false.
+   end type worker_t
 
    !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
    !> and threads wait for each other at its end
@@ -36,13 +78,13 @@ module vcor_sweep_points
    !> Most reasons that are told apart
    integer, parameter :: most_reasons = 20
 
-   !> One reason
+   !> One reason, of fixed length so that ranks can send it
    type :: failure_t
       integer :: count = 0
       !> First of them
       integer :: first = huge(1)
-      !> What was wrong there; empty: the estimated error is above the accuracy asked for
-      character(len=:), allocatable :: message
+      !> What was wrong there; blank: the estimated error is above the accuracy asked for
+      character(len=504) :: message = ''
    end type failure_t
 
    !> All reasons
@@ -92,6 +134,120 @@ module vcor_sweep_points
    end interface
 
 contains
+
+   !> Whether the case has a &sweep group
+   pure function is_grid(self) result(yes)
+      class(sweep_t), intent(in) :: self
+      logical :: yes
+
+      yes = size(self%grid%axes) > 0
+   end function is_grid
+
+   !> Build what the impacts of a case have in common
+   subroutine new_sweep(self, case, error)
+      type(sweep_t), intent(out) :: self
+      !> A validated case, its data read
+      type(case_t), intent(in) :: case
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      integer :: i, j, n, row
+
+      call new_grid(case, self%grid, error)
+      if (allocated(error)) return
+      self%case = case
+      n = size(self%grid%axes)
+      allocate (self%ranges(n), self%objections(n))
+      do i = 1, n
+         row = case%row(self%grid%axes(i)%address)
+         associate (axis => self%grid%axes(i), key => catalogue(row))
+            self%ranges(i) = key%range
+            self%objections(i)%message = axis%name//' is out of range, expected '//wanted(key)
+            call self%case%oust(axis%address, always=.true.)
+            do j = 1, size(axis%values)
+               if (.not. contains_number(key%range, axis%values(j))) cycle
+               call self%case%set(axis%address, axis%values(j))
+               exit
+            end do
+         end associate
+      end do
+      call problem_of_case(self%problem, self%case, error)
+      if (.not. allocated(error)) return
+      ! what varies may be sound at other points
+      do i = 1, n
+         if (.not. has_part(self%case, self%grid%axes(i)%address, error)) cycle
+         deallocate (error)
+         return
+      end do
+   end subroutine new_sweep
+
+   !> Solve one point
+   subroutine solve_point(self, point, worker, outcome, error)
+      type(sweep_t), intent(in) :: self
+      !> Number of the point, from 1
+      integer, intent(in) :: point
+      !> Impact and trajectory of the point; begins as a new one and may be used again for others
+      type(worker_t), intent(inout) :: worker
+      !> Its outcome; without numbers on failure
+      type(outcome_t), intent(out) :: outcome
+      !> Error of code `error_input` if the parameters describe no impact that can be solved, or of
+      !> another if the solution fails; unallocated on success, with or without a separation
+      type(error_t), allocatable, intent(out) :: error
+
+      call build_point(self, point, worker, error)
+      if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
+         outcome, error)
+      if (.not. allocated(error)) return
+      outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
+         steps=outcome%steps)
+   end subroutine solve_point
+
+   !> Build the impact of a point
+   subroutine build_point(self, point, worker, error)
+      type(sweep_t), intent(in) :: self
+      integer, intent(in) :: point
+      !> Its impact is built
+      type(worker_t), intent(inout) :: worker
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      real(wp) :: value
+      integer :: i, place(size(self%grid%axes))
+
+      if (.not. worker%is_ready) then
+         worker%case = self%case
+         worker%problem = self%problem
+         worker%is_ready = .true.
+      end if
+      place = self%grid%places(point)
+      do i = 1, size(place)
+         value = self%grid%axes(i)%values(place(i))
+         if (.not. contains_number(self%ranges(i), value)) then
+            call raise(error, error_input, self%objections(i)%message)
+            return
+         end if
+         call worker%case%set(self%grid%axes(i)%address, value)
+      end do
+      call worker%problem%update(worker%case, error)
+   end subroutine build_point
+
+   !> Why an impact has no coefficient of restitution
+   pure function lacking(status) result(reason)
+      integer, intent(in) :: status
+      !> In words; empty where it has one
+      character(len=:), allocatable :: reason
+
+      select case (status)
+      case (contact_separated, contact_resting)
+         reason = ''
+      case (contact_lasting)
+         reason = 'the bodies do not separate within solver.end_time'
+      case (contact_sticking)
+         reason = 'the sphere sticks: all motion dies out in contact'
+      case default
+         reason = 'no result'
+      end select
+   end function lacking
 
    !> Threads where none are asked for: the cores that the process may use, or what the environment
    !> variable OMP_NUM_THREADS says
@@ -147,7 +303,7 @@ contains
       real(wp) :: start
       integer :: agreed(3), done, length, i
 
-      pending = [integer ::]
+      allocate (pending(0))
       if (this_rank() == 0) then
          pending = pack([(i, i=1, part%count())], summary%status == point_pending)
          do i = 1, part%count()
@@ -299,7 +455,7 @@ contains
       end if
       self%count = self%count + n
       do i = 1, self%reasons
-         if (words_of(self%reason(i)%message) == words_of(message)) exit
+         if (words_of(trim(self%reason(i)%message)) == words_of(message)) exit
       end do
       i = min(i, most_reasons)
       self%reasons = max(self%reasons, i)
@@ -318,22 +474,13 @@ contains
       end subroutine add
    end subroutine note
 
-   !> All reasons as numbers: for each first point, count, numbers of its text, text
+   !> All reasons as numbers
    pure function pack_reasons(self) result(numbers)
       class(failures_t), intent(in) :: self
       !> Numbers, shape (n)
       real(wp), allocatable :: numbers(:)
 
-      integer :: i
-
-      allocate (numbers(0))
-      if (self%inexact%count > 0) &
-         numbers = real([self%inexact%first, self%inexact%count, 0], wp)
-      do i = 1, self%reasons
-         associate (reason => self%reason(i), text => numbers_of(self%reason(i)%message))
-            numbers = [numbers, real([reason%first, reason%count, size(text)], wp), text]
-         end associate
-      end do
+      numbers = transfer([self%inexact, self%reason(:self%reasons)], [1.0_wp])
    end function pack_reasons
 
    !> Add reasons from numbers
@@ -342,14 +489,13 @@ contains
       !> Numbers, as `pack` made them, any number of times, shape (n)
       real(wp), intent(in) :: numbers(:)
 
-      integer :: at, next
+      type(failure_t), allocatable :: others(:)
+      integer :: i
 
-      at = 1
-      do while (at < size(numbers))
-         next = at + 3 + nint(numbers(at + 2))
-         call self%note(nint(numbers(at)), trim(text_of(numbers(at + 3:next - 1))), &
-            nint(numbers(at + 1)))
-         at = next
+      allocate (others, source=transfer(numbers, [failure_t ::]))
+      do i = 1, size(others)
+         if (others(i)%count > 0) &
+            call self%note(others(i)%first, trim(others(i)%message), others(i)%count)
       end do
    end subroutine add_packed
 
