@@ -19,7 +19,7 @@ module vcor_app_run
    use vcor_kinds, only : wp
    use vcor_sweep_quantity, only : new_summary, summary_t, values_of
    use vcor_sweep_points, only : solve_point, worker_t
-   use vcor_verify_comparison, only : model_t
+   use vcor_verify_models, only : model_t
    implicit none
    private
 

@@ -411,7 +411,8 @@ contains
          //' points'//shard_text(job%part)//' without result:'//nl
       do i = 1, failures%reasons
          associate (reason => failures%reason(i))
-            text = text//'  '//right(integer_text(reason%count), 8)//'  '//trim(reason%message)//nl &
+            text = text//'  '//right(integer_text(reason%count), 8)//'  ' &
+               //trim(reason%message)//nl &
                //'            first at point '//integer_text(reason%first)//': ' &
                //job%coordinates(reason%first)//nl
          end associate

@@ -10,10 +10,9 @@ module vcor_app_verify
    use vcor_sweep_quantity, only : status_name
    use vcor_text, only : integer_text
    use vcor_verify, only : build_law, evaluate_law, law_count, law_t, verdict_t
-   use vcor_verify_comparison, only : compare, model_t, solve_models
-   use vcor_verify_judge, only : error_of_best, is_honest
-   use vcor_verify_solutions, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
-      attempt_refined, comparison_t
+   use vcor_verify_methods, only : attempt_case, attempt_count, attempt_first, attempt_halved, &
+      attempt_refined, compare, comparison_t, error_of_best, is_honest
+   use vcor_verify_models, only : model_t, solve_models
    use vcor_version, only : version
    implicit none
    private

@@ -24,13 +24,12 @@ module vcor_c_api
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
    use vcor_sweep_part, only : most_threads, new_part
-   use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, solve_points, &
-      sweep_t, worker_t
+   use vcor_sweep_points, only : default_threads, failures_t, new_sweep, solve_point, &
+      solve_points, sweep_t, worker_t
    use vcor_sweep_quantity, only : history_quantities, new_summary, point_invalid, quantities, &
       quantity_names, quantity_place, quantity_t, summary_t
    use vcor_text, only : canonical_name, integer_text, real_text, shortened
-   use vcor_verify_comparison, only : compare
-   use vcor_verify_solutions, only : attempt_first, compared_names, comparison_t
+   use vcor_verify_methods, only : attempt_first, compare, compared_names, comparison_t
    use vcor_version, only : version
    use vcor_words, only : suggestion
    implicit none

@@ -224,7 +224,7 @@ contains
       do i = 1, reasons%reasons
          call check(reasons%reason(i)%first == others%reason(i)%first, "the same first point")
          call check(reasons%reason(i)%count == others%reason(i)%count, "the same number")
-         call check_text(trim(reasons%reason(i)%message), others%reason(i)%message, "the same words")
+         call check(reasons%reason(i)%message == others%reason(i)%message, "the same words")
       end do
       call check(default_threads() >= 1, "there is a thread")
    end subroutine test_parts_and_threads
@@ -328,7 +328,8 @@ contains
       call both%sort()
       call check(both%count == 4 .and. both%reasons == 2, "four points, two reasons")
       call check(both%reason(1)%count == 3 .and. both%reason(1)%first == 2, "three of one")
-      call check_text(trim(both%reason(1)%message), "no separation within 2 s", "the first one's words")
+      call check_text(trim(both%reason(1)%message), "no separation within 2 s", &
+         "the first one's words")
       call check_text(trim(both%reason(2)%message), "radius is out of range", "the other")
       call check(both%inexact%count == 1 .and. both%inexact%first == 17, "and one that is inexact")
    end subroutine test_packed_reasons
@@ -358,7 +359,8 @@ contains
       call check(failures%count == 5 .and. failures%reasons == 3, "three reasons")
       call check(all(failures%reason(1:3)%first == [1, 3, 9]), "by their first point")
       call check(all(failures%reason(1:3)%count == [1, 3, 1]), "counted")
-      call check_text(trim(failures%reason(2)%message), "step of 2.5 s", "message of the first point")
+      call check_text(trim(failures%reason(2)%message), "step of 2.5 s", &
+         "message of the first point")
    end subroutine test_reasons
 
    !> Names of statuses

@@ -11,11 +11,9 @@ program test_verification
    use vcor_case_case, only : case_t
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_verify, only : build_law, evaluate_law, law_count
-   use vcor_verify_comparison, only : compare
-   use vcor_verify_judge, only : is_honest, judge_ends, judge_numbers
    use vcor_verify_law, only : judge, law_t, row_t, verdict_t
-   use vcor_verify_solutions, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
-      comparison_t
+   use vcor_verify_methods, only : attempt_first, attempt_halved, attempt_refined, attempt_t, &
+      compare, comparison_t, is_honest, judge_ends, judge_numbers
    use vcor_verify_strike, only : elastic, sls, strike_t
    use vcor_test, only : check, check_close, check_contains, check_relative, check_text, finish, &
       suite

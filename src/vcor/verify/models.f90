@@ -1,0 +1,129 @@
+!> One case by other mechanics: what the choice of the model is worth
+module vcor_verify_models
+   use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
+   use vcor_case_case, only : case_t
+   use vcor_case_problem, only : problem_of_case, problem_t
+   use vcor_case_unread, only : why_unread
+   use vcor_error, only : error_t
+   use vcor_impact_outcome, only : outcome_t
+   use vcor_impact_trajectory, only : trajectory_t
+   use vcor_solver, only : solve_impact
+   implicit none
+   private
+
+   public :: model_t, solve_models, solve_model, differ
+
+   !> The case with one plate model, one contact law and one pair
+   type :: model_t
+      character(len=10) :: waves = ''
+      character(len=9) :: law = ''
+      character(len=6) :: pair = ''
+      !> Whether it is that of the case
+      logical :: given = .false.
+      !> Why there is no outcome, one line; unallocated if there is one
+      character(len=:), allocatable :: failure
+      type(outcome_t) :: outcome
+   end type model_t
+
+contains
+
+   !> Solve a case with every plate model and both contact laws, by the internal variables, then all
+   !> of it with the other pair where that makes a difference. A plate without half thickness or
+   !> density has the model `none` only
+   subroutine solve_models(case, models)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      !> The table
+      type(model_t), allocatable, intent(out) :: models(:)
+
+      character(len=*), parameter :: plates(6) = [character(len=10) :: 'none', 'constant', &
+         'relaxing', 'frozen', 'hereditary', 'body']
+      character(len=*), parameter :: laws(2) = [character(len=9) :: 'boltzmann', 'receding']
+      type(model_t) :: all(2*size(plates)*size(laws))
+      character(len=:), allocatable :: waves, law, pair
+      logical :: exists
+      integer :: i, j, k, n, half
+
+      call case%get('plate', 'waves', waves)
+      call case%get('contact', 'law', law)
+      call case%get('contact', 'pair', pair)
+      n = 0
+      do k = 1, merge(2, 1, reads(case, 'pair'))
+         half = n
+         do i = 1, size(plates)
+            do j = 1, merge(size(laws), 1, reads(case, 'law'))
+               associate (model => all(n + 1))
+                  model = model_t(plates(i), laws(j), pair, &
+                     plates(i) == waves .and. laws(j) == law .and. k == 1)
+                  call solve_model(case, model, exists)
+                  exists = exists .or. plates(i) == waves .or. j > 1 &
+                     .or. case%given('plate', 'half_thickness')
+               end associate
+               if (.not. exists) exit
+               n = n + 1
+            end do
+         end do
+         pair = trim(merge('series', 'eq1   ', pair == 'eq1'))
+      end do
+      if (half > 0) then
+         if (.not. any(differ(all(:half)%outcome, all(half + 1:n)%outcome))) n = half
+      end if
+      allocate (models, source=all(:n))
+   end subroutine solve_models
+
+   !> Whether a key of &contact makes a difference
+   pure function reads(case, key)
+      type(case_t), intent(in) :: case
+      character(len=*), intent(in) :: key
+      logical :: reads
+
+      reads = why_unread(case, case%address('contact', key)) == ''
+   end function reads
+
+   !> Whether two outcomes have another restitution, or only one of them has any
+   elemental function differ(a, b)
+      type(outcome_t), intent(in) :: a, b
+      logical :: differ
+
+      ! a solution that failed has no number, which a debug build must not compare
+      differ = a%status /= b%status .or. (ieee_is_nan(a%cor) .neqv. ieee_is_nan(b%cor))
+      if (.not. (differ .or. ieee_is_nan(a%cor))) &
+         differ = abs(a%cor - b%cor) > a%cor_error + b%cor_error
+   end function differ
+
+   !> Solve a case with other mechanics
+   subroutine solve_model(case, model, valid)
+      !> A validated case
+      type(case_t), intent(in) :: case
+      !> Its row, outcome or failure to be set
+      type(model_t), intent(inout) :: model
+      !> Whether it still describes an impact
+      logical, intent(out) :: valid
+
+      type(case_t) :: other
+      type(problem_t) :: problem
+      type(trajectory_t) :: trajectory
+      type(error_t), allocatable :: error
+
+      other = case
+      call other%set(other%address('plate', 'waves'), trim(model%waves), given=.false.)
+      if (reads(case, 'law')) &
+         call other%set(other%address('contact', 'law'), trim(model%law), given=.false.)
+      if (reads(case, 'pair')) &
+         call other%set(other%address('contact', 'pair'), trim(model%pair), given=.false.)
+      call other%set(other%address('solver', 'method'), 'auto', given=.false.)
+      call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
+      call other%unset(other%address('solver', 'continue_after_separation'))
+      ! a layer is solved to what it can be
+      if (model%waves == 'body') call other%unset(other%address('solver', 'accuracy'))
+      call problem_of_case(problem, other, error)
+      valid = .not. allocated(error)
+      if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
+      if (allocated(error)) then
+         model%failure = error%message
+         ! a number with an error above all bounds is none
+         model%outcome = outcome_t()
+      end if
+   end subroutine solve_model
+
+end module vcor_verify_models
