@@ -1,22 +1,50 @@
-!> The files of a case, what is in their place before, and its bare numbers
+!> The files of a case: their names, what is in their place before, and writing them; and the bare
+!> numbers of `--print`
 module vcor_app_files
    use, intrinsic :: iso_fortran_env, only : error_unit, int64
    use vcor_app_cli, only : request_t
-   use vcor_app_job, only : directory_of, job_t
-   use vcor_error, only : error_file, error_t, raise
+   use vcor_case_case, only : case_t
+   use vcor_case_grid, only : grid_t
+   use vcor_error, only : error_file, error_t, error_usage, raise
    use vcor_io_csv, only : write_csv, write_rows
    use vcor_io_file, only : write_stdout
    use vcor_io_hdf5, only : write_hdf5
    use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_csv, read_identity
-   use vcor_io_path, only : make_directory, plain_file_exists, quoted_path
+   use vcor_io_path, only : directory_exists, folder_of, join_path, make_directory, &
+      plain_file_exists, quoted_path
    use vcor_io_table, only : place_in_table, table_t
+   use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : quantities
+   use vcor_text, only : integer_text, name_flaw, printable
    implicit none
    private
 
-   public :: write_files, write_numbers
+   public :: files_t, name_files, write_files, write_numbers
    public :: previous_t, find_previous, check_finished, replacement_note, remark
+
+   !> Letters of the longest ending
+   integer, parameter :: longest_ending = 24
+   !> What the names of the files of run end with
+   character(len=*), parameter :: run_endings(3) = [character(len=longest_ending) :: &
+      '_summary.csv', '.csv', '.h5']
+   !> What the names of the files of material end with
+   character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
+      '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
+
+   !> The files of a case
+   type :: files_t
+      !> Directory and stem
+      character(len=:), allocatable :: path
+      !> What their names end with
+      character(len=longest_ending), allocatable :: endings(:)
+      !> Which of them are written, in the order of `endings`
+      logical, allocatable :: writes(:)
+      !> Whether there is a time history in them
+      logical :: history = .true.
+   contains
+      procedure :: name, written, directory
+   end type files_t
 
    !> Results that are there
    type :: previous_t
@@ -32,14 +60,164 @@ module vcor_app_files
 
 contains
 
+   !> Name of a file
+   pure function name(self, i)
+      class(files_t), intent(in) :: self
+      integer, intent(in) :: i
+      !> The name; empty if the file is not written
+      character(len=:), allocatable :: name
+
+      name = ''
+      if (self%writes(i)) name = self%path//trim(self%endings(i))
+   end function name
+
+   !> Names of the files that are written, one to a line of the screen
+   pure function written(self) result(text)
+      class(files_t), intent(in) :: self
+      character(len=:), allocatable :: text
+
+      integer :: i
+
+      text = ''
+      do i = 1, size(self%endings)
+         if (self%writes(i)) text = text//'  written '//self%name(i)//new_line('a')
+      end do
+   end function written
+
+   !> Find out which files a case writes, and where
+   subroutine name_files(request, case, grid, is_alone, files, part, error)
+      type(request_t), intent(in) :: request
+      !> A case that was read
+      type(case_t), intent(in) :: case
+      !> Its points
+      type(grid_t), intent(in) :: grid
+      !> Whether it is the only one
+      logical, intent(in) :: is_alone
+      type(files_t), intent(out) :: files
+      !> Points that are solved: all, or those of --shard
+      type(part_t), intent(out) :: part
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: directory, stem
+      logical :: csv, hdf5
+
+      call case%get('output', 'directory', directory)
+      if (allocated(request%directory)) directory = request%directory
+      call case%get('output', 'stem', stem)
+      call check_name(case, 'directory', directory, error)
+      if (.not. allocated(error)) call check_name(case, 'stem', stem, error)
+      if (.not. allocated(error)) call take_shard(request, case, grid, part, error)
+      if (allocated(error)) return
+      files%path = join_path(directory, stem)
+      call case%get('output', 'csv', csv)
+      call case%get('output', 'hdf5', hdf5)
+      call case%get('output', 'history', files%history)
+      ! a time history is that of one impact
+      files%history = files%history .and. size(grid%axes) == 0
+      if (request%command == 'material') then
+         files%endings = material_endings
+         files%writes = [csv, csv, csv, hdf5]
+      else
+         files%endings = run_endings
+         files%writes = [csv, csv .and. files%history, hdf5]
+      end if
+      ! bare numbers are for scripts, which would be surprised by files
+      if (size(request%names) > 0 .and. .not. allocated(request%directory)) files%writes = .false.
+      if (request%command == 'verify' .or. request%command == 'fit') files%writes = .false.
+      files%history = files%history .and. any(files%writes)
+      ! what vcor merge reads
+      if (request%shards > 0) files%writes = [.false., .false., .true.]
+      if (is_alone) call take_file_name(request, files)
+      if (request%shards > 0) files%path = files%path//'_shard_'//integer_text(request%shard) &
+         //'_of_'//integer_text(request%shards)
+      if (request%resume .and. .not. any(files%writes)) call raise(error, error_usage, &
+         '--resume: no file is written that could be resumed; --print needs --output for it')
+   end subroutine name_files
+
+   !> Check a name that files are written under
+   subroutine check_name(case, key, name, error)
+      type(case_t), intent(in) :: case
+      !> Key of &output
+      character(len=*), intent(in) :: key
+      !> Its value, or what stands for it
+      character(len=*), intent(in) :: name
+      !> Error of code `error_input`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      character(len=:), allocatable :: flaw
+
+      flaw = name_flaw(name)
+      if (flaw /= '') call case%refuse('output', key, 1, 'output.'//key//": the name '" &
+         //printable(name)//"' "//flaw//', expected another name', error)
+   end subroutine check_name
+
+   !> Take the part of --shard
+   subroutine take_shard(request, case, grid, part, error)
+      type(request_t), intent(in) :: request
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
+      type(part_t), intent(out) :: part
+      !> Error of code `error_usage`, unallocated on success
+      type(error_t), allocatable, intent(out) :: error
+
+      part = new_part(grid%count(), max(1, request%shard), max(1, request%shards))
+      if (request%shards == 0) return
+      if (size(grid%axes) == 0) then
+         call raise(error, error_usage, '--shard takes a part of a sweep, but ' &
+            //case%source//' has no &sweep group')
+      else if (request%shards > part%points) then
+         call raise(error, error_usage, '--shard: found '//integer_text(request%shard)//'/' &
+            //integer_text(request%shards)//', but '//case%source//' has ' &
+            //integer_text(part%points)//' points; expected no more shards than points')
+      end if
+   end subroutine take_shard
+
+   !> The value of --output is the file itself, where one file is written and the name ends as its
+   !> name does
+   subroutine take_file_name(request, files)
+      type(request_t), intent(in) :: request
+      !> The files, whose path and ending change
+      type(files_t), intent(inout) :: files
+
+      character(len=:), allocatable :: directory, extension, name
+      integer :: one, last
+      logical :: is_file
+
+      if (.not. allocated(request%directory) .or. count(files%writes) /= 1) return
+      one = findloc(files%writes, .true., dim=1)
+      extension = trim(files%endings(one)(index(files%endings(one), '.'):))
+      directory = folder_of(request%directory)
+      name = request%directory(len(directory) + 1:)
+      last = len(name) - len(extension)
+      is_file = .not. directory_exists(request%directory)
+      if (is_file .and. last > 0) is_file = name(last + 1:) == extension
+      if (is_file .and. last > 0) then
+         files%path = directory//name(:last)
+         files%endings(one) = extension
+      end if
+   end subroutine take_file_name
+
+   !> Directory of the files
+   pure function directory(self)
+      class(files_t), intent(in) :: self
+      !> Its path, empty for the current one
+      character(len=:), allocatable :: directory
+
+      integer :: slash
+
+      slash = index(self%path, '/', back=.true.)
+      if (slash > 1) slash = slash - 1
+      directory = self%path(:slash)
+   end function directory
+
    !> Write the files of a case: a text for each table, and all of them as HDF5. That comes last:
    !> where it is there, all is there
-   subroutine write_files(job, tables, files, error, data, threads)
-      type(job_t), intent(in) :: job
+   subroutine write_files(files, tables, lines, error, data, threads)
+      type(files_t), intent(in) :: files
       !> Tables in the order of the files, shape (n)
       type(table_t), intent(in) :: tables(:)
       !> What was written, one to a line of the screen
-      character(len=:), allocatable, intent(out) :: files
+      character(len=:), allocatable, intent(out) :: lines
       type(error_t), allocatable, intent(out) :: error
       !> Sum over the data files of the case, for `--resume`
       character(len=*), intent(in), optional :: data
@@ -48,17 +226,17 @@ contains
 
       integer :: i
 
-      files = ''
-      if (.not. any(job%writes)) return
-      call make_directory(directory_of(job), error)
+      lines = ''
+      if (.not. any(files%writes)) return
+      call make_directory(files%directory(), error)
       do i = 1, size(tables)
-         if (job%writes(i) .and. .not. allocated(error)) &
-            call write_csv(job%file(i), tables(i), error, threads)
+         if (files%writes(i) .and. .not. allocated(error)) &
+            call write_csv(files%name(i), tables(i), error, threads)
       end do
-      i = size(job%writes)
-      if (job%writes(i) .and. .not. allocated(error)) &
-         call write_hdf5(job%file(i), tables, error, data)
-      if (.not. allocated(error)) files = job%written()
+      i = size(files%writes)
+      if (files%writes(i) .and. .not. allocated(error)) &
+         call write_hdf5(files%name(i), tables, error, data)
+      if (.not. allocated(error)) lines = files%written()
    end subroutine write_files
 
    !> Bare numbers for --print, a line per impact
@@ -74,8 +252,8 @@ contains
    end subroutine write_numbers
 
    !> Look for results
-   subroutine find_previous(job, expected, previous)
-      type(job_t), intent(in) :: job
+   subroutine find_previous(files, expected, previous)
+      type(files_t), intent(in) :: files
       !> What they should be about
       type(identity_t), intent(in) :: expected
       type(previous_t), intent(out) :: previous
@@ -86,8 +264,8 @@ contains
 
       ! HDF5 first; a history says nothing that the others do not
       do i = 3, 1, -2
-         previous%path = job%file(i)
-         if (job%writes(i)) previous%exist = plain_file_exists(previous%path)
+         previous%path = files%name(i)
+         if (files%writes(i)) previous%exist = plain_file_exists(previous%path)
          if (previous%exist) exit
       end do
       if (.not. previous%exist) return
@@ -109,10 +287,12 @@ contains
    end subroutine find_previous
 
    !> Whether there is nothing to do: with --resume, where the results are there
-   subroutine check_finished(request, job, previous, is_finished, error)
+   subroutine check_finished(request, files, previous, points, is_finished, error)
       type(request_t), intent(in) :: request
-      type(job_t), intent(in) :: job
+      type(files_t), intent(in) :: files
       type(previous_t), intent(in) :: previous
+      !> Number of points that the results are of
+      integer, intent(in) :: points
       logical, intent(out) :: is_finished
       !> With --resume: what is there is about something else
       type(error_t), allocatable, intent(out) :: error
@@ -125,7 +305,7 @@ contains
          error = previous%objection
          return
       end if
-      is_finished = is_whole(job, previous)
+      is_finished = is_whole(files, previous, points)
       if (.not. is_finished) return
       text = quoted_path(previous%path)//' is finished, there is nothing to resume'
       if (size(request%names) > 0) then
@@ -136,27 +316,29 @@ contains
    end subroutine check_finished
 
    !> Whether all files are there, and the CSV files have all of their rows
-   function is_whole(job, previous)
-      type(job_t), intent(in) :: job
+   function is_whole(files, previous, points)
+      type(files_t), intent(in) :: files
       !> What is there, about this case
       type(previous_t), intent(in) :: previous
+      !> Number of points that the results are of
+      integer, intent(in) :: points
       !> Whether nothing is missing
       logical :: is_whole
 
       type(identity_t) :: identity
       integer :: rows
 
-      is_whole = .not. job%writes(3)
+      is_whole = .not. files%writes(3)
       ! the summary of an earlier version has fewer columns
       associate (list => quantities())
          if (previous%has_hdf5) is_whole = rows_in(previous%path, 'summary/'//list%name) > 0
       end associate
-      if (is_whole .and. job%writes(1)) then
-         call read_csv(job%file(1), identity, rows)
-         is_whole = rows == job%part%count()
+      if (is_whole .and. files%writes(1)) then
+         call read_csv(files%name(1), identity, rows)
+         is_whole = rows == points
       end if
-      if (.not. (is_whole .and. job%writes(2))) return
-      call read_csv(job%file(2), identity, rows)
+      if (.not. (is_whole .and. files%writes(2))) return
+      call read_csv(files%name(2), identity, rows)
       is_whole = rows > 0
       if (previous%has_hdf5) is_whole = rows == rows_in(previous%path, ['history/time'])
    end function is_whole

@@ -1,6 +1,7 @@
 !> The cases of a call, read and ready to run
 module vcor_app_job
    use vcor_app_cli, only : request_t
+   use vcor_app_files, only : files_t, name_files
    use vcor_app_screen, only : significant
    use vcor_case_case, only : case_t
    use vcor_case_catalogue, only : catalogue, key_t, real_key
@@ -10,25 +11,21 @@ module vcor_app_job
    use vcor_case_values, only : range_message
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_case_reader, only : add_materials, override, read_case
    use vcor_io_data_file, only : data_file, read_data
-   use vcor_io_path, only : directory_exists, folder_of, join_path, same_file
+   use vcor_io_path, only : same_file
    use vcor_kinds, only : wp
-   use vcor_text, only : integer_text, name_flaw, printable
+   use vcor_text, only : integer_text, printable
    use vcor_words, only : contains_word, suggestion
    use vcor_solver, only : method_for
-   use vcor_sweep_part, only : new_part, part_t
+   use vcor_sweep_part, only : part_t
    use vcor_sweep_quantity, only : quantity_names
    use vcor_sweep_points, only : new_sweep, solve_point, sweep_t, worker_t
    implicit none
    private
 
-   public :: job_t, window_t, prepare, find_window, file_read, name_files, directory_of, shard_text
-
-   !> Letters of the longest ending
-   integer, parameter :: longest_ending = 24
+   public :: job_t, window_t, prepare, find_window, file_read, shard_text
 
    !> One case of a call, ready to run
    type :: job_t
@@ -37,19 +34,9 @@ module vcor_app_job
       type(sweep_t) :: sweep
       !> Those of them that are to be solved
       type(part_t) :: part
-      !> Its impact where it has one only
-      type(impact_t) :: impact
       character(len=:), allocatable :: method
-      !> Directory and stem of its files
-      character(len=:), allocatable :: path
-      !> What the names of its files end with
-      character(len=longest_ending), allocatable :: endings(:)
-      !> Which of its files it writes, in the order of `endings`
-      logical, allocatable :: writes(:)
-      !> Whether there is a time history in them
-      logical :: history = .true.
-   contains
-      procedure :: file, written, coordinates, case_at
+      !> Its files
+      type(files_t) :: files
    end type job_t
 
    !> The impact of a case as that on which commands about its materials look: its contact time
@@ -67,74 +54,7 @@ module vcor_app_job
       character(len=:), allocatable :: notes
    end type window_t
 
-   !> What the names of the files of run end with
-   character(len=*), parameter :: run_endings(3) = [character(len=longest_ending) :: &
-      '_summary.csv', '.csv', '.h5']
-   !> What the names of the files of material end with
-   character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
-      '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
-
 contains
-
-   !> Name of a file
-   pure function file(self, i)
-      class(job_t), intent(in) :: self
-      integer, intent(in) :: i
-      !> The name; empty if the file is not written
-      character(len=:), allocatable :: file
-
-      file = ''
-      if (self%writes(i)) file = self%path//trim(self%endings(i))
-   end function file
-
-   !> Names of the files that are written, one to a line of the screen
-   pure function written(self) result(text)
-      class(job_t), intent(in) :: self
-      character(len=:), allocatable :: text
-
-      integer :: i
-
-      text = ''
-      do i = 1, size(self%endings)
-         if (self%writes(i)) text = text//'  written '//self%file(i)//new_line('a')
-      end do
-   end function written
-
-   !> Names and values of the swept parameters at a point
-   function coordinates(self, point) result(text)
-      class(job_t), intent(in) :: self
-      integer, intent(in) :: point
-      character(len=:), allocatable :: text
-
-      integer :: i, places(size(self%sweep%grid%axes))
-
-      places = self%sweep%grid%places(point)
-      text = ''
-      do i = 1, size(places)
-         if (i > 1) text = text//', '
-         associate (axis => self%sweep%grid%axes(i))
-            text = text//axis%name//' = '//significant(axis%values(places(i)), 8, 0)
-         end associate
-      end do
-   end function coordinates
-
-   !> The case with the values of a point of its sweep
-   pure function case_at(self, point) result(case)
-      class(job_t), intent(in) :: self
-      integer, intent(in) :: point
-      type(case_t) :: case
-
-      integer :: i, places(size(self%sweep%grid%axes))
-
-      places = self%sweep%grid%places(point)
-      case = self%case
-      do i = 1, size(places)
-         associate (axis => self%sweep%grid%axes(i))
-            call case%oust(axis%address, always=.true.)
-            call case%set(axis%address, axis%values(places(i)))
-         end associate
-      end do
-   end function case_at
 
    !> Read, override, validate and build all cases of a request
    subroutine prepare(request, jobs, error)
@@ -148,8 +68,25 @@ contains
       call read_cases(request, jobs, error)
       if (allocated(error)) return
       do i = 1, size(jobs)
-         call prepare_job(request, jobs(i), error)
-         if (.not. allocated(error)) call name_files(request, jobs(i), size(jobs) == 1, error)
+         associate (job => jobs(i))
+            do j = 1, size(request%settings)
+               if (.not. allocated(error)) call override(job%case, request%settings(j)%text, &
+                  error, option='--set')
+            end do
+            if (.not. allocated(error)) call validate(job%case, error)
+            if (.not. allocated(error)) call refuse_unread(job%case, &
+               any(request%command == ['material', 'fit     ']), error)
+            if (.not. allocated(error)) call read_data(job%case, error)
+            if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
+            if (allocated(error)) return
+            if (request%command == 'verify' .and. job%sweep%is_grid()) call job%case%refuse( &
+               'sweep', 'parameter', 1, 'verify takes single impacts, found a &sweep group', error)
+            if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
+            job%method = method_for(job%sweep%problem%settings%method, &
+               job%sweep%problem%settings%scheme)
+            if (.not. allocated(error)) call name_files(request, job%case, job%sweep%grid, &
+               size(jobs) == 1, job%files, job%part, error)
+         end associate
          do j = 1, i
             if (.not. allocated(error)) call refuse_clash(jobs(i), jobs(j), i == j, error)
          end do
@@ -190,163 +127,6 @@ contains
          end if
       end do
    end subroutine read_cases
-
-   !> Override, validate and build one case
-   subroutine prepare_job(request, job, error)
-      type(request_t), intent(in) :: request
-      !> The case as it was read; the names of its files are left out
-      type(job_t), intent(inout) :: job
-      type(error_t), allocatable, intent(out) :: error
-
-      integer :: i
-
-      do i = 1, size(request%settings)
-         if (.not. allocated(error)) call override(job%case, &
-            request%settings(i)%text, error, option='--set')
-      end do
-      if (.not. allocated(error)) call validate(job%case, error)
-      if (.not. allocated(error)) call refuse_unread(job%case, &
-         any(request%command == ['material', 'fit     ']), error)
-      if (.not. allocated(error)) call read_data(job%case, error)
-      if (.not. allocated(error)) call new_sweep(job%sweep, job%case, error)
-      if (allocated(error)) return
-      if (.not. job%sweep%is_grid()) then
-         job%impact = job%sweep%problem%impact
-      else if (request%command == 'verify') then
-         call job%case%refuse('sweep', 'parameter', 1, &
-            'verify takes single impacts, found a &sweep group', error)
-      end if
-      if (.not. allocated(error)) call check_names(request, job%sweep%grid, error)
-      job%method = method_for(job%sweep%problem%settings%method, &
-         job%sweep%problem%settings%scheme)
-   end subroutine prepare_job
-
-   !> Find out which files a case writes, and where
-   subroutine name_files(request, job, is_alone, error)
-      type(request_t), intent(in) :: request
-      !> A case that was read
-      type(job_t), intent(inout) :: job
-      !> Whether it is the only one
-      logical, intent(in) :: is_alone
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: directory, stem
-      logical :: csv, hdf5
-
-      call job%case%get('output', 'directory', directory)
-      if (allocated(request%directory)) directory = request%directory
-      call job%case%get('output', 'stem', stem)
-      call check_output_name(job, 'directory', directory, error)
-      if (.not. allocated(error)) call check_output_name(job, 'stem', stem, error)
-      if (allocated(error)) return
-      job%path = join_path(directory, stem)
-      call job%case%get('output', 'csv', csv)
-      call job%case%get('output', 'hdf5', hdf5)
-      call job%case%get('output', 'history', job%history)
-      ! a time history is that of one impact
-      job%history = job%history .and. .not. job%sweep%is_grid()
-      if (request%command == 'material') then
-         job%endings = material_endings
-         job%writes = [csv, csv, csv, hdf5]
-      else
-         job%endings = run_endings
-         job%writes = [csv, csv .and. job%history, hdf5]
-      end if
-      ! bare numbers are for scripts, which would be surprised by files
-      if (size(request%names) > 0 .and. .not. allocated(request%directory)) job%writes = .false.
-      if (request%command == 'verify' .or. request%command == 'fit') job%writes = .false.
-      job%history = job%history .and. any(job%writes)
-      job%part = new_part(job%sweep%grid%count(), 1, 1)
-      call take_shard(request, job, error)
-      if (allocated(error)) return
-      if (is_alone) call take_file_name(request, job)
-      if (request%shards > 0) job%path = job%path//'_shard_'//integer_text(request%shard) &
-         //'_of_'//integer_text(request%shards)
-      if (request%resume .and. .not. any(job%writes)) call raise(error, error_usage, &
-         '--resume: no file is written that could be resumed; --print needs --output for it')
-   end subroutine name_files
-
-   !> Check a name that files are written under
-   subroutine check_output_name(job, key, name, error)
-      type(job_t), intent(in) :: job
-      !> Key of &output
-      character(len=*), intent(in) :: key
-      !> Its value, or what stands for it
-      character(len=*), intent(in) :: name
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: flaw
-
-      flaw = name_flaw(name)
-      if (flaw /= '') call job%case%refuse('output', key, 1, 'output.'//key//": the name '" &
-         //printable(name)//"' "//flaw//', expected another name', error)
-   end subroutine check_output_name
-
-   !> Take the part of --shard
-   subroutine take_shard(request, job, error)
-      type(request_t), intent(in) :: request
-      type(job_t), intent(inout) :: job
-      !> Error of code `error_usage`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=:), allocatable :: number, parts
-
-      if (request%shards == 0) return
-      number = integer_text(request%shard)
-      parts = integer_text(request%shards)
-      if (.not. job%sweep%is_grid()) then
-         call raise(error, error_usage, '--shard takes a part of a sweep, but ' &
-            //job%case%source//' has no &sweep group')
-         return
-      else if (request%shards > job%part%points) then
-         call raise(error, error_usage, '--shard: found '//number//'/'//parts//', but ' &
-            //job%case%source//' has '//integer_text(job%part%points) &
-            //' points; expected no more shards than points')
-         return
-      end if
-      job%part = new_part(job%part%points, request%shard, request%shards)
-      ! what vcor merge reads
-      job%writes = [.false., .false., .true.]
-   end subroutine take_shard
-
-   !> The value of --output is the file itself, where one file is written and the name ends as its
-   !> name does
-   subroutine take_file_name(request, job)
-      type(request_t), intent(in) :: request
-      !> The case, whose path and ending change
-      type(job_t), intent(inout) :: job
-
-      character(len=:), allocatable :: directory, extension, name
-      integer :: one, last
-      logical :: is_file
-
-      if (.not. allocated(request%directory) .or. count(job%writes) /= 1) return
-      one = findloc(job%writes, .true., dim=1)
-      extension = trim(job%endings(one)(index(job%endings(one), '.'):))
-      directory = folder_of(request%directory)
-      name = request%directory(len(directory) + 1:)
-      last = len(name) - len(extension)
-      is_file = .not. directory_exists(request%directory)
-      if (is_file .and. last > 0) is_file = name(last + 1:) == extension
-      if (is_file .and. last > 0) then
-         job%path = directory//name(:last)
-         job%endings(one) = extension
-      end if
-   end subroutine take_file_name
-
-   !> Directory of the files of a case
-   pure function directory_of(job) result(directory)
-      type(job_t), intent(in) :: job
-      !> Its path, empty for the current one
-      character(len=:), allocatable :: directory
-
-      integer :: slash
-
-      slash = index(job%path, '/', back=.true.)
-      if (slash > 1) slash = slash - 1
-      directory = job%path(:slash)
-   end function directory_of
 
    !> Which shard, for messages
    function shard_text(part) result(text)
@@ -400,11 +180,11 @@ contains
       call keep_inputs(new, old)
       if (is_same .or. allocated(error)) return
       call keep_inputs(old, new)
-      do i = 1, size(new%endings)
-         do j = 1, size(old%endings)
+      do i = 1, size(new%files%writes)
+         do j = 1, size(old%files%writes)
             if (allocated(error)) return
-            if (.not. (new%writes(i) .and. old%writes(j))) cycle
-            if (same_file(new%file(i), old%file(j))) call raise(error, error_input, &
+            if (.not. (new%files%writes(i) .and. old%files%writes(j))) cycle
+            if (same_file(new%files%name(i), old%files%name(j))) call raise(error, error_input, &
                new%case%source//': its files would replace those of '//old%case%source &
                //': give one of them another output.stem')
          end do
@@ -418,9 +198,9 @@ contains
 
          character(len=:), allocatable :: path, kind
 
-         do i = 1, size(writer%endings)
-            if (.not. writer%writes(i)) cycle
-            path = file_read(reader%case, writer%file(i))
+         do i = 1, size(writer%files%writes)
+            if (.not. writer%files%writes(i)) cycle
+            path = file_read(reader%case, writer%files%name(i))
             kind = trim(merge('case', 'data', path == reader%case%source))
             if (path /= '') call raise(error, error_input, writer%case%source//': its results ' &
                //'would replace the '//kind//' file '//path//': give it another output.stem')
@@ -468,7 +248,7 @@ contains
       type(key_t) :: key
       integer :: i
 
-      window%case = job%case_at(1)
+      window%case = job%sweep%grid%case_at(job%case, 1)
       window%notes = ''
       do i = 1, size(job%sweep%grid%axes)
          associate (axis => job%sweep%grid%axes(i))

@@ -63,15 +63,21 @@ program vcor_main
 
 contains
 
-   !> Do what is asked for. All ranks run cases; for the rest one is enough
+   !> Do what is asked for. All ranks run cases; for the rest one is enough. All cases are read and
+   !> validated before the first one runs, so that a mistake in the last does not come after hours.
+   !> A case that fails numerically does not stop the others, anything else does
    subroutine execute(request, error)
       type(request_t), intent(in) :: request
-      !> The first error, unallocated on success
+      !> The last error, unallocated on success; those before it are said
       type(error_t), allocatable, intent(out) :: error
 
+      type(job_t), allocatable :: jobs(:)
+      type(error_t), allocatable :: trouble
       character(len=:), allocatable :: text, topic
+      integer :: i
 
       if (this_rank() > 0 .and. request%command /= 'run') return
+      allocate (jobs(0))
       select case (request%command)
       case ('version')
          call write_stdout('vcor '//version//new_line('a'), error)
@@ -92,31 +98,17 @@ contains
          if (size(request%files) == 0) then
             call verify_program(request%quiet, error)
          else
-            call treat_cases(request, error)
+            call prepare(request, jobs, error)
+            if (request%command == 'run') call share_error(error)
          end if
       end select
-   end subroutine execute
-
-   !> Run, check or verify cases, or show their materials. All are read and validated before the
-   !> first one runs, so that a mistake in the last does not come after hours. A case that fails
-   !> numerically does not stop the others, anything else does
-   subroutine treat_cases(request, error)
-      type(request_t), intent(in) :: request
-      !> The last error; those before it are said
-      type(error_t), allocatable, intent(out) :: error
-
-      type(job_t), allocatable :: jobs(:)
-      type(error_t), allocatable :: trouble
-      integer :: i
-
-      call prepare(request, jobs, error)
-      if (request%command == 'run') call share_error(error)
       if (allocated(error)) return
       do i = 1, size(jobs)
          select case (request%command)
          case ('run')
             ! all ranks run a sweep, the first one an impact
-            if (this_rank() == 0 .and. .not. request%quiet) call warn_of_slips(jobs(i))
+            if (this_rank() == 0 .and. .not. request%quiet) &
+               call warn_of_slips(jobs(i)%case, jobs(i)%sweep%grid)
             if (jobs(i)%sweep%is_grid()) then
                call run_sweep(request, jobs(i), trouble)
             else if (this_rank() == 0) then
@@ -124,7 +116,7 @@ contains
             end if
             call share_error(trouble)
          case ('check')
-            call warn_of_slips(jobs(i))
+            call warn_of_slips(jobs(i)%case, jobs(i)%sweep%grid)
             call write_stdout(case_text(jobs(i)%case, complete=.true., remarks=.true.) &
                //chosen(jobs(i)), trouble)
          case ('material')
@@ -137,7 +129,7 @@ contains
          call move_alloc(trouble, error)
          if (error%code /= error_numerical) return
       end do
-   end subroutine treat_cases
+   end subroutine execute
 
    !> One line on stderr; all ranks have the same to say
    subroutine complain(error)
@@ -163,7 +155,8 @@ contains
       if (job%sweep%is_grid()) then
          text = text//'! points: '//integer_text(job%sweep%grid%count())//new_line('a')
       else if (.not. job%case%given('sphere', 'mass')) then
-         text = text//'! mass of the sphere: '//decimal_text(job%impact%mass)//' kg'//new_line('a')
+         text = text//'! mass of the sphere: ' &
+            //decimal_text(job%sweep%problem%impact%mass)//' kg'//new_line('a')
       end if
    end function chosen
 

@@ -53,7 +53,7 @@ contains
          call case%get('case', 'title', title)
          call moduli_tables(moduli, title, case_text(case, complete=.true.), tables)
       end associate
-      call write_files(job, tables, files, error)
+      call write_files(job%files, tables, files, error)
       if (allocated(error) .or. request%quiet) return
       call write_stdout(report(job%case%source, title, moduli)//window%notes//files//nl, error)
    end subroutine show_materials

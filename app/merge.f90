@@ -1,11 +1,12 @@
 !> Merging the shards of a sweep: the files of a run that has solved it in one piece
 module vcor_app_merge
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : find_previous, previous_t, remark, replacement_note, write_files
-   use vcor_app_job, only : job_t, name_files
+   use vcor_app_files, only : files_t, find_previous, name_files, previous_t, remark, &
+      replacement_note, write_files
    use vcor_app_validity, only : points_report
+   use vcor_case_case, only : case_t
    use vcor_case_checks, only : validate
-   use vcor_case_grid, only : new_grid
+   use vcor_case_grid, only : grid_t, new_grid
    use vcor_error, only : error_file, error_numerical, error_t, raise
    use vcor_impact_trajectory, only : contact_separated
    use vcor_io_case_reader, only : read_case_text
@@ -15,7 +16,7 @@ module vcor_app_merge
    use vcor_io_path, only : quoted_path, same_file
    use vcor_io_results, only : summary_table
    use vcor_io_table, only : table_t
-   use vcor_sweep_part, only : new_part
+   use vcor_sweep_part, only : new_part, part_t
    use vcor_sweep_quantity, only : new_summary, point_pending, status_name, summary_t
    use vcor_text, only : integer_text
    use vcor_version, only : version
@@ -34,7 +35,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: identity
-      type(job_t) :: job
+      type(case_t) :: case
+      type(grid_t) :: grid
       type(summary_t) :: summary
       type(error_t), allocatable :: trouble
       integer, allocatable :: numbers(:)
@@ -42,11 +44,11 @@ contains
       call identify(request, identity, numbers, error)
       if (allocated(error)) return
       associate (path => request%files(1)%text)
-         call read_case_text(job%case, identity%case_text, path, error)
-         if (.not. allocated(error)) call validate(job%case, error)
-         if (.not. allocated(error)) call new_grid(job%case, job%sweep%grid, error)
+         call read_case_text(case, identity%case_text, path, error)
+         if (.not. allocated(error)) call validate(case, error)
+         if (.not. allocated(error)) call new_grid(case, grid, error)
          if (allocated(error)) return
-         associate (points => job%sweep%grid%count())
+         associate (points => grid%count())
             if (points /= identity%part%points) then
                call raise(error, error_file, quoted_path(path)//' has a case of ' &
                   //integer_text(points)//' points, expected '//integer_text(identity%part%points))
@@ -58,7 +60,7 @@ contains
       if (allocated(error)) return
       identity%part = new_part(identity%part%points, 1, 1)
       call judge(identity, summary, error)
-      call write_merged(request, job, identity, summary, trouble)
+      call write_merged(request, case, grid, identity, summary, trouble)
       if (allocated(trouble)) call move_alloc(trouble, error)
    end subroutine merge_shards
 
@@ -192,38 +194,40 @@ contains
    end subroutine judge
 
    !> Write the files of the whole sweep
-   subroutine write_merged(request, job, identity, summary, error)
+   subroutine write_merged(request, case, grid, identity, summary, error)
       type(request_t), intent(in) :: request
-      !> The case and its grid
-      type(job_t), intent(inout) :: job
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
       !> What the sweep is about
       type(identity_t), intent(in) :: identity
       type(summary_t), intent(inout) :: summary
       type(error_t), allocatable, intent(out) :: error
 
       type(previous_t) :: previous
+      type(files_t) :: files
+      type(part_t) :: all
       type(table_t) :: tables(1)
-      character(len=:), allocatable :: files, validity
+      character(len=:), allocatable :: lines, validity
       integer :: i
 
-      call name_files(request, job, size(request%files) == 1, error)
+      call name_files(request, case, grid, size(request%files) == 1, files, all, error)
       if (allocated(error)) return
       do i = 1, size(request%files)
-         if (.not. same_file(request%files(i)%text, job%file(3))) cycle
+         if (.not. same_file(request%files(i)%text, files%name(3))) cycle
          call raise(error, error_file, quoted_path(request%files(i)%text) &
             //' would be replaced by what it is merged into: give another --output')
          return
       end do
-      call find_previous(job, identity, previous)
-      validity = points_report(job%sweep%grid, summary)
+      call find_previous(files, identity, previous)
+      validity = points_report(grid, summary)
       if (len(validity) > 0) validity = validity//new_line('a')
-      call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
-      call write_files(job, tables, files, error, identity%data)
+      call summary_table(tables(1), identity%title, identity%case_text, grid, summary)
+      call write_files(files, tables, lines, error, identity%data)
       if (allocated(error)) return
       call remark(replacement_note(previous))
       if (.not. request%quiet) call write_stdout(integer_text(size(request%files))//' shards, ' &
-         //integer_text(job%sweep%grid%count())//' impacts'//new_line('a')//new_line('a') &
-         //validity//files, error)
+         //integer_text(grid%count())//' impacts'//new_line('a')//new_line('a') &
+         //validity//lines, error)
    end subroutine write_merged
 
 end module vcor_app_merge

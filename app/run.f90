@@ -46,16 +46,18 @@ contains
       logical :: is_finished
 
       identity = identity_of(job%case, job%part)
-      call find_previous(job, identity, previous)
-      call check_finished(request, job, previous, is_finished, error)
+      call find_previous(job%files, identity, previous)
+      call check_finished(request, job%files, previous, job%part%count(), &
+         is_finished, error)
       if (allocated(error) .or. is_finished) return
 
       call new_summary(summary, 1, error)
       if (allocated(error)) return
       call solve_point(job%sweep, 1, worker, outcome, error)
       call summary%put(1, values_of(outcome))
-      if (.not. allocated(error)) call warn_of_bands(job, summary)
-      allocate (tables(merge(2, 1, job%history)))
+      if (.not. allocated(error)) call warn_of_bands(job%case, job%sweep%grid, &
+         summary)
+      allocate (tables(merge(2, 1, job%files%history)))
       call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
@@ -66,14 +68,14 @@ contains
          return
       end if
       call end_of(job, outcome, worker%trajectory, error)
-      if (job%history) call history_table(tables(2), identity%title, identity%case_text, &
+      if (job%files%history) call history_table(tables(2), identity%title, identity%case_text, &
          worker%trajectory)
-      call write_files(job, tables, files, trouble, identity%data)
+      call write_files(job%files, tables, files, trouble, identity%data)
       if (allocated(trouble)) then
          continue
       else if (size(request%names) > 0) then
          call write_numbers(request, tables(1), trouble)
-         if (.not. request%quiet) call remark(about_numbers(job, &
+         if (.not. request%quiet) call remark(about_numbers(job%case, &
             joined(joined(uncovered(job, outcome), inexact(outcome)), &
             measures_remark(outcome, worker%problem%around))))
       else if (.not. request%quiet) then
@@ -93,12 +95,12 @@ contains
          character(len=:), allocatable :: lines, method
          logical :: is_shown
 
-         lines = as_line('mechanics: '//mechanics_of(job))
+         lines = as_line('mechanics: '//mechanics_of(job%case))
          is_shown = .false.
          if (outcome%status == contact_separated) then
-            call solve_exact(job, outcome, exact, is_shown)
-            if (is_shown) lines = as_line('mechanics: '//mechanics_of(job)//'; exact: ' &
-               //mechanics_of(job, exact))
+            call solve_exact(job%case, outcome, exact, is_shown)
+            if (is_shown) lines = as_line('mechanics: '//mechanics_of(job%case)//'; exact: ' &
+               //mechanics_of(job%case, exact))
             if (allocated(exact%failure)) lines = lines &
                //as_line('note: no result with exact mechanics: '//exact%failure)
             lines = lines//measures_report(outcome, worker%problem%around)
@@ -204,7 +206,7 @@ contains
       if (any(outcome%status == [contact_separated, contact_resting])) return
       associate (last => trajectory%state(1, trajectory%last))
          time = short(last)
-         lambda = job%impact%lasting_inelasticity(last)
+         lambda = job%sweep%problem%impact%lasting_inelasticity(last)
       end associate
       too_light = 'the plate is too light: with an inelasticity lambda of ' &
          //trim(adjustl(significant(lambda, 3)))//' in so long a contact it takes up the blow, ' &
@@ -218,7 +220,7 @@ contains
             //'within '//time//' s: '//reason)
       else
          reason = 'the losses in the material leave no rebound'
-         if (.not. job%impact%modulus%rubbery() > 0.0_wp) &
+         if (.not. job%sweep%problem%impact%modulus%rubbery() > 0.0_wp) &
             reason = 'the material, without equilibrium modulus, does not push it back'
          if (lambda > light) reason = too_light
          call raise(error, error_numerical, job%case%source//': the sphere sticks: after ' &

@@ -1,6 +1,7 @@
 !> What the screen shows: headings, lines of a name, a number and a unit; an impact
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
+   use vcor_case_grid, only : grid_t
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : contact_separated
    use vcor_text, only : integer_text
@@ -11,7 +12,8 @@ module vcor_app_screen
    implicit none
    private
 
-   public :: report, shown, heading, line, padded, percent, right, short, significant, visible
+   public :: report, shown, heading, line, padded, percent, right, short, significant, visible, &
+      coordinates
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
@@ -227,6 +229,23 @@ contains
       buffer = adjustl(buffer)
       text = repeat(' ', max(0, w - len_trim(buffer)))//trim(buffer)
    end function significant
+
+   !> Names and values of the swept parameters at a point
+   function coordinates(grid, point) result(text)
+      type(grid_t), intent(in) :: grid
+      integer, intent(in) :: point
+      character(len=:), allocatable :: text
+
+      integer :: i, places(size(grid%axes))
+
+      places = grid%places(point)
+      text = ''
+      do i = 1, size(places)
+         text = text//', '//grid%axes(i)%name//' = ' &
+            //significant(grid%axes(i)%values(places(i)), 8, 0)
+      end do
+      text = text(3:)
+   end function coordinates
 
    !> A number with two significant digits
    pure function short(value) result(text)

@@ -7,8 +7,8 @@ module vcor_app_sweep
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
       replacement_note, write_files, write_numbers
-   use vcor_app_job, only : directory_of, job_t, shard_text
-   use vcor_app_screen, only : heading, padded, right, shown, significant
+   use vcor_app_job, only : job_t, shard_text
+   use vcor_app_screen, only : coordinates, heading, padded, right, shown, significant
    use vcor_app_signals, only : catch_signals, caught_signal, release_signals, &
       signal_name
    use vcor_app_validity, only : about_numbers, joined, points_remark, points_report, &
@@ -88,8 +88,8 @@ contains
       logical :: is_finished
 
       watch%identity = identity_of(job%case, job%part)
-      watch%path = job%path//'.part.h5'
-      watch%keeps = any(job%writes) .and. this_rank() == 0
+      watch%path = job%files%path//'.part.h5'
+      watch%keeps = any(job%files%writes) .and. this_rank() == 0
       is_finished = .false.
       if (this_rank() == 0) call begin(request, job, watch, previous, summary, is_finished, error)
       call share_error(error)
@@ -131,14 +131,15 @@ contains
       is_finished = .false.
       is_unfinished = .false.
       if (watch%keeps) is_unfinished = anything_at(watch%path)
-      call find_previous(job, watch%identity, previous)
+      call find_previous(job%files, watch%identity, previous)
       call need_memory(job, threads_of(request), error)
       if (.not. allocated(error)) call new_summary(summary, job%part%count(), error)
       if (.not. (allocated(error) .or. is_unfinished)) then
          if (request%resume .and. request%shards > 0) &
             call look_into_shard(previous, watch, summary, is_unfinished, error)
          if (.not. (is_unfinished .or. allocated(error))) &
-            call check_finished(request, job, previous, is_finished, error)
+            call check_finished(request, job%files, previous, job%part%count(), &
+         is_finished, error)
       end if
       if (allocated(error) .or. is_finished) return
       if (is_unfinished) then
@@ -149,7 +150,7 @@ contains
          call read_results(previous%path, summary, error)
       else if (watch%keeps) then
          ! better now than after hours
-         call make_directory(directory_of(job), error)
+         call make_directory(job%files%directory(), error)
       end if
       if (allocated(error)) return
       if (is_unfinished .and. .not. request%resume) call remark(quoted_path(watch%path) &
@@ -261,7 +262,7 @@ contains
       type(table_t) :: tables(1)
       character(len=:), allocatable :: files, validity, less
 
-      call warn_of_bands(job, summary)
+      call warn_of_bands(job%case, job%sweep%grid, summary)
       if (size(request%names) > 0) then
          validity = points_remark(job%sweep%grid, summary)
       else
@@ -269,7 +270,7 @@ contains
       end if
       associate (identity => watch%identity)
          call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
-         call write_files(job, tables, files, error, identity%data, threads_of(request))
+         call write_files(job%files, tables, files, error, identity%data, threads_of(request))
          if (allocated(error)) return
          ! now that everything is there under its own name
          call watch%file%remove()
@@ -278,7 +279,7 @@ contains
             if (request%quiet) return
             less = ''
             if (failures%inexact%count > 0) less = inexact(job, failures)
-            call remark(about_numbers(job, joined(less, validity)))
+            call remark(about_numbers(job%case, joined(less, validity)))
          else if (.not. request%quiet) then
             call write_stdout(report(job, identity%title, failures, files, &
                tables(1), validity), error)
@@ -296,7 +297,7 @@ contains
 
       character(len=:), allocatable :: path
 
-      path = job%path//trim(job%endings(3))
+      path = job%files%path//trim(job%files%endings(3))
       call watch%file%close_as(path, error)
       if (.not. allocated(error) .and. .not. request%quiet) &
          call write_stdout(report(job, watch%identity%title, failures, &
@@ -314,7 +315,8 @@ contains
       call raise(error, error_numerical, job%case%source//': '//integer_text(failures%count) &
          //' of '//integer_text(job%part%count())//' points'//shard_text(job%part) &
          //' without result, the first at ' &
-         //job%coordinates(failures%reason(1)%first)//': '//trim(failures%reason(1)%message))
+         //coordinates(job%sweep%grid, failures%reason(1)%first)//': ' &
+         //trim(failures%reason(1)%message))
    end subroutine end_of_sweep
 
    !> What the screen shows of a sweep or a shard: what is swept, between what the outcomes lie,
@@ -356,7 +358,7 @@ contains
       end if
       if (failures%inexact%count > 0) text = text//nl//'  note: '//inexact(job, failures)//nl
       call job%case%get('output', 'history', history)
-      if (history .and. any(job%writes) .and. job%part%parts == 1) text = text//nl &
+      if (history .and. any(job%files%writes) .and. job%part%parts == 1) text = text//nl &
          //'  note: time histories are written of single impacts only'//nl
       if (len(files) > 0) text = text//nl//files
       text = text//nl
@@ -414,7 +416,7 @@ contains
             text = text//'  '//right(integer_text(reason%count), 8)//'  ' &
                //trim(reason%message)//nl &
                //'            first at point '//integer_text(reason%first)//': ' &
-               //job%coordinates(reason%first)//nl
+               //coordinates(job%sweep%grid, reason%first)//nl
          end associate
       end do
    end function reasons
@@ -430,7 +432,7 @@ contains
       text = integer_text(failures%inexact%count)//' of '//integer_text(job%part%count()) &
          //' points'//shard_text(job%part)//' have an estimated error above the accuracy ' &
          //'asked for, the first one is point '//integer_text(failures%inexact%first)//': ' &
-         //job%coordinates(failures%inexact%first)
+         //coordinates(job%sweep%grid, failures%inexact%first)
    end function inexact
 
    !> Points are finished

@@ -4,12 +4,10 @@
 module vcor_app_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
-   use vcor_app_job, only : job_t
-   use vcor_app_screen, only : percent, short, significant
+   use vcor_app_screen, only : coordinates, percent, short, significant
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_grid, only : grid_t
-   use vcor_case_catalogue, only : find_group
-   use vcor_case_identified, only : find_band, find_reliance, reliance_t
+   use vcor_case_identified, only : find_reliance, reliance_t
    use vcor_case_problem, only : material_of_case
    use vcor_case_plausibility, only : note_length, slips_of
    use vcor_case_unread, only : why_unread
@@ -38,35 +36,36 @@ contains
 
    !> Warn on stderr of numbers that are not plausible, and note which materials are at their
    !> reference temperature because no other is given
-   subroutine warn_of_slips(job)
-      type(job_t), intent(in) :: job
+   subroutine warn_of_slips(case, grid)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
 
       character(len=note_length), allocatable :: notes(:)
       character(len=:), allocatable :: name
       real(wp) :: temperature
       integer :: i
 
-      call slips_of(job%case, job%sweep%grid, notes)
+      call slips_of(case, grid, notes)
       do i = 1, size(notes)
          write (error_unit, '(a)') 'vcor: warning: '//trim(notes(i))
       end do
-      if (job%case%given('impact', 'temperature')) return
-      do i = 1, size(job%sweep%grid%axes)
-         if (job%sweep%grid%axes(i)%name == 'impact.temperature') return
+      if (case%given('impact', 'temperature')) return
+      do i = 1, size(grid%axes)
+         if (grid%axes(i)%name == 'impact.temperature') return
       end do
-      do i = 1, job%case%count('material')
-         if (.not. job%case%given('material', 'shift', i)) cycle
-         call job%case%get('material', 'name', name, i)
-         call job%case%get('material', 'reference_temperature', temperature, i)
-         write (error_unit, '(a)') 'vcor: note: '//job%case%location('material', 'shift', i) &
+      do i = 1, case%count('material')
+         if (.not. case%given('material', 'shift', i)) cycle
+         call case%get('material', 'name', name, i)
+         call case%get('material', 'reference_temperature', temperature, i)
+         write (error_unit, '(a)') 'vcor: note: '//case%location('material', 'shift', i) &
             //": '"//printable(name)//"' is at its reference temperature, " &
             //real_text(temperature)//' K: there is no impact.temperature'
       end do
    end subroutine warn_of_slips
 
    !> Mechanics of a case, as far as it reads them
-   function mechanics_of(job, exact) result(text)
-      type(job_t), intent(in) :: job
+   function mechanics_of(case, exact) result(text)
+      type(case_t), intent(in) :: case
       !> Other mechanics to name in their place
       type(model_t), intent(in), optional :: exact
       !> As `waves relaxing, law boltzmann`
@@ -79,8 +78,8 @@ contains
 
       text = ''
       do i = 1, size(keys)
-         if (why_unread(job%case, job%case%address(trim(groups(i)), trim(keys(i)))) /= '') cycle
-         call job%case%get(trim(groups(i)), trim(keys(i)), word)
+         if (why_unread(case, case%address(trim(groups(i)), trim(keys(i)))) /= '') cycle
+         call case%get(trim(groups(i)), trim(keys(i)), word)
          if (present(exact)) then
             word = trim(exact%law)
             if (i == 1) word = trim(exact%waves)
@@ -92,8 +91,8 @@ contains
    end function mechanics_of
 
    !> Solve the impact of a case with the exact mechanics
-   subroutine solve_exact(job, outcome, exact, is_shown)
-      type(job_t), intent(in) :: job
+   subroutine solve_exact(case, outcome, exact, is_shown)
+      type(case_t), intent(in) :: case
       type(outcome_t), intent(in) :: outcome
       !> The same with the exact mechanics
       type(model_t), intent(out) :: exact
@@ -103,13 +102,13 @@ contains
       character(len=:), allocatable :: waves
       logical :: is_valid
 
-      call job%case%get('plate', 'waves', waves)
+      call case%get('plate', 'waves', waves)
       exact = model_t(waves, 'receding', 'series')
       ! where the plate is thin its limit will do, which takes a tenth of the time
       if (waves /= 'none' .and. waves /= 'body') exact%waves = trim(merge('body      ', &
          'hereditary', level_of(findloc(thresholds%measure, 'plate_wave_number', dim=1), &
          outcome%plate_wave_number) > level_good))
-      call solve_model(job%case, exact, is_valid)
+      call solve_model(case, exact, is_valid)
       is_shown = allocated(exact%failure)
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
    end subroutine solve_exact
@@ -263,15 +262,15 @@ contains
    end function points_remark
 
    !> What is said of bare numbers, in one line
-   pure function about_numbers(job, words) result(text)
-      type(job_t), intent(in) :: job
+   pure function about_numbers(case, words) result(text)
+      type(case_t), intent(in) :: case
       !> What there is to say of their accuracy and validity; nothing is fine
       character(len=*), intent(in) :: words
       !> The line, or nothing
       character(len=:), allocatable :: text
 
       text = ''
-      if (words /= '') text = job%case%source//': '//words
+      if (words /= '') text = case%source//': '//words
    end function about_numbers
 
    !> Two things that are said, in one line; either may be nothing
@@ -335,40 +334,42 @@ contains
    !> Warn on stderr of materials of the bodies that the impacts lean on beyond their data.
    !> Of a sweep the impacts of the shortest and the longest contact are looked at, in which that
    !> shows first
-   subroutine warn_of_bands(job, summary)
-      type(job_t), intent(in) :: job
+   subroutine warn_of_bands(case, grid, summary)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
 
       integer :: items(2), i
 
-      items = [job%case%material_of('sphere'), job%case%material_of('plate')]
+      items = [case%material_of('sphere'), case%material_of('plate')]
       do i = 1, merge(1, 2, items(1) == items(2))
-         call warn_of_band(job, summary, items(i))
-         call warn_of_table(job, summary, items(i))
-         call warn_of_temperatures(job, items(i))
+         call warn_of_band(case, grid, summary, items(i))
+         call warn_of_table(case, grid, summary, items(i))
+         call warn_of_temperatures(case, grid, items(i))
       end do
    end subroutine warn_of_bands
 
    !> Warn of contacts of a sweep that a table of data does not cover; of a single impact its report
    !> says so. Data that move with a swept temperature are left out
-   subroutine warn_of_table(job, summary, item)
-      type(job_t), intent(in) :: job
+   subroutine warn_of_table(case, grid, summary, item)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
       integer, intent(in) :: item
 
       character(len=:), allocatable :: name, words
       integer :: i
 
-      if (.not. job%sweep%is_grid()) return
-      do i = 1, size(job%sweep%grid%axes)
-         if (job%sweep%grid%axes(i)%name == 'impact.temperature' &
-             .and. job%case%given('material', 'shift', item)) return
+      if (size(grid%axes) == 0) return
+      do i = 1, size(grid%axes)
+         if (grid%axes(i)%name == 'impact.temperature' &
+             .and. case%given('material', 'shift', item)) return
       end do
-      call job%case%get('material', 'name', name, item)
-      words = beyond_data(job%case, item, "'"//printable(name)//"'", &
+      call case%get('material', 'name', name, item)
+      words = beyond_data(case, item, "'"//printable(name)//"'", &
          pack(summary%values(quantity_place('contact_time'))%reals, &
          summary%status == contact_separated))
-      if (words /= '') write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': '//words
+      if (words /= '') write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//words
    end subroutine warn_of_table
 
    !> What is said of contacts that the data of a table do not cover
@@ -418,8 +419,9 @@ contains
    end function beyond_data
 
    !> Warn of temperatures beyond the data behind the shift of a material
-   subroutine warn_of_temperatures(job, item)
-      type(job_t), intent(in) :: job
+   subroutine warn_of_temperatures(case, grid, item)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
       integer, intent(in) :: item
 
       character(len=*), parameter :: keys(2) = [character(len=22) :: 'valid_temperature_from', &
@@ -430,48 +432,45 @@ contains
       real(wp) :: given, ends(2)
       integer :: i, outside
 
-      address = job%case%address('impact', 'temperature')
-      given = job%case%number(address)
+      address = case%address('impact', 'temperature')
+      given = case%number(address)
       allocate (temperatures(count([.not. ieee_is_nan(given)])))
       temperatures = given
-      do i = 1, size(job%sweep%grid%axes)
-         if (job%sweep%grid%axes(i)%address == address) &
-            temperatures = job%sweep%grid%axes(i)%values
+      do i = 1, size(grid%axes)
+         if (grid%axes(i)%address == address) &
+            temperatures = grid%axes(i)%values
       end do
       band = ''
       ends = [-huge(given), huge(given)]
       do i = 1, size(keys)
-         if (.not. job%case%given('material', trim(keys(i)), item)) cycle
-         call job%case%get('material', trim(keys(i)), ends(i), item)
+         if (.not. case%given('material', trim(keys(i)), item)) cycle
+         call case%get('material', trim(keys(i)), ends(i), item)
          if (band /= '') band = band//', '
          band = band//trim(keys(i))//' '//real_text(ends(i))//' K'
       end do
       outside = count(temperatures < ends(1) .or. temperatures > ends(2))
       if (outside == 0) return
-      call job%case%get('material', 'name', name, item)
+      call case%get('material', 'name', name, item)
       lead = 'the temperature, '//real_text(temperatures(1))//' K, lies'
       if (size(temperatures) > 1) lead = integer_text(outside)//' of ' &
          //integer_text(size(temperatures))//' temperatures lie'
-      write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': '//lead &
+      write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//lead &
          //" outside of the data behind the shift of '"//printable(name)//"' ("//band//')'
    end subroutine warn_of_temperatures
 
    !> Warn of one material
-   subroutine warn_of_band(job, summary, item)
-      type(job_t), intent(in) :: job
+   subroutine warn_of_band(case, grid, summary, item)
+      type(case_t), intent(in) :: case
+      type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
       integer, intent(in) :: item
 
       type(reliance_t) :: reliance, worst
-      type(case_t) :: case
-      type(error_t), allocatable :: error
-      real(wp) :: ends(2)
-      integer :: points(2), i, time, worst_point, unseen
-      integer, allocatable :: places(:)
+      integer :: points(2), i, time, worst_point
       logical, allocatable :: known(:)
 
-      if (.not. (job%case%given('material', 'valid_from', item) &
-         .or. job%case%given('material', 'valid_to', item))) return
+      if (.not. (case%given('material', 'valid_from', item) &
+         .or. case%given('material', 'valid_to', item))) return
       time = quantity_place('contact_time')
       allocate (known(size(summary%status)))
       known = summary%status == contact_separated
@@ -480,7 +479,7 @@ contains
          maxloc(summary%values(time)%reals, dim=1, mask=known)]
       worst_point = 0
       do i = 1, merge(1, 2, points(1) == points(2))
-         call find_reliance(reliance, job%case_at(points(i)), item, &
+         call find_reliance(reliance, grid%case_at(case, points(i)), item, &
             summary%values(time)%reals(points(i)))
          if (.not. reliance%leans) cycle
          if (worst_point > 0 .and. reliance%change <= worst%change) cycle
@@ -488,53 +487,10 @@ contains
          worst_point = points(i)
       end do
       if (worst_point == 0) return
-      unseen = 0
-      if (worst%ends(1)) unseen = unseen_contacts(summary%values(time)%reals)
-      write (error_unit, '(a)') 'vcor: warning: '//job%case%source//': ' &
+      write (error_unit, '(a)') 'vcor: warning: '//case%source//': ' &
          //message(worst, worst_point)
 
    contains
-
-      !> Contacts that end before the data begin, each at its temperature
-      function unseen_contacts(times) result(number)
-         !> Contact times [s]
-         real(wp), intent(in) :: times(:)
-         integer :: number
-
-         type(address_t) :: address
-         real(wp), allocatable :: starts(:)
-         integer :: axis, i, warm
-
-         number = 0
-         warm = 0
-         address = job%case%address('impact', 'temperature')
-         do axis = 1, size(job%sweep%grid%axes)
-            associate (own => job%sweep%grid%axes(axis)%address)
-               if (own == address) warm = axis
-               ! parameters of the material move its data, too
-               if (own%group == find_group('material') .and. own%item == item) return
-            end associate
-         end do
-         starts = [worst%band(1)]
-         if (warm > 0) then
-            associate (temperatures => job%sweep%grid%axes(warm)%values)
-               starts = [(0.0_wp, i = 1, size(temperatures))]
-               do i = 1, size(temperatures)
-                  if (.not. temperatures(i) > 0.0_wp) cycle
-                  case = job%case
-                  call case%set(address, temperatures(i))
-                  call find_band(case, item, ends, error)
-                  if (.not. allocated(error)) starts(i) = ends(1)
-               end do
-            end associate
-         end if
-         do i = 1, size(times)
-            places = job%sweep%grid%places(i)
-            axis = 1
-            if (warm > 0) axis = places(warm)
-            if (known(i)) number = number + merge(1, 0, times(i) <= starts(axis))
-         end do
-      end function unseen_contacts
 
       !> What is said
       function message(found, point) result(text)
@@ -542,18 +498,14 @@ contains
          integer, intent(in) :: point
          character(len=:), allocatable :: text
 
-         character(len=:), allocatable :: name, place, lead
+         character(len=:), allocatable :: name, place
 
-         call job%case%get('material', 'name', name, item)
+         call case%get('material', 'name', name, item)
          place = ''
-         lead = ''
-         if (job%sweep%is_grid()) place = ' (at '//job%coordinates(point)//')'
-         if (job%sweep%is_grid() .and. unseen > 0) lead = integer_text(unseen)//' of ' &
-            //integer_text(size(known))//" contacts lie wholly before the data of '" &
-            //printable(name)//"'; where cor changes most "
+         if (size(grid%axes) > 0) place = ' (at '//coordinates(grid, point)//')'
          associate (contact_time => summary%values(time)%reals(point), &
                     cor => summary%values(quantity_place('cor'))%reals(point))
-            text = lead//'the contact lasts '//short(contact_time)//' s'//place//', and ' &
+            text = 'the contact lasts '//short(contact_time)//' s'//place//', and ' &
                //share_outside(found%band, found%ends, contact_time)//" the data of '" &
                //printable(name)//"' ("
             if (found%ends(1)) text = text//'valid_from '//short(found%band(1))//' s'

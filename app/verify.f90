@@ -69,7 +69,7 @@ contains
       type(model_t), allocatable :: models(:)
       character(len=:), allocatable :: title
 
-      call compare(job%case, job%impact, comparison, error)
+      call compare(job%case, job%sweep%problem%impact, comparison, error)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
          return

@@ -733,33 +733,6 @@ def test_sweep_leans(vcor):
     assert "impact.velocity = 50" in done.err
 
 
-def test_contacts_of_a_sweep_before_all_data(vcor):
-    """How many of the contacts the data do not see at all is said first, then the change of cor."""
-    words = [PAPER.parent / "sweeps" / "butyl_power_law_velocity.nml", "--set", "sweep.count=3"]
-    times = vcor.succeeds("run", *words, "--print", "contact_time").split()
-    middle = sorted(map(float, times))[1]
-    done = vcor("run", *words, "--quiet", "--set", f"butyl.valid_from={1.01 * middle}")
-    assert done.code == SUCCESS and done.err.count("\n") == 1
-    assert "2 of 3 contacts lie wholly before the data of 'butyl'; where cor changes" in done.err
-    assert "cor changes by" in done.err
-    done = vcor("run", *words, "--quiet", "--set", "butyl.valid_from=1e-6")
-    assert "wholly" not in done.err
-
-
-def test_contacts_of_a_sweep_of_temperatures_before_the_data(vcor):
-    """The data move with the temperature: those of each point count."""
-    words = [PAPER.parent / "sweeps" / "squash_ball.nml", "--set", "sweep.start=280",
-             "--set", "sweep.stop=330", "--set", "sweep.count=3"]
-    rows = vcor.succeeds("run", *words, "--print", "impact.temperature,contact_time").splitlines()
-    kelvin, times = zip(*(map(float, row.split()) for row in rows))
-    reduced = [time * 10 ** (8.61 * (t - 298.15) / (200.4 + t - 298.15))
-               for t, time in zip(kelvin, times)]
-    assert reduced == sorted(reduced)
-    start = (reduced[1] * reduced[2]) ** 0.5
-    done = vcor("run", *words, "--quiet", "--set", f"butyl.valid_from={start}")
-    assert "2 of 3 contacts lie wholly before the data" in done.err
-
-
 def test_band_of_a_fit(vcor):
     """What fit writes, run reads. Of the kernel before 1 us, which carries 1e-2, the fit makes up
     one half."""

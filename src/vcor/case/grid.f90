@@ -45,7 +45,7 @@ module vcor_case_grid
       !> Whether point i has value i of each parameter: a list of points, not their product
       logical :: is_list = .false.
    contains
-      procedure :: places
+      procedure :: places, case_at
       procedure :: count => count_points
    end type grid_t
 
@@ -86,6 +86,25 @@ contains
          end associate
       end do
    end function places
+
+   !> A case with the values of a point
+   pure function case_at(self, case, point) result(other)
+      class(grid_t), intent(in) :: self
+      !> The case that the grid is of
+      type(case_t), intent(in) :: case
+      !> Number of the point, from 1
+      integer, intent(in) :: point
+      type(case_t) :: other
+
+      integer :: i, places(size(self%axes))
+
+      places = self%places(point)
+      other = case
+      do i = 1, size(places)
+         call other%oust(self%axes(i)%address, always=.true.)
+         call other%set(self%axes(i)%address, self%axes(i)%values(places(i)))
+      end do
+   end function case_at
 
    !> Build the grid of a case; the values are not held against the ranges of their keys
    subroutine new_grid(case, grid, error)

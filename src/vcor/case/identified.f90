@@ -23,7 +23,7 @@ module vcor_case_identified
    implicit none
    private
 
-   public :: put_material, material_text, reliance_t, find_reliance, find_band
+   public :: put_material, material_text, reliance_t, find_reliance
 
    !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
    real(wp), parameter :: little = 1.0e-4_wp
@@ -121,24 +121,6 @@ contains
       if (present(keys)) text = text(:index(text, '/', back=.true.) - 1)//keys//'/'//new_line('a')
    end function material_text
 
-   !> First and last time of the data of a material at the temperature of the impact [s], nan where
-   !> there is no such end
-   subroutine find_band(case, item, band, error)
-      type(case_t), intent(in) :: case
-      !> Number of the material
-      integer, intent(in) :: item
-      real(wp), intent(out) :: band(2)
-      !> The material cannot be made
-      type(error_t), allocatable, intent(out) :: error
-
-      class(material_t), allocatable :: material
-
-      call case%get('material', 'valid_from', band(1), item)
-      call case%get('material', 'valid_to', band(2), item)
-      call material_of_case(case, item, material, error)
-      if (.not. allocated(error)) band = band*material%time_factor
-   end subroutine find_band
-
    !> Find out how much an impact leans on a material beyond its data
    subroutine find_reliance(reliance, case, item, contact_time)
       !> What is found
@@ -158,9 +140,12 @@ contains
       real(wp) :: first, last
 
       reliance%item = item
-      call find_band(case, item, reliance%band, error)
-      if (.not. allocated(error)) call material_of_case(case, item, material, error)
+      call material_of_case(case, item, material, error)
       if (allocated(error)) return
+      call case%get('material', 'valid_from', reliance%band(1), item)
+      call case%get('material', 'valid_to', reliance%band(2), item)
+      ! at the temperature of the impact, nan where there is no such end
+      reliance%band = reliance%band*material%time_factor
       first = reliance%band(1)
       last = reliance%band(2)
       reliance%ends = .not. ieee_is_nan(reliance%band)

@@ -387,6 +387,7 @@ contains
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
+      real(wp) :: velocity, gravity, mass, factor
       integer :: latest
 
       call update_body(self%sphere, case, error)
@@ -401,7 +402,23 @@ contains
          if (allocated(error)) return
          self%contact_made_at = latest
       end if
-      call set_motion(self, case, error)
+      gravity = case%number(self%at%gravity)
+      velocity = case%number(self%at%velocity)
+      if (ieee_is_nan(velocity)) velocity = sqrt(2.0_wp*case%number(self%at%drop_height) &
+         *merge(gravity, standard_gravity, gravity > 0.0_wp))
+      mass = case%number(self%at%mass)
+      if (ieee_is_nan(mass)) then
+         mass = 4.0_wp/3.0_wp*pi*case%number(self%at%radius)**3*self%sphere%material%density()
+         if (.not. self%sphere%material%density() > 0.0_wp) then
+            call raise(error, error_input, 'the mass of the sphere follows from it; or give ' &
+               //'mass in &sphere', about='density')
+            error%item = self%sphere%address%item
+            return
+         end if
+      end if
+      call set_shape(self, case, factor, error)
+      if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
+         number_or_zero(case, self%at%footprint))
       if (allocated(error)) return
       call look_around(self, case)
       call update_solver(self, case, error)
@@ -500,36 +517,6 @@ contains
       if (.not. allocated(error%about)) return
       if (error%about == 'density') error%item = self%plate%address%item
    end subroutine build_contact
-
-   !> Set the impact's motion
-   subroutine set_motion(self, case, error)
-      !> The problem, its contact built
-      type(problem_t), intent(inout) :: self
-      type(case_t), intent(in) :: case
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
-      real(wp) :: velocity, gravity, mass, radius, factor
-
-      gravity = case%number(self%at%gravity)
-      velocity = case%number(self%at%velocity)
-      if (ieee_is_nan(velocity)) velocity = sqrt(2.0_wp*case%number(self%at%drop_height) &
-         *merge(gravity, standard_gravity, gravity > 0.0_wp))
-      radius = case%number(self%at%radius)
-      mass = case%number(self%at%mass)
-      if (ieee_is_nan(mass)) then
-         mass = 4.0_wp/3.0_wp*pi*radius**3*self%sphere%material%density()
-         if (.not. self%sphere%material%density() > 0.0_wp) then
-            call raise(error, error_input, 'the mass of the sphere follows from it; or give ' &
-               //'mass in &sphere', about='density')
-            error%item = self%sphere%address%item
-            return
-         end if
-      end if
-      call set_shape(self, case, factor, error)
-      if (.not. allocated(error)) call self%impact%launch(velocity, mass, factor, error, gravity, &
-         number_or_zero(case, self%at%footprint))
-   end subroutine set_motion
 
    !> Set the law that goes with the shape of the body that strikes
    subroutine set_shape(self, case, factor, error)

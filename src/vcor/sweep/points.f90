@@ -194,23 +194,6 @@ contains
       !> another if the solution fails; unallocated on success, with or without a separation
       type(error_t), allocatable, intent(out) :: error
 
-      call build_point(self, point, worker, error)
-      if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
-         outcome, error)
-      if (.not. allocated(error)) return
-      outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
-         steps=outcome%steps)
-   end subroutine solve_point
-
-   !> Build the impact of a point
-   subroutine build_point(self, point, worker, error)
-      type(sweep_t), intent(in) :: self
-      integer, intent(in) :: point
-      !> Its impact is built
-      type(worker_t), intent(inout) :: worker
-      !> Error of code `error_input`, unallocated on success
-      type(error_t), allocatable, intent(out) :: error
-
       real(wp) :: value
       integer :: i, place(size(self%grid%axes))
 
@@ -222,14 +205,19 @@ contains
       place = self%grid%places(point)
       do i = 1, size(place)
          value = self%grid%axes(i)%values(place(i))
-         if (.not. contains_number(self%ranges(i), value)) then
+         if (contains_number(self%ranges(i), value)) then
+            call worker%case%set(self%grid%axes(i)%address, value)
+         else if (.not. allocated(error)) then
             call raise(error, error_input, self%objections(i)%message)
-            return
          end if
-         call worker%case%set(self%grid%axes(i)%address, value)
       end do
-      call worker%problem%update(worker%case, error)
-   end subroutine build_point
+      if (.not. allocated(error)) call worker%problem%update(worker%case, error)
+      if (.not. allocated(error)) call worker%problem%solve(worker%trajectory, &
+         outcome, error)
+      if (.not. allocated(error)) return
+      outcome = outcome_t(status=merge(point_invalid, point_failed, error%code == error_input), &
+         steps=outcome%steps)
+   end subroutine solve_point
 
    !> Why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)
