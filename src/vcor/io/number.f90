@@ -4,12 +4,11 @@
 !> where two are not enough; `nan`, `inf` and `-inf`. The digits are correctly rounded.
 !>
 !> A formatted write of gfortran takes 1.4 us per number, more than all else in writing a large
-!> table. Here a number M 2^e is multiplied by a power of ten, 5^k 2^k, in integers of 27 bits, so
-!> that the 17 digits are the integer part of a shifted product. 5^k is cut off after 81 bits, which
-!> is good for 1e-6 of the last digit: only if the rest is that close to one half, where rounding
+!> table. Here a number M 2^e is multiplied by a power of ten, 5^k 2^k, in integers of 128 bits, so
+!> that the 17 digits are the integer part of a shifted product. 5^k is cut off after 74 bits, which
+!> is good for 1e-5 of the last digit: only if the rest is that close to one half, where rounding
 !> turns, the compiler's formatted write decides, as it does for numbers of 1e17 and more and for
-!> subnormal ones, which results hardly have. Integers, since the compiler may contract the
-!> products and sums of real numbers, and a scheme of two reals per number is lost then.
+!> subnormal ones, which results hardly have.
 module vcor_io_number
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_kinds, only : wp
@@ -32,18 +31,18 @@ module vcor_io_number
    integer, parameter :: fraction_bits = 52, bias = 1023
    !> Exponent field of infinity and NaN
    integer(int64), parameter :: special_exponent = 2047_int64
-   !> Bits of a limb: the sum of three products of limbs is far from overflow
-   integer, parameter :: limb_bits = 27
-   !> Highest limb of the powers of five, counted from 0
-   integer, parameter :: top = 2
+   !> Integers of 128 bits
+   integer, parameter :: long = selected_int_kind(38)
+   !> Bits of a power of five: its product with a fraction and the bit before it has 127
+   integer, parameter :: power_bits = 74
    !> log10(2)
    real(wp), parameter :: log10_of_2 = 0.30102999566398119521_wp
 
    !> Powers of ten for the conversion; made by `new_decimal`
    type :: decimal_t
       private
-      !> 5^k = 2^exponent sum_i limb(i) 2^(27 i), the highest bit set; k up to `last_power`
-      integer(int64) :: limb(0:top, 0:last_power)
+      !> 5^k = five(k) 2^exponent(k), the highest bit set; k up to `last_power`
+      integer(long) :: five(0:last_power)
       !> Power of two
       integer :: exponent(0:last_power)
       !> Two digits of the numbers 0 to 99
@@ -56,17 +55,21 @@ contains
    pure subroutine new_decimal(decimal)
       !> Ready for `put_real`
       type(decimal_t), intent(out) :: decimal
-      ! Two limbs more, for the errors of some 300 products
-      integer(int64) :: limb(0:top+2)
+      ! more bits than are kept, for the errors of some 300 products
+      integer, parameter :: bits = 124
+      integer(long) :: five
       integer :: exponent, k
 
-      limb = 0_int64
-      limb(top+2) = 2_int64**(limb_bits - 1)
-      exponent = 1 - limb_bits*(top + 1)
+      five = shiftl(1_long, bits - 1)
+      exponent = 1 - bits
       do k = 0, last_power
-         if (k > 0) call times_five(limb, exponent)
-         decimal%limb(:, k) = limb(2:)
-         decimal%exponent(k) = exponent
+         if (k > 0) five = 5_long*five
+         do while (shiftr(five, bits) > 0_long)
+            five = shiftr(five, 1)
+            exponent = exponent + 1
+         end do
+         decimal%five(k) = shiftr(five, bits - power_bits)
+         decimal%exponent(k) = exponent + bits - power_bits
       end do
 
       do k = 0, 99
@@ -166,41 +169,26 @@ contains
       integer(int64), intent(out) :: digits
       !> Power of ten of the first digit
       integer, intent(out) :: power
-      ! An error of one in the last bit of 5^k is below 2^26 in `rest`
-      integer(int64), parameter :: undecided = 2_int64**28
-      integer(int64), parameter :: limb_mask = 2_int64**limb_bits - 1_int64
+      ! of the rest: an error of one in the last bit of 5^k is below half of it
+      integer(long), parameter :: undecided = 2_long**(fraction_bits + 2)
       real(wp), parameter :: unit = 2.0_wp**(-fraction_bits)
-      integer(int64) :: column(0:top+2), half, high, low, rest
-      integer :: i, k, shift
+      integer(long) :: product, rest
+      integer :: k, shift
 
-      low = iand(mantissa, limb_mask)
-      high = shiftr(mantissa, limb_bits)
       ! log2(m) >= m - 1 for m from 1 to 2: the power is right or one too small
       power = floor((real(exponent - 1, wp) + real(mantissa, wp)*unit)*log10_of_2)
       do
          k = 16 - power
-         column(0) = low*decimal%limb(0, k)
-         column(1) = low*decimal%limb(1, k) + high*decimal%limb(0, k)
-         column(2) = low*decimal%limb(2, k) + high*decimal%limb(1, k)
-         column(3) = high*decimal%limb(2, k)
-         column(4) = 0_int64
-         do i = 0, top + 1
-            column(i+1) = column(i+1) + shiftr(column(i), limb_bits)
-            column(i) = iand(column(i), limb_mask)
-         end do
-
-         ! The point is in the third limb, 21 to 26 bits from its right: 17 or 18 digits are 54 to
-         ! 58 bits of the 133 or 134
-         shift = fraction_bits - exponent - k - decimal%exponent(k) - 2*limb_bits
-         digits = shiftl(column(4), 2*limb_bits - shift) + shiftl(column(3), limb_bits - shift) &
-            + shiftr(column(2), shift)
-         rest = shiftl(iand(column(2), shiftl(1_int64, shift) - 1_int64), limb_bits) + column(1)
-         half = shiftl(1_int64, shift + limb_bits - 1)
-         if (rest > half) digits = digits + 1_int64
+         product = mantissa*decimal%five(k)
+         ! 17 or 18 digits are 54 to 58 bits
+         shift = fraction_bits - exponent - k - decimal%exponent(k)
+         digits = int(shiftr(product, shift), int64)
+         rest = product - shiftl(int(digits, long), shift) - shiftl(1_long, shift - 1)
+         if (rest > 0_long) digits = digits + 1_int64
          if (digits < too_large) exit
          power = power + 1
       end do
-      if (abs(rest - half) < undecided) digits = -1_int64
+      if (abs(rest) < undecided) digits = -1_int64
    end subroutine find_digits
 
    !> The 17 digits of a number as the compiler rounds them
@@ -273,31 +261,5 @@ contains
       buffer(last+1:last+len(text)) = text
       last = last + len(text)
    end subroutine put_text
-
-   !> Multiply by five
-   pure subroutine times_five(limb, exponent)
-      !> Limbs from the lowest to the highest, whose highest bit is set before and after
-      integer(int64), intent(inout) :: limb(0:)
-      !> Power of two that goes with them
-      integer, intent(inout) :: exponent
-      integer(int64) :: carry, sum
-      integer :: i, shift
-
-      carry = 0_int64
-      do i = 0, ubound(limb, 1)
-         sum = 5_int64*limb(i) + carry
-         limb(i) = ibits(sum, 0, limb_bits)
-         carry = ishft(sum, -limb_bits)
-      end do
-      ! The carry is 2 to 4: two or three bits more than there is room for
-      shift = 2
-      if (carry >= 4_int64) shift = 3
-      do i = 0, ubound(limb, 1) - 1
-         limb(i) = ior(ishft(limb(i), -shift), ishft(ibits(limb(i+1), 0, shift), limb_bits - shift))
-      end do
-      i = ubound(limb, 1)
-      limb(i) = ior(ishft(limb(i), -shift), ishft(carry, limb_bits - shift))
-      exponent = exponent + shift
-   end subroutine times_five
 
 end module vcor_io_number
