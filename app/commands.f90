@@ -24,9 +24,8 @@ module vcor_app_commands
       entry_t("", "Solves the impact of each case and writes three files: STEM_summary.csv (one " &
       //"row per impact), STEM.csv (the time history) and STEM.h5 (both). STEM is the name of " &
       //"the case file without its ending."), &
-      entry_t("", "A file with nothing but &material groups is no case of its own: it completes " &
-      //"the cases before it. `vcor check`, `vcor material` and `vcor verify` take such files, " &
-      //"too."), &
+      entry_t("", "A file that has only &material groups is not a case: it completes the cases " &
+      //"before it. `vcor check`, `vcor material` and `vcor verify` accept such files, too."), &
       entry_t("", "A case with &sweep groups is solved at every point of its grid. The summary " &
       //"has one row per point, and there is no time history. A point without a result (values " &
       //"out of range, no separation, numerical failure) gets a status and `nan` in its row. The " &
@@ -34,7 +33,7 @@ module vcor_app_commands
       entry_t("--set GROUP.KEY=VALUE", "replace a value of the case; may be repeated. A material " &
       //"is addressed by its name: `--set rubber.beta=600`"), &
       entry_t("--output PATH", "folder of the files, created if it does not exist; the file " &
-      //"itself if one file is written and PATH ends as it does (.h5 or .csv)"), &
+      //"itself if one file is written and PATH has its ending (.h5 or .csv)"), &
       entry_t("--print NAME,NAME", "print these numbers only, one line per impact, in place of " &
       //"the table, and write files only if `--output` is given. A name is a column " &
       //"(`vcor help output`) or a swept parameter"), &
@@ -48,11 +47,12 @@ module vcor_app_commands
       //"the sweep after the points in progress, with exit code 130 or 143. The same command " &
       //"with `--resume` continues it, also after a crash, and writes the same files as an " &
       //"uninterrupted run. A STEM.part.h5 of another case or version is refused."), &
-      entry_t("", "The screen says which mechanics an impact has, what the exact ones (law " &
-      //"'receding', pair 'series', waves 'body', or its limit 'hereditary' for a thin plate) " &
-      //"give where they differ, and which of its measures of validity are not good; of a sweep " &
-      //"how many points those are, by which measure, and where. With `--print` that is one " &
-      //"line on stderr. Numbers that no material has (a density of 7.8 kg/m3) bring a warning."), &
+      entry_t("", "The screen names the mechanics of an impact and, if they are not exact, shows " &
+      //"the result of the exact ones (law 'receding', pair 'series', waves 'body', or its limit " &
+      //"'hereditary' for a thin plate). It lists the measures of validity that are not good; " &
+      //"for a sweep, how many points that concerns, by which measure, and where. With " &
+      //"`--print`, one line on stderr lists them. Numbers that no material has (a density of " &
+      //"7.8 kg/m3) cause a warning."), &
       entry_t("", "Finished results of another case are replaced, with a message. Unfinished " &
       //"results of another case are never replaced."), &
       entry_t("", "In a build for MPI (`cmake --preset mpi`), `mpirun vcor run` shares a sweep " &
@@ -166,8 +166,8 @@ module vcor_app_commands
       entry_t("", "With cases: solves each case by internal variables (ive), at its accuracy and " &
       //"at one hundredth of it, and by product integration (direct) with 1000, 2000 and 4000 " &
       //"steps per contact, extrapolated. If the case asks for another scheme, that solution is " &
-      //"shown too. Then the numbers of every plate model, both contact laws and, where it makes " &
-      //"a difference, both pairs. No files are written. The columns are:"), &
+      //"shown too. A second table has the numbers of every plate model, both contact laws and, " &
+      //"if it matters, both pairs. No files are written. The columns are:"), &
       entry_t("states", "error of cor that the solution itself estimates"), &
       entry_t("off by", "distance from the best cor; honest if at most three times the estimate"), &
       entry_t("dW/KE_0", "energy imbalance over the energy before the impact"), &
