@@ -70,7 +70,7 @@ def put_in(*names):
         words = [re.sub(r"\s*[,\n]\s*", ", ", one) for one in keys]
         words = [re.sub(r"^name (.*?), model ", r"*\1* ", word) for word in words]
         lines.append(f"- [{Path(name).name}](../{name}): {'; '.join(words)}")
-    return "\n".join(["Put in by hand (what is fitted is a first guess there):", "", *lines])
+    return "\n".join(["Inputs (of a fitted number, its first guess):", "", *lines])
 
 
 def panels(count=2):
@@ -459,7 +459,7 @@ def contact_times():
          f"{1e6 * their_time(one, 1.0, 'block'):.3f} µs"],
         ["with waves in 50 mm of steel", f"{1e6 * wave['contact_time']:.3f} µs"],
         ["measured", f"about {seen.contact_time:.0f} µs"],
-        ["speed that has it, and from 5.5 to 4.5 µs",
+        ["speed that gives it, and speeds that give 5.5 to 4.5 µs",
          f"{meets[1]:.1f} m/s, {meets[0]:.1f} to {meets[2]:.1f} m/s"],
     ]  # fmt: skip
     plate, claim = case("steel_on_glass"), data("plate_thickness").iloc[0]
@@ -627,7 +627,7 @@ def resilience():
     ticks(left, [0.02, 0.05, 0.1, 0.2, 0.5, 1, 2])
     legend(left)
     text = table(["rubber", "given", "predicted resilience", "textbook", "measured",
-                  "tan δ that the measured one needs"], *rows)  # fmt: skip
+                  "tan δ that the measured value requires"], *rows)  # fmt: skip
     flight = data("bouncing_ball")
     period, middle = (flight.end - flight.start) / 10, (flight.end + flight.start) / 2
     bounces = np.diff(middle) / np.sqrt(period[1:].values * period[:-1].values)
