@@ -199,8 +199,8 @@ module vcor_app_commands
    !> Commands of the Python package, which are programs of their own, and what each does
    type(entry_t), parameter :: package_commands(*) = [ &
       entry_t("plot", "draw figures of results"), &
-      entry_t("identify", "find materials in measured impacts, with what the data leave open"), &
-      entry_t("uncertainty", "find how uncertain results are, and because of which values"), &
+      entry_t("identify", "find materials from measured impacts, and what the data leave open"), &
+      entry_t("uncertainty", "find how uncertain results are, and which values cause it"), &
       entry_t("export", "write the law of impact for DEM and multibody programs"), &
       entry_t("card", "write and read materials of finite element programs"), &
       entry_t("master", "make master curves of moduli at several temperatures")]

@@ -9,9 +9,9 @@ function __vcor_described_programs
          case plot
             echo 'plot	draw figures of results'
          case identify
-            echo 'identify	find materials in measured impacts, with what the data leave open'
+            echo 'identify	find materials from measured impacts, and what the data leave open'
          case uncertainty
-            echo 'uncertainty	find how uncertain results are, and because of which values'
+            echo 'uncertainty	find how uncertain results are, and which values cause it'
          case export
             echo 'export	write the law of impact for DEM and multibody programs'
          case card
