@@ -44,7 +44,7 @@ module vcor_impact_layer
       !> Compliance at infinite s
       procedure :: instant
       !> Distance that a shear wave travels
-      procedure :: way
+      procedure :: shear_wave_path
    end type layer_t
 
 contains
@@ -175,19 +175,19 @@ contains
    end function instant
 
    !> Distance that a shear wave travels in a time
-   pure function way(self, time)
+   pure function shear_wave_path(self, time) result(path)
       class(layer_t), intent(in) :: self
       !> Time [s], > 0
       real(wp), intent(in) :: time
       !> Distance [m]
-      real(wp) :: way
+      real(wp) :: path
 
       real(wp) :: shear
 
       shear = abs(self%material%complex_modulus(cmplx(1.0_wp/time, 0.0_wp, wp))) &
          /(2.0_wp*(1.0_wp + self%material%poisson_ratio()))
-      way = time*sqrt(shear/self%material%density())
-   end function way
+      path = time*sqrt(shear/self%material%density())
+   end function shear_wave_path
 
    !> k mu G, the deflection of the face under a load that varies as J_0(k r)
    elemental function deflection(k, q, p, thickness) result(g)

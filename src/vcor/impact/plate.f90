@@ -238,7 +238,8 @@ contains
       real(wp), parameter :: shortest = 0.1_wp
 
       is_outpaced = self%layered()
-      if (is_outpaced) is_outpaced = self%layer%way(contact_time) < shortest*self%footprint
+      if (is_outpaced) is_outpaced = self%layer%shear_wave_path(contact_time) &
+         < shortest*self%footprint
    end function is_outpaced
 
    !> Whether U' - alpha F is a variable of its own and not alpha' I

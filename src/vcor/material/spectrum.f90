@@ -146,7 +146,7 @@ contains
          if (abs(y) > farthest) cycle
          beyond_peak = y - y_p
          if (c > 0.0_wp) then
-            w = spread_over_peak(beyond_peak/d, c/d)
+            w = solve_sinh(beyond_peak/d, c/d)
             beyond_peak = d*sinh(w)
             y = y_p + beyond_peak
             slope = slope*d*cosh(w)/(d*cosh(w) + c)
@@ -205,7 +205,7 @@ contains
 
    !> Solve sinh(w) + b w = x by Newton's method, which converges monotonically from an upper bound
    !> of |w|, as the left-hand side is convex there
-   pure function spread_over_peak(x, b) result(w)
+   pure function solve_sinh(x, b) result(w)
       !> Right-hand side
       real(wp), intent(in) :: x
       !> Coefficient, > 0
@@ -222,7 +222,7 @@ contains
          w = w - correction
          if (abs(correction) <= 1.0e-12_wp*abs(w)) exit
       end do
-   end function spread_over_peak
+   end function solve_sinh
 
    !> Largest relative error of a sum at some times of the window. At shorter times it may be
    !> larger; there only integrals of the modulus count, which the rule preserves

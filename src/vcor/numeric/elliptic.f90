@@ -64,7 +64,7 @@ contains
       real(wp) :: m, complement, wanted, c, more, sn, cn, dn, rest
       integer :: j, n
 
-      ! modulus m = k^2 of the functions and its complement
+      ! parameter m = k^2 of the functions, and 1 - m
       if (ieee_is_finite(after)) then
          m = length*(after + length + before)/((after + length)*(length + before))
          complement = after*before/((after + length)*(length + before))

@@ -21,11 +21,11 @@ module vcor_solver_ive_contact
    use vcor_solver_ive_landing, only : end_at_zero, first_without_force, hides_a_zero, &
       land_on_largest, land_on_zero, slope_at_end
    use vcor_solver_ive_modes, only : modes_t
-   use vcor_solver_ive_newton, only : accompany, guess, solve
+   use vcor_solver_ive_newton, only : guess, solve, solve_companion
    use vcor_solver_ive_panel, only : panel_t, plate_gains, relative_velocity
    use vcor_solver_ive_problem, only : new_panel_problem
    use vcor_solver_ive_rebound, only : follow_rebound
-   use vcor_solver_ive_recording, only : begin, find_peaks, forerunner_t, record
+   use vcor_solver_ive_recording, only : begin, earlier_panel_t, find_peaks, record
    use vcor_solver_ive_step, only : step_to
    use vcor_solver_tuning, only : branch_error, cut_at_end, error_of_kernel, fast, &
       first_growth_fast, first_growth_slow, first_longest, first_receding, &
@@ -46,16 +46,16 @@ module vcor_solver_ive_contact
       !> Rate of the indentation at the start of the panel [m/s]
       real(wp) :: velocity = 0.0_wp
       !> The panel before
-      type(forerunner_t) :: before
+      type(earlier_panel_t) :: before
       !> Difference of the force to that of the companion at the end of the panel [N]
-      real(wp) :: doubt = 0.0_wp
+      real(wp) :: force_difference = 0.0_wp
       !> Largest force so far [N]
       real(wp) :: largest_force = 0.0_wp
       !> Contribution of the panel to the error of the motion, and the largest one so far [-]
       real(wp) :: growth = 0.0_wp, largest_growth = 0.0_wp
       !> Difference of the impulse to the companions, added up over earlier panels if each companion
       !> starts from the solution [N s]
-      real(wp) :: handed_down = 0.0_wp
+      real(wp) :: impulse_difference = 0.0_wp
       !> Effect on a rebound of the difference of the two solutions inside the panel, and the
       !> largest one so far [-]
       real(wp) :: inner = 0.0_wp, largest_inner = 0.0_wp
@@ -129,7 +129,7 @@ contains
          call stop_at_end(contact, ghost_end, trajectory, over)
          if (over) return
          if (contact%turns) then
-            call turn_round(contact, approach, trajectory, error)
+            call continue_with_rebound(contact, approach, trajectory, error)
             complete = .not. trajectory%state(col_time, trajectory%final) > window
             return
          end if
@@ -238,7 +238,7 @@ contains
          end if
          if (.not. self%panel%converged) return
          self%previous = self%panel
-         call accompany(problem, self%step, self%coarse_start, self%panel, self%inverse, &
+         call solve_companion(problem, self%step, self%coarse_start, self%panel, self%inverse, &
             self%coarse)
       end associate
    end subroutine solve_panel
@@ -279,10 +279,10 @@ contains
          if (impact%plate%frozen() .and. .not. self%start%time > 0.0_wp) self%excess = &
             max(self%growth, missed_drift(collocator%rule, panel)/self%speed) &
             /(first_drift*self%accuracy)
-         self%doubt = abs(panel%force(n) - coarse%force(n - 1))
+         self%force_difference = abs(panel%force(n) - coarse%force(n - 1))
          if (self%excess <= 1.0_wp .and. .not. impact%plate%layered()) &
             self%excess = max(self%excess, work_error(self)/(panel_share*self%accuracy))
-         force_error = self%doubt
+         force_error = self%force_difference
          allowed = peak_share*self%largest_force*max(self%accuracy, usual_accuracy)
          if (trajectory%status /= contact_separated .and. .not. self%recedes &
              .and. 2.0_wp*panel%force(n) < panel%force(n - 1)) then
@@ -297,7 +297,7 @@ contains
             self%shallow = panel%indentation(n) < shallow_end*trajectory%max_indentation
             ! near u(s) = 0 both solutions have errors of the same sign
             if (self%shallow) force_error = max(force_error, shallow_factor &
-               *min(self%growth_of(panel%force, coarse%force), self%doubt))
+               *min(self%growth_of(panel%force, coarse%force), self%force_difference))
             self%ends_at_branch = panel%indentation(n) < next_to_branch*panel%indentation(0)
             if (self%ends_at_branch) self%excess = usually_better*self%excess
             call estimate_errors(self, trajectory%steps + 1, cor_error, sphere_error)
@@ -465,7 +465,7 @@ contains
          call record(rule, problem%impact, recorded, trajectory)
          if (trajectory%status /= contact_separated) then
             trajectory%last = trajectory%final
-            call find_peaks(problem, self%start, recorded, self%doubt, self%before, &
+            call find_peaks(problem, self%start, recorded, self%force_difference, self%before, &
                self%accuracy, trajectory)
          end if
          if (self%recedes) then
@@ -477,7 +477,7 @@ contains
          self%velocity = trajectory%state(col_velocity, trajectory%final)
          self%before%panel = self%panel
          self%before%start = self%start
-         self%before%doubt = self%doubt
+         self%before%force_difference = self%force_difference
       end associate
    end subroutine accept
 
@@ -517,7 +517,7 @@ contains
             ! carried on by companions, the difference to the solution would oscillate, and shorter
             ! panels would not reduce it
             associate (n => self%panel%stages)
-               self%handed_down = self%handed_down + self%panel%impulse(n) &
+               self%impulse_difference = self%impulse_difference + self%panel%impulse(n) &
                   - self%coarse%impulse(n - 1)
             end associate
             self%coarse_start = self%start
@@ -535,7 +535,7 @@ contains
    end subroutine go_on
 
    !> Continue with the rebound of a receding contact
-   subroutine turn_round(self, approach, trajectory, error)
+   subroutine continue_with_rebound(self, approach, trajectory, error)
       !> The contact, at its largest indentation
       type(contact_t), intent(inout) :: self
       type(approach_t), intent(in), target :: approach
@@ -556,7 +556,7 @@ contains
       call follow_rebound(self%course_t, approach, trajectory, error)
       trajectory%cor_sphere_error = trajectory%cor_sphere_error + sphere_error
       trajectory%cor_error = trajectory%cor_error + cor_error
-   end subroutine turn_round
+   end subroutine continue_with_rebound
 
    !> Errors of the coefficients of restitution: with F = 0 at the end, s' = v0 - I/m - alpha' I and
    !> z' = v0 - I/m. The companion reaches F = 0 slightly earlier or later, which affects only the
@@ -626,7 +626,7 @@ contains
       real(wp) :: error
 
       associate (n => self%panel%stages, impact => self%problem%impact)
-         error = max(part*abs(self%handed_down + self%panel%impulse(n) &
+         error = max(part*abs(self%impulse_difference + self%panel%impulse(n) &
             - self%coarse%impulse(n - 1)), &
             min(part*self%largest_growth, harmless*self%accuracy)*impact%mass*self%speed)
          ! next to a branch point the last panel is no more accurate than its companion

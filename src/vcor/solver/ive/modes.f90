@@ -13,7 +13,7 @@ module vcor_solver_ive_modes
    implicit none
    private
 
-   public :: modes_t, resolve, advance_lags
+   public :: modes_t, find_response, advance_lags
 
    !> Sums of exponentials in the hereditary integrals of an impact
    type :: modes_t
@@ -31,7 +31,7 @@ contains
    !> Response R of the modes to a function in the panel, and c of their lags at its start, as
    !> functions of the eigenvalues of H: R = G_0 + sum_k G_k (1 + l_k H)^-1 and
    !> c 1 = sum_k G_k p_k (1 + l_k H)^-1 1
-   pure subroutine resolve(terms, p, map, lambda, response, past)
+   pure subroutine find_response(terms, p, map, lambda, response, past)
       type(exponential_sum_t), intent(in) :: terms
       !> Lags p_k at the start of the panel, shape (modes)
       real(wp), intent(in) :: p(:)
@@ -69,14 +69,14 @@ contains
             end do
          end associate
       end do
-      if (allocated(terms%pair_rates)) call resolve_pairs(terms, p, square, lambda, r, c)
+      if (allocated(terms%pair_rates)) call find_pair_response(terms, p, square, lambda, r, c)
       response = r
       past = times(square, c, map%left_one)
-   end subroutine resolve
+   end subroutine find_response
 
    !> The same for conjugate pairs: 1/(1 + l H) is (1 + conjg(l) H)/n, n = 1 + 2 Re l H + |l|^2 H^2,
    !> so the real part of w/(1 + l H) is (Re w + Re(w conjg(l)) H)/n
-   pure subroutine resolve_pairs(terms, p, square, lambda, r, c)
+   pure subroutine find_pair_response(terms, p, square, lambda, r, c)
       !> The sum
       type(exponential_sum_t), intent(in) :: terms
       !> Lags, those of the pairs last, real and imaginary part
@@ -103,7 +103,7 @@ contains
          end associate
          n = n + 2
       end do
-   end subroutine resolve_pairs
+   end subroutine find_pair_response
 
    !> 1/n and H/n
    pure subroutine invert_pair(rate, square, lambda, squared, inverse, product)

@@ -12,7 +12,7 @@ module vcor_solver_ive_newton
    implicit none
    private
 
-   public :: guess, solve, solve_near, improve, accompany, close_contact
+   public :: guess, solve, solve_near, improve, solve_companion, close_contact
 
    !> State of the iteration
    type :: newton_t
@@ -73,8 +73,8 @@ contains
       if (.not. panel%converged) return
       call problem%integrate(rule, equations, panel)
       if (.not. equations%closes) return
-      call problem%settle(rule, equations, start, panel)
-      call problem%settle_plate(rule, equations, start, panel)
+      call problem%set_end_condition(rule, equations, start, panel)
+      call problem%set_end_drift(rule, equations, start, panel)
    end subroutine solve
 
    !> Correct a panel, and estimate the error that remains: with a new Jacobian it falls as u does
@@ -185,8 +185,8 @@ contains
       if (.not. panel%converged) return
       call problem%integrate(rule, equations, panel)
       if (equations%closes) then
-         call problem%settle(rule, equations, start, panel)
-         call problem%settle_plate(rule, equations, start, panel)
+         call problem%set_end_condition(rule, equations, start, panel)
+         call problem%set_end_drift(rule, equations, start, panel)
       else if (.not. equations%rebounds) then
          ! keep the remaining error in the force, so that the motion agrees with the impulse
          panel%indentation(1:) = problem%impact%free_path(panel%time(1:)) &
@@ -237,7 +237,7 @@ contains
    end subroutine improve
 
    !> Solve the companion of a panel, from the companion's own start
-   subroutine accompany(problem, step, start, panel, inverse, companion)
+   subroutine solve_companion(problem, step, start, panel, inverse, companion)
       type(panel_problem_t), intent(in) :: problem
       type(step_t), intent(in) :: step
       !> State of the companion at the start of the panel
@@ -250,24 +250,24 @@ contains
       real(wp) :: own_inverse(width, width)
 
       associate (collocator => problem%collocator)
-         call start_from_panel()
+         call guess_companion()
          call solve_near(problem, collocator%coarse, step, start, inverse, companion)
          if (companion%converged) return
-         call start_from_panel()
+         call guess_companion()
          call solve(problem, collocator%coarse, step, start, companion, own_inverse)
       end associate
 
    contains
 
       !> Guess the companion by interpolation
-      subroutine start_from_panel()
+      subroutine guess_companion()
 
          associate (collocator => problem%collocator)
             companion%indentation(1:) = collocator%coarsened(panel%indentation)
             if (associated(problem%approach)) companion%t1(1:) = collocator%coarsened(panel%t1)
          end associate
-      end subroutine start_from_panel
-   end subroutine accompany
+      end subroutine guess_companion
+   end subroutine solve_companion
 
    !> Solve the last panel of a receding contact, and find its duration, for which N = 0 at the end
    subroutine close_contact(problem, start, time_tolerance, length, panel, inverse)
@@ -299,7 +299,7 @@ contains
             call correct(newton, problem, equations, inverse, panel)
             if (newton%failed) return
             call problem%integrate(rule, equations, panel)
-            call problem%settle(rule, equations, start, panel)
+            call problem%set_end_condition(rule, equations, start, panel)
             ! N is linear in (1 - theta)^2 near the end
             fall = 0.5_wp*sum(rule%derivative(n, :)*rule%slopes(panel%condition))
             if (.not. fall > 0.0_wp) return
@@ -314,7 +314,7 @@ contains
                .or. iteration > 3 .and. abs(correction) <= noticeable_time*length &
                .and. abs(correction) >= no_better*abs(last_correction))
             if (panel%converged) then
-               call problem%settle_plate(rule, equations, start, panel)
+               call problem%set_end_drift(rule, equations, start, panel)
                exit
             end if
             length = length + correction

@@ -34,7 +34,7 @@ module vcor_solver_ive_problem
    use vcor_numeric_radau_collocation, only : closing, collocation_t, panel_map_t
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_collocator, only : collocator_t
-   use vcor_solver_ive_modes, only : advance_lags, modes_t, resolve
+   use vcor_solver_ive_modes, only : advance_lags, find_response, modes_t
    use vcor_solver_ive_panel, only : move_to_end, panel_t, start_t
    use vcor_solver_ive_step, only : step_t
    use vcor_solver_tuning, only : rounding_of_condition
@@ -58,15 +58,15 @@ module vcor_solver_ive_problem
       !> Rounding in a correction of the condition, over `largest_condition`
       real(wp) :: noise = 0.0_wp
    contains
-      procedure :: turn_round
+      procedure :: begin_rebound
       procedure :: set_up
       procedure :: evaluate
       procedure :: move
       procedure :: find_forces
       procedure :: integrate
       procedure, private :: follow_force
-      procedure :: settle
-      procedure :: settle_plate
+      procedure :: set_end_condition
+      procedure :: set_end_drift
       procedure :: second_term
       procedure :: advance
    end type panel_problem_t
@@ -203,7 +203,7 @@ contains
          if (e%frozen) velocity = velocity + start%drift
          e%gain = velocity*e%elapsed + 0.5_wp*self%impact%gravity*e%elapsed**2
          if (e%remembers) then
-            call resolve(self%modes%plate, start%p, map, e%lambda, e%plate, e%past)
+            call find_response(self%modes%plate, start%p, map, e%lambda, e%plate, e%past)
             e%gain = e%gain - apply_product(map%right, map%square, e%lambda, e%past)
          end if
          e%yield = times(map%square, e%lambda, e%lambda)*e%inverse_mass
@@ -217,7 +217,7 @@ contains
             e%gain = e%gain + e%instant*e%start_force
          end if
 
-         call resolve(contact, start%lag, map, e%lambda, e%stiffness, e%memory)
+         call find_response(contact, start%lag, map, e%lambda, e%stiffness, e%memory)
          if (.not. e%rebounds) then
             e%memory = e%memory + contact%equilibrium*e%start_u*map%left_one
             if (contact%viscosity > 0.0_wp) e%stiffness = e%stiffness &
@@ -501,7 +501,7 @@ contains
    !> Set t1 and the condition at the end of a panel whose map is stationary there. Collocation does
    !> not resolve internal variables that settle in such a panel, and the end has no weight in its
    !> integrals, so the condition is integrated by `settling_t`
-   pure subroutine settle(self, rule, e, start, panel)
+   pure subroutine set_end_condition(self, rule, e, start, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
       type(equations_t), intent(in) :: e
@@ -517,7 +517,7 @@ contains
             panel%indentation(:n))
          if (e%viscosity > 0.0_wp) then
             velocity = impact%free_velocity(panel%time(n)) - panel%impulse(n)*e%inverse_mass
-            call self%settle_plate(rule, e, start, panel)
+            call self%set_end_drift(rule, e, start, panel)
             if (impact%plate%drifts()) then
                velocity = velocity + panel%drift(n)
             else
@@ -527,10 +527,10 @@ contains
             panel%condition(n) = panel%condition(n) + e%viscosity*velocity
          end if
       end associate
-   end subroutine settle
+   end subroutine set_end_condition
 
    !> Set the drift of a hereditary plate at the end of such a panel
-   pure subroutine settle_plate(self, rule, e, start, panel)
+   pure subroutine set_end_drift(self, rule, e, start, panel)
       class(panel_problem_t), intent(in) :: self
       type(collocation_t), intent(in) :: rule
       type(equations_t), intent(in) :: e
@@ -545,7 +545,7 @@ contains
             - rule%settling%total_of_pairs(plate%pair_moduli, plate%pair_rates, e%scale, &
             start%p(size(plate%rates) + 1:), panel%impulse(:n))
       end associate
-   end subroutine settle_plate
+   end subroutine set_end_drift
 
    !> Make the end of a panel the start of the next one
    subroutine advance(self, rule, step, panel, start)
@@ -570,7 +570,7 @@ contains
    end subroutine advance
 
    !> Begin the rebound at the end of the approach, the largest indentation
-   subroutine turn_round(self, approach, start)
+   subroutine begin_rebound(self, approach, start)
       class(panel_problem_t), intent(inout) :: self
       type(approach_t), intent(in), target :: approach
       !> State at the end of the approach, on return at the start of the rebound
@@ -584,7 +584,7 @@ contains
       self%largest_condition = start%condition
       self%noise = rounding_of_condition
       self%tolerance = self%collocator%near_tolerance
-   end subroutine turn_round
+   end subroutine begin_rebound
 
    !> Set up the second term of the Volterra series: form the matrices of the modes
    pure subroutine set_up_second_term(e, rates, start_lag)

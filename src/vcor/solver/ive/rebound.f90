@@ -13,7 +13,7 @@ module vcor_solver_ive_rebound
    use vcor_numeric_radau_collocation, only : closing, linear
    use vcor_solver_ive_approach, only : approach_t
    use vcor_solver_ive_course, only : course_t, share
-   use vcor_solver_ive_newton, only : accompany, close_contact, solve
+   use vcor_solver_ive_newton, only : close_contact, solve, solve_companion
    use vcor_solver_ive_panel, only : plate_gains
    use vcor_solver_ive_recording, only : record
    use vcor_solver_ive_step, only : step_of
@@ -48,7 +48,7 @@ module vcor_solver_ive_rebound
       !> Duration of the longest panel in which t1 rises, and its end [s]
       real(wp) :: longest_growing = 0.0_wp, growing_until = 0.0_wp
       !> Whether the panel only showed where the contact ends
-      logical :: misled = .false.
+      logical :: only_finds_end = .false.
       !> Errors of the coefficients of restitution, by the relative velocity and of the sphere:
       !> contribution of the panel, and sum of those before [-]
       real(wp) :: error(2) = 0.0_wp, error_sum(2) = 0.0_wp
@@ -75,7 +75,7 @@ contains
          call choose_length(rebound)
          if (.not. rebound%taken > epsilon(1.0_wp)*rebound%start%time) exit
          call solve_panel(rebound)
-         if (rebound%misled) cycle
+         if (rebound%only_finds_end) cycle
          if (.not. (rebound%panel%converged .and. rebound%coarse%converged)) then
             rebound%length = 0.5_wp*min(rebound%taken, rebound%rest)
             rebound%end_length = min(rebound%end_length, rebound%length)
@@ -122,7 +122,7 @@ contains
       logical :: relaxes, continuous
 
       self%approach => approach
-      call self%problem%turn_round(approach, self%start)
+      call self%problem%begin_rebound(approach, self%start)
       self%previous%stages = 0
       self%refused = huge(1.0_wp)
       associate (contact => self%problem%modes%contact, time => approach%end)
@@ -178,7 +178,7 @@ contains
       real(wp) :: theta
       integer :: n, j
 
-      self%misled = .false.
+      self%only_finds_end = .false.
       self%coarse%converged = .false.
       associate (problem => self%problem, rule => self%problem%collocator%rule, &
                  panel => self%panel)
@@ -199,7 +199,7 @@ contains
             panel%converged = abs(panel%t1(n)) <= close_to_zero*self%start%t1
             if (.not. panel%converged) return
             self%end_found = self%start%time + self%taken
-            self%misled = self%end_found > self%end_time
+            self%only_finds_end = self%end_found > self%end_time
          else if (panel%condition(n) <= 0.0_wp) then
             ! the end is closer than expected
             j = findloc(panel%condition(1:n) <= 0.0_wp, .true., 1)
@@ -207,10 +207,10 @@ contains
             self%rest = theta*(panel%map(1) + panel%map(2)*theta)
             self%refused = huge(1.0_wp)
             self%refused_length = huge(1.0_wp)
-            self%misled = .true.
+            self%only_finds_end = .true.
          end if
-         if (self%misled) return
-         call accompany(problem, self%step, self%start, panel, self%inverse, self%coarse)
+         if (self%only_finds_end) return
+         call solve_companion(problem, self%step, self%start, panel, self%inverse, self%coarse)
       end associate
    end subroutine solve_panel
 
@@ -324,7 +324,7 @@ contains
       logical :: grows
 
       real(wp), dimension(0:width) :: slope, bend, other
-      real(wp) :: same(width), theta, doubt
+      real(wp) :: same(width), theta, difference
       integer :: n, j, points
 
       associate (collocator => self%problem%collocator, rule => self%problem%collocator%rule)
@@ -334,8 +334,8 @@ contains
          same = collocator%coarsened(slope)
          ! at the end of the contact the map is stationary, and so is t1
          points = merge(n - 2, n - 1, self%ends)
-         doubt = maxval(abs(same(1:points) - other(1:points)))
-         grows = any(min(same(1:points), other(1:points)) > doubt)
+         difference = maxval(abs(same(1:points) - other(1:points)))
+         grows = any(min(same(1:points), other(1:points)) > difference)
          ! check the largest slope between the points, too
          j = maxloc(slope(0:n), 1) - 1
          if (grows .or. j == 0 .or. j == n) return
@@ -343,7 +343,7 @@ contains
          if (bend(j) < 0.0_wp) j = j - 1
          theta = rule%crossing(bend, rule%point(j), rule%point(j + 1), roughly)
          grows = min(rule%interpolate(slope, theta), &
-            collocator%coarse%interpolate(other, theta)) > doubt
+            collocator%coarse%interpolate(other, theta)) > difference
       end associate
    end function is_growing
 

@@ -15,18 +15,18 @@ module vcor_solver_ive_recording
    implicit none
    private
 
-   public :: forerunner_t
+   public :: earlier_panel_t
    public :: begin, record, find_peaks
 
    !> The panel before the one being recorded
-   type :: forerunner_t
+   type :: earlier_panel_t
       !> The panel; without stages if there is none
       type(panel_t) :: panel
       !> State at its start
       type(start_t) :: start
       !> Difference of its force to that of its companion at the end [N]
-      real(wp) :: doubt = 0.0_wp
-   end type forerunner_t
+      real(wp) :: force_difference = 0.0_wp
+   end type earlier_panel_t
 
 contains
 
@@ -85,14 +85,14 @@ contains
    end subroutine record
 
    !> Update the largest indentation and force
-   subroutine find_peaks(problem, start, panel, doubt, before, accuracy, trajectory)
+   subroutine find_peaks(problem, start, panel, force_difference, before, accuracy, trajectory)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
       !> Difference of its force to that of its companion at the end [N]
-      real(wp), intent(in) :: doubt
+      real(wp), intent(in) :: force_difference
       !> The panel before
-      type(forerunner_t), intent(in) :: before
+      type(earlier_panel_t), intent(in) :: before
       !> Wanted relative accuracy of the maxima
       real(wp), intent(in) :: accuracy
       !> The trajectory, the panel added
@@ -114,8 +114,8 @@ contains
          rises = trajectory%time_of_max_force >= panel%time(0)
          ! a force that rises up to the end of the panel has no maximum in it
          if ((rises .or. peak > trajectory%max_force) .and. time > 0.0_wp &
-             .and. time < panel%time(n)) call refine_force(problem, start, panel, doubt, before, &
-            accuracy, change, time, peak)
+             .and. time < panel%time(n)) call refine_force(problem, start, panel, &
+            force_difference, before, accuracy, change, time, peak)
          if (rises .or. peak > trajectory%max_force) then
             trajectory%max_force = peak
             trajectory%time_of_max_force = time
@@ -187,14 +187,15 @@ contains
    !> settle at once follow the rate of u, the derivative of a polynomial: the impulse hardly feels
    !> its error, but the force does. And a panel in t that starts near the branch point at t = 0 has
    !> an error of rho^-2n, rho = (sqrt(b) + sqrt(a))/(sqrt(b) - sqrt(a)) from a to b
-   subroutine refine_force(problem, start, panel, doubt, before, accuracy, change, time, peak)
+   subroutine refine_force(problem, start, panel, force_difference, before, accuracy, change, &
+                           time, peak)
       type(panel_problem_t), intent(in) :: problem
       type(start_t), intent(in) :: start
       type(panel_t), intent(in) :: panel
       !> Difference of its force to that of its companion at the end [N]
-      real(wp), intent(in) :: doubt
+      real(wp), intent(in) :: force_difference
       !> The panel before
-      type(forerunner_t), intent(in) :: before
+      type(earlier_panel_t), intent(in) :: before
       !> Wanted relative accuracy
       real(wp), intent(in) :: accuracy
       !> Change of the largest force by the improvement [N]
@@ -207,13 +208,13 @@ contains
       type(start_t) :: now
       type(panel_t) :: last
       real(wp) :: root, branch, part, here, allowed
-      logical :: handed_down
+      logical :: inherited
 
       associate (n => panel%stages)
-         handed_down = before%doubt > force_better*accuracy*peak
+         inherited = before%force_difference > force_better*accuracy*peak
          part = (time - start%time)/(panel%time(n) - start%time)
-         here = doubt
-         if (handed_down) here = before%doubt**(1.0_wp - part)*doubt**part
+         here = force_difference
+         if (inherited) here = before%force_difference**(1.0_wp - part)*force_difference**part
          root = sqrt(start%time/time)
          branch = 0.0_wp
          if (root > 0.0_wp) branch = ((1.0_wp - root)/(1.0_wp + root))**(2*n)
@@ -222,7 +223,7 @@ contains
          if (max(here/peak, branch) <= allowed) return
          now = start
          last = panel
-         if (handed_down) then
+         if (inherited) then
             now = before%start
             last = before%panel
             call solve_halves(problem, start%time, now, last)
