@@ -13,8 +13,7 @@ module vcor_impact_outcome
 
    public :: outcome_t, evaluate, none
 
-   !> Quiet NaN for a quantity that does not exist, by its bits: no function is allowed in a
-   !> constant
+   !> Quiet NaN for a quantity that does not exist, by its bits: ieee_value is not constant
    real(wp), parameter :: none = transfer(9221120237041090560_int64, 1.0_wp)
 
    !> The outcome. Without separation only `status`, `steps` and `initial_energy` are set, for a

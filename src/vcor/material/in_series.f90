@@ -136,8 +136,7 @@ contains
       do k = 1, zeros
          rate(k) = pole(near(k)) + offset(k)
          distance = (pole - pole(near(k))) - offset(k)
-         ! Q_a = -l part_a = -Q_b: both parts are equal but for sign and rounding; the smaller is
-         ! right
+         ! Q_a = -l part_a = -Q_b: the parts differ in sign and rounding; the smaller one is right
          part_a = a%viscosity + sum(of_a/distance)
          part_b = b%viscosity + sum(of_b/distance)
          modulus(k) = min(part_a**2, part_b**2)/sum(weight/distance**2)

@@ -131,8 +131,7 @@ contains
       type(interval_t), intent(in) :: range
       !> The number, finite or not
       real(wp), intent(in) :: number
-      !> True if it is within; false for NaN, infinity and magnitudes that are too large or too
-      !> small
+      !> False for NaN, infinity, and magnitudes too large or too small to compute with
       logical :: yes
 
       yes = is_within(range, number)

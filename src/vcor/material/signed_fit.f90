@@ -27,8 +27,7 @@ module vcor_material_signed_fit
    !> and is smooth in the logarithm of time afterwards
    real(wp), parameter :: ends(*) = [1.0e-4_wp, 3.0e-4_wp, 1.0e-3_wp, 3.0e-3_wp, 0.01_wp, 0.03_wp, &
       0.1_wp, 0.3_wp, 1.0_wp]
-   !> Index in `ends` of the time from which the fit is judged value by value; before, by its
-   !> integral
+   !> Index in `ends` of the time from which values of the fit count; before, only its integral
    integer, parameter :: checked = 5
 
    !> Relative diagonal of R below which columns are left out as dependent; the best choice is taken

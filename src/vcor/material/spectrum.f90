@@ -7,8 +7,8 @@
 !>
 !>     y + c asinh((y - y_p)/d) = x - exp(x_a - x) + exp(x - x_b),   x = 0, +-h, +-2 h ..
 !>
-!> Below x_a and above x_b the right-hand side grows double-exponentially. There, exp(-l t) acts on
-!> the window as 1 - l t + .. and as (delta(t) - ..)/l, and a few nodes cover many decades (H.
+!> Below x_a and above x_b the right-hand side diverges double-exponentially. There, exp(-l t) acts
+!> on the window as 1 - l t + .. and (delta(t) - ..)/l, and a few nodes cover many decades (H.
 !> Takahasi and M. Mori, Publ. RIMS 9 (1974) 721). The left-hand side is y unless the spectrum has a
 !> peak at y_p so narrow that its poles y_p +- i d lie inside the strip; c = 1 - 2 d/pi moves them
 !> to the edge. Rates below all nodes are lumped into a constant, those above them into a dashpot.
@@ -101,7 +101,7 @@ contains
       !> Shift of x_b towards fast rates; absent: 0
       real(wp), intent(in), optional :: above
 
-      ! y| beyond which rates cannot be computed
+      ! |y| beyond which rates cannot be computed
       real(wp), parameter :: farthest = 600.0_wp
       real(wp) :: h, y, w, y_p, d, c, turn_low, turn_high, slope, rate, modulus, shift, tail
       real(wp) :: ratio, run_low, run_high, beyond_peak
