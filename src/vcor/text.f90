@@ -30,7 +30,6 @@ contains
    !> A text in lower case (ASCII letters only)
    pure function lower(text) result(small)
       character(len=*), intent(in) :: text
-      !> The same in lower case
       character(len=len(text)) :: small
       integer, parameter :: shift = iachar("a") - iachar("A")
       integer :: i
@@ -58,7 +57,6 @@ contains
    !> An integer as text
    pure function integer_text(number) result(text)
       integer, intent(in) :: number
-      !> Its digits
       character(len=:), allocatable :: text
       character(len=16) :: buffer
 
@@ -335,7 +333,6 @@ contains
    !> The text so far
    pure function text(self) result(all)
       class(buffer_t), intent(in) :: self
-      !> All that was added
       character(len=self%length) :: all
 
       if (self%length > 0) all = self%room(:self%length)

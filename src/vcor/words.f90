@@ -36,7 +36,6 @@ contains
       !> Words separated by blanks
       character(len=*), intent(in) :: words
       character(len=*), intent(in) :: word
-      !> True if it does
       logical :: yes
 
       yes = len_trim(word) > 0 .and. index(trim(word), " ") == 0

@@ -117,8 +117,8 @@ contains
       c = (0.0_wp, 0.0_wp)
       low = 0.0_wp
       do while (low < last)
-         ! poles lie off the real axis by the damping over the group speed, which does not exceed
-         ! the phase speed, twice that of bending waves, nor the speed of pressure waves
+         ! distance of poles from the real axis: damping over group speed, which is at most that of
+         ! pressure waves and at most the phase speed, for bending waves twice the phase speed
          step = reach*(damping*max(max(sqrt(share), fastest)*shear_wave, min(low, shear_wave)) &
             + max(0.0_wp, low - behind))
          if (low < bending(2)*bending_wave) step = min(step, &

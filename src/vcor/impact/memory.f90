@@ -213,8 +213,8 @@ contains
 
       ! in a long window exp(-l t) grows for l < 0; this bounds the strip like a branch point
       real(wp), parameter :: growth = 2.0_wp
-      ! the substitution begins here; |y| beyond which rates cannot be computed; 1/(rate times
-      ! window) of a term that acts as a dashpot
+      ! start of the substitution, over the slower of window and gap; |y| beyond which rates cannot
+      ! be computed; 1/(rate times window) of a term that acts as a dashpot
       real(wp), parameter :: slow = 0.1_wp, farthest = 600.0_wp, constant = 1.0e-14_wp
       ! terms collected at a time, more than any gap has
       integer, parameter :: room = 256

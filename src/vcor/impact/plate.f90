@@ -1,4 +1,7 @@
-!> Plate that carries energy of the impact away in waves
+!> Plate that carries energy of the impact away in waves: its deflection U under the contact force
+!>
+!> A thin plate has U = alpha I with Zener's alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3);
+!> a hereditary one has a memory (`vcor_impact_memory`), a thick one is a layer.
 module vcor_impact_plate
    use vcor_error, only : error_input, error_t, raise
    use vcor_impact_layer, only : layer_t, new_layer
@@ -138,7 +141,7 @@ contains
          allocate (self%material, source=material)
    end subroutine new_plate
 
-   !> Zener's plate parameter alpha(t) = sqrt(3 rho/E'_b(t))/(16 rho h^2), Eq. (3)
+   !> Zener's plate parameter alpha(t), Eq. (3)
    elemental function alpha(self, t) result(value)
       class(plate_t), intent(in) :: self
       !> Time since first contact [s], t >= 0
@@ -208,7 +211,6 @@ contains
    elemental function layered(self)
       !> The plate
       class(plate_t), intent(in) :: self
-      !> Whether it is
       logical :: layered
 
       layered = allocated(self%layer)

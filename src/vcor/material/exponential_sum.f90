@@ -40,9 +40,7 @@ contains
 
    !> Number of real internal variables: one for each real rate, two for each pair
    pure function variables(self) result(n)
-      !> The sum
       class(exponential_sum_t), intent(in) :: self
-      !> Number
       integer :: n
 
       n = size(self%rates)

@@ -209,7 +209,6 @@ contains
       integer, intent(in) :: panel
       !> Upper limit, within the panel
       real(wp), intent(in) :: x
-      !> Integral
       real(wp) :: area
 
       real(wp) :: at(order), y(order), slope(order)

@@ -49,7 +49,7 @@ module vcor_numeric_lapack
          integer, intent(in) :: n
          !> Leading dimension of `a`
          integer, intent(in) :: lda
-         !> The matrix, on return R in its upper triangle and Q below it, shape (lda, n)
+         !> The matrix, on return R in its upper triangle, reflections below, shape (lda, n)
          real(wp), intent(inout) :: a(lda, *)
          !> Nonzero: the column comes first; on return the original number of each, shape (n)
          integer, intent(inout) :: jpvt(*)

@@ -67,7 +67,6 @@ contains
       integer, intent(in) :: last
       !> Values, x_1 first
       real(wp), contiguous, intent(in) :: x(:)
-      !> Sum
       real(wp) :: total
 
       associate (shift => self%room - n)
@@ -90,7 +89,6 @@ contains
       class(second_term_t), intent(in) :: self
       !> Step, 1 <= n, 2 n <= room
       integer, intent(in) :: n
-      !> Sum
       real(wp) :: past
 
       past = self%kernel%sum_over(2*n, 2, 2*n - 2, self%sums)
@@ -116,7 +114,6 @@ contains
       real(wp), contiguous, intent(in) :: a(:)
       !> Second vector, shape (n)
       real(wp), contiguous, intent(in) :: b(:)
-      !> Scalar product
       real(wp) :: product
 
       integer, parameter :: lanes = 16

@@ -352,7 +352,6 @@ contains
       real(wp), intent(in) :: value(0:width)
       !> Arguments
       real(wp), intent(in) :: theta(width)
-      !> Values
       real(wp) :: y(width)
 
       real(wp) :: c(0:width)
@@ -370,7 +369,6 @@ contains
       class(collocation_t), intent(in) :: self
       !> Values at `point`
       real(wp), intent(in) :: value(0:width)
-      !> Coefficients
       real(wp) :: c(0:width)
 
       c = combined(self%power, value)
@@ -416,7 +414,6 @@ contains
       real(wp), intent(in) :: upper
       !> Iteration ends with a step of this size; the error is smaller
       real(wp), intent(in) :: tolerance
-      !> Zero
       real(wp) :: theta
 
       real(wp) :: c(0:width), a, b, fa, fb, f, previous

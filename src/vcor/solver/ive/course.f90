@@ -1,5 +1,8 @@
-!> State of the integration panel by panel, and what contact and rebound share: error measures and
-!> the choice of steps
+!> State of the integration panel by panel, and what contact and rebound share
+!>
+!> The error of a panel is mainly the growth, over the panel, of the difference between the solution
+!> and its companion. `excess` is this over the allowed error, and the next panel may be longer by
+!> the factor excess^(-1/(2 n - 2)) with n stages.
 module vcor_solver_ive_course
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : width
@@ -60,7 +63,6 @@ contains
       real(wp), intent(in) :: one(0:width)
       !> Values of the companion
       real(wp), intent(in) :: other(0:width)
-      !> Growth
       real(wp) :: difference
 
       associate (n => self%panel%stages)
@@ -106,7 +108,6 @@ contains
    pure function is_best_end(self) result(best)
       !> The course, its panel judged
       class(course_t), intent(in) :: self
-      !> Whether it cannot
       logical :: best
 
       best = self%excess > 0.5_wp*self%refused_end .or. self%refused_ends + 1 >= enough_closings
@@ -150,7 +151,6 @@ contains
       real(wp), intent(in) :: actual
       !> Allowed error, >= 0
       real(wp), intent(in) :: allowed
-      !> Ratio
       real(wp) :: share
 
       real(wp), parameter :: immense = 1.0e30_wp

@@ -1,4 +1,8 @@
 !> Finding the end of the contact, or of the approach, in the internal-variable method
+!>
+!> The panel that contains the end is solved again with lengths from Newton's method: for s' = 0 at
+!> the end of the approach, and for kappa u(s) = M at the end of the contact, where F = kappa u - M.
+!> For s and M are smooth in time where u(s) and F are not.
 module vcor_solver_ive_landing
    use vcor_impact_law, only : contact_law_t
    use vcor_impact_problem, only : impact_t
@@ -173,10 +177,9 @@ contains
       length = step%duration()
       associate (contact => problem%modes%contact, law => problem%impact%law)
          elastic = size(contact%rates) == 0 .and. .not. contact%viscosity > 0.0_wp
-         ! F = kappa u - M, with any kappa about dF/du, here without modes that settle in the step:
-         ! s and M are smooth in time, but u(s) is not where s goes to zero. So Newton's method
-         ! solves kappa u(s) = M with s and M linear in time; the slope of M comes from the
-         ! polynomials of the panel, then from the last two iterations
+         ! kappa may be anything about dF/du, here without modes that settle in the step. s and M
+         ! are taken as linear in time; the slope of M comes from the polynomials of the panel, then
+         ! from the last two iterations
          kappa = contact%equilibrium + sum(contact%moduli/(1.0_wp + contact%rates*step%duration()))
          call look_for_zero(problem%collocator%rule, law, kappa, panel, time, memory_rate)
          panel%converged = .false.

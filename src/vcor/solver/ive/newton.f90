@@ -1,4 +1,9 @@
-!> Newton's method for the equations of a panel, keeping the Jacobian as long as it converges
+!> Newton's method for the equations x + M f(x) = r of a panel
+!>
+!> The Jacobian 1 + M diag(f') is inverted and kept as long as the iteration contracts. Panels next
+!> to a solved one, and companions by interpolation between their stages and those of the solution,
+!> use the same inverse, so no matrix is formed for them. The last panel of a receding contact is
+!> solved together with its length.
 module vcor_solver_ive_newton
    use vcor_kinds, only : wp
    use vcor_numeric_radau_algebra, only : apply, invert, width
@@ -325,11 +330,9 @@ contains
       end associate
    end subroutine close_contact
 
-   !> Largest magnitude
+   !> Largest magnitude of the elements
    pure function largest(x)
-      !> Vector
       real(wp), intent(in) :: x(width)
-      !> Its norm
       real(wp) :: largest
 
       real(wp) :: half(width/2)

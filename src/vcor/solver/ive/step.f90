@@ -61,7 +61,7 @@ contains
       if (self%index >= 0) scale = self%length**2
    end function map_scale
 
-   !> Duration [s]
+   !> Duration of the step
    pure function duration(self)
       class(step_t), intent(in) :: self
       !> Duration [s]
