@@ -15,7 +15,6 @@ module vcor_app_files
       plain_file_exists, quoted_path
    use vcor_io_table, only : place_in_table, table_t
    use vcor_sweep_part, only : new_part, part_t
-   use vcor_sweep_quantity, only : quantities
    use vcor_text, only : integer_text, name_flaw, printable
    implicit none
    private
@@ -326,13 +325,12 @@ contains
       logical :: is_whole
 
       type(identity_t) :: identity
-      integer :: rows
+      type(reader_t) :: reader
+      type(error_t), allocatable :: error
+      integer(int64) :: ignored
+      integer :: expected, rows
 
-      is_whole = .not. files%writes(3)
-      ! the summary of an earlier version has fewer columns
-      associate (list => quantities())
-         if (previous%has_hdf5) is_whole = rows_in(previous%path, 'summary/'//list%name) > 0
-      end associate
+      is_whole = previous%has_hdf5 .or. .not. files%writes(3)
       if (is_whole .and. files%writes(1)) then
          call read_csv(files%name(1), identity, rows)
          is_whole = rows == points
@@ -340,31 +338,14 @@ contains
       if (.not. (is_whole .and. files%writes(2))) return
       call read_csv(files%name(2), identity, rows)
       is_whole = rows > 0
-      if (previous%has_hdf5) is_whole = rows == rows_in(previous%path, ['history/time'])
-   end function is_whole
-
-   !> Number of rows of a table in an HDF5 file
-   function rows_in(path, columns) result(rows)
-      character(len=*), intent(in) :: path
-      !> Paths of its columns
-      character(len=*), intent(in) :: columns(:)
-      !> 0 where one of them is missing
-      integer :: rows
-
-      type(reader_t) :: reader
-      type(error_t), allocatable :: error
-      integer(int64) :: ignored
-      integer :: i
-
-      rows = 0
-      call open_hdf5(reader, path, error)
-      do i = 1, size(columns)
-         if (.not. allocated(error)) &
-            call find_dataset(reader, trim(columns(i)), rows, ignored, error)
-      end do
-      if (allocated(error)) rows = 0
+      if (.not. previous%has_hdf5) return
+      call open_hdf5(reader, previous%path, error)
+      if (.not. allocated(error)) &
+         call find_dataset(reader, 'history/time', expected, ignored, error)
       call close_hdf5(reader)
-   end function rows_in
+      is_whole = .not. allocated(error)
+      if (is_whole) is_whole = rows == expected
+   end function is_whole
 
    !> Nobody's results are replaced in silence
    function replacement_note(previous) result(text)

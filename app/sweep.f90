@@ -15,8 +15,7 @@ module vcor_app_sweep
       warn_of_bands
    use vcor_case_grid, only : grid_t
    use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
-   use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points, &
-      read_results
+   use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points
    use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout, write_terminal
    use vcor_io_identity, only : identity_of, identity_t, number_of
    use vcor_text, only : integer_text
@@ -145,9 +144,6 @@ contains
       if (is_unfinished) then
          call open_checkpoint(watch%file, watch%path, watch%identity, summary, error, &
             anew=.not. request%resume)
-      else if (request%resume .and. previous%has_hdf5) then
-         ! the text is missing, or not all of it is there: all points are
-         call read_results(previous%path, summary, error)
       else if (watch%keeps) then
          ! better now than after hours
          call make_directory(job%files%directory(), error)

@@ -30,17 +30,14 @@ module vcor_io_checkpoint
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
       c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
    use vcor_io_results, only : axis_column, quantity_column
-   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
-      new_table, real_column, table_t, text_column, text_value
+   use vcor_io_table, only : add_column, add_dimension, column_of, column_t, new_table, table_t
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
-   use vcor_sweep_quantity, only : label_length, labels_of, point_pending, quantity_t, summary_t
-   use vcor_text, only : shortened
-   use vcor_words, only : join_words
+   use vcor_sweep_quantity, only : point_pending, quantity_t, summary_t
    implicit none
    private
 
-   public :: checkpoint_t, create_checkpoint, open_checkpoint, read_points, read_results
+   public :: checkpoint_t, create_checkpoint, open_checkpoint, read_points
 
    !> A file of a sweep under way
    type :: checkpoint_t
@@ -359,86 +356,37 @@ contains
       !> Error of code `error_file` if it cannot be read, or is not about what is expected
       type(error_t), allocatable, intent(out) :: error
 
-      integer, allocatable :: checks(:)
-
-      call check_part(path, identity, error)
-      if (allocated(error)) return
-      allocate (checks(size(summary%status)))
-      call read_results(path, summary, error, checks)
-      if (allocated(error)) return
-      where (checks /= checks_of(summary, 1, size(checks))) &
-         summary%status = point_pending
-   end subroutine read_points
-
-   !> Read all columns of a file, of a finished sweep or of a part
-   subroutine read_results(path, summary, error, checks)
-      character(len=*), intent(in) :: path
-      !> Outcomes, with room for all of its points
-      type(summary_t), intent(inout) :: summary
-      !> Error of code `error_file` if they cannot be read
-      type(error_t), allocatable, intent(out) :: error
-      !> Check sums, shape (points); a file without them has texts where this one has numbers
-      integer, intent(inout), optional :: checks(:)
-
       type(reader_t) :: reader
       type(column_t) :: column
-      integer :: i, kind
+      integer :: i
 
-      call open_hdf5(reader, path, error)
+      call check_part(path, identity, error)
+      if (.not. allocated(error)) call open_hdf5(reader, path, error)
       if (allocated(error)) return
       do i = 1, size(summary%quantities)
          associate (quantity => summary%quantities(i))
-            kind = merge(integer_column, real_column, quantity%is_whole)
-            if (quantity%labels /= '' .and. .not. present(checks)) kind = text_column
-            call read_column(reader, path_of(quantity%name), kind, size(summary%status), column, &
-               error)
-            if (.not. allocated(error) .and. kind == text_column) &
-               call number_texts(column, quantity, reader%path, error)
-            if (allocated(error)) exit
-            if (i > size(summary%values)) then
-               call move_alloc(column%integers, summary%status)
-            else
-               call move_alloc(column%integers, summary%values(i)%integers)
-               call move_alloc(column%reals, summary%values(i)%reals)
-            end if
+            call read_column(reader, path_of(quantity%name), quantity%is_whole, &
+               size(summary%status), column, error)
          end associate
+         if (allocated(error)) exit
+         if (i > size(summary%values)) then
+            call move_alloc(column%integers, summary%status)
+         else
+            call move_alloc(column%integers, summary%values(i)%integers)
+            call move_alloc(column%reals, summary%values(i)%reals)
+         end if
       end do
-      if (present(checks) .and. .not. allocated(error)) then
-         call read_column(reader, path_of('check'), integer_column, size(checks), column, error)
-         if (.not. allocated(error)) checks = column%integers
-      end if
+      if (.not. allocated(error)) &
+         call read_column(reader, path_of('check'), .true., size(summary%status), column, error)
       call close_hdf5(reader)
-      if (.not. allocated(error)) return
-      error%code = error_file
-      error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
-   end subroutine read_results
-
-   !> Find the numbers that the texts of a column stand for
-   subroutine number_texts(column, quantity, path, error)
-      !> The column, of texts; its `integers` become the numbers
-      type(column_t), intent(inout) :: column
-      type(quantity_t), intent(in) :: quantity
-      !> File that it is from, for messages
-      character(len=*), intent(in) :: path
-      !> Error of code `error_file` if a text is none of those that are known
-      type(error_t), allocatable, intent(out) :: error
-
-      character(len=label_length), allocatable :: labels(:)
-      integer :: i, k
-
-      allocate (labels, source=labels_of(quantity))
-      do i = 1, column%length
-         ! findloc of gfortran 12 finds no text of another length
-         do k = size(labels), 1, -1
-            if (labels(k) == text_value(column, i)) exit
-         end do
-         if (k == 0) call raise(error, error_file, path//": found '" &
-            //shortened(text_value(column, i))//"' in 'summary/"//trim(quantity%name) &
-            //"', expected one of "//join_words(trim(adjustl(quantity%labels))))
-         if (allocated(error)) return
-         column%integers(i) = quantity%first - 1 + k
-      end do
-   end subroutine number_texts
+      if (allocated(error)) then
+         error%code = error_file
+         error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
+         return
+      end if
+      where (column%integers /= checks_of(summary, 1, size(summary%status))) &
+         summary%status = point_pending
+   end subroutine read_points
 
    !> Path of the dataset of a column
    pure function path_of(name) result(path)

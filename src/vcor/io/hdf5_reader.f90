@@ -2,7 +2,7 @@
 !>
 !>     call open_hdf5(reader, 'case.h5', error)
 !>     text = text_attribute(reader, 'title')
-!>     call read_column(reader, 'summary/cor', real_column, n, column, error)
+!>     call read_column(reader, 'summary/cor', .false., n, column, error)
 !>     call close_hdf5(reader)
 !>
 !> Reads what `vcor_io_hdf5` writes and what others make of it (h5py, h5repack): numbers of any
@@ -21,7 +21,7 @@ module vcor_io_hdf5_reader
    use vcor_io_path, only : check_readable, plain_file_exists
    use vcor_io_posix, only : fortran_text
    use vcor_io_seal, only : check_seal
-   use vcor_io_table, only : column_t, integer_column, real_column, text_column
+   use vcor_io_table, only : column_t
    use vcor_text, only : integer_text, printable, shortened
    implicit none
    private
@@ -97,13 +97,14 @@ contains
    function text_attribute(reader, name) result(text)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: name
-      !> Its value; empty if there is none or it is no single text
+      !> Its value; empty if there is none or it is no single text of variable length
       character(len=:), allocatable :: text
 
-      type(column_t) :: column
-      integer(hid_t) :: attribute, space, type_id
-      integer :: ignored, status
-      logical :: exists
+      type(c_ptr), target :: place
+      type(c_ptr) :: buffer
+      integer(hid_t) :: attribute, memory_type, space, type_id
+      integer :: character_set, class, ignored, length, status
+      logical :: exists, varies
 
       text = ''
       call h5aexists_by_name_f(reader%file, '/', name, exists, status)
@@ -112,23 +113,35 @@ contains
       if (status < 0) return
       call h5aget_space_f(attribute, space, status)
       call h5aget_type_f(attribute, type_id, status)
-      call read_length(space, column%length, status)
-      if (column%length == 1) then
-         call read_texts(attribute, .true., space, type_id, column, status)
-         if (status >= 0) text = trim(column%texts)
+      call read_length(space, length, status)
+      varies = .false.
+      call h5tget_class_f(type_id, class, status)
+      if (class == h5t_string_f) call h5tis_variable_str_f(type_id, varies, status)
+      if (varies .and. length == 1) then
+         call h5tget_cset_f(type_id, character_set, status)
+         call h5tcopy_f(h5t_string, memory_type, status)
+         call h5tset_cset_f(memory_type, character_set, status)
+         place = c_null_ptr
+         buffer = c_loc(place)
+         call h5aread_f(attribute, memory_type, buffer, status)
+         if (status >= 0) then
+            text = trim(fortran_text(place))
+            call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
+         end if
+         call h5tclose_f(memory_type, ignored)
       end if
       call h5tclose_f(type_id, ignored)
       call h5sclose_f(space, ignored)
       call h5aclose_f(attribute, ignored)
    end function text_attribute
 
-   !> Read a column of a table, of which it is known what it has
-   subroutine read_column(reader, path, kind, length, column, error)
+   !> Read a column of numbers, of which it is known what it has
+   subroutine read_column(reader, path, is_whole, length, column, error)
       type(reader_t), intent(in) :: reader
       !> Path of the dataset
       character(len=*), intent(in) :: path
-      !> Kind of its values
-      integer, intent(in) :: kind
+      !> Whether its values are whole numbers
+      logical, intent(in) :: is_whole
       !> Number of its values
       integer, intent(in) :: length
       !> Its values, the last dimension the fastest as in nested loops
@@ -137,26 +150,19 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       type(c_ptr) :: place
-      integer(hid_t) :: set, space, type_id
-      integer :: classes(3), class, i, ignored, status
+      integer(hid_t) :: set, type_id
+      integer :: class, ignored, status
 
-      call open_dataset(reader, path, set, space, column%length, error)
+      call open_dataset(reader, path, set, column%length, error)
       if (allocated(error)) return
-      column%kind = kind
-      classes(real_column) = h5t_float_f
-      classes(integer_column) = h5t_integer_f
-      classes(text_column) = h5t_string_f
       call h5dget_type_f(set, type_id, status)
       call h5tget_class_f(type_id, class, status)
       if (column%length /= length) then
          call raise(error, error_file, reader%path//': found '//integer_text(column%length) &
             //" values in '"//shortened(path)//"', expected "//integer_text(length))
-      else if (class /= classes(kind)) then
+      else if (class /= merge(h5t_integer_f, h5t_float_f, is_whole)) then
          status = -1
-      else if (kind == text_column) then
-         column%integers = [(i, i=1, length)]
-         call read_texts(set, .false., space, type_id, column, status)
-      else if (kind == integer_column) then
+      else if (is_whole) then
          allocate (column%integers(length))
          place = c_loc(column%integers)
          if (length > 0) call h5dread_f(set, h5t_native_integer, place, status)
@@ -166,11 +172,9 @@ contains
          if (length > 0) call h5dread_f(set, h5t_native_double, place, status)
       end if
       call h5tclose_f(type_id, ignored)
-      call h5sclose_f(space, ignored)
       call h5dclose_f(set, ignored)
       if (status < 0) call raise(error, error_file, reader%path//": the dataset '" &
-         //shortened(path)//"' cannot be read as " &
-         //trim(merge('text   ', 'numbers', kind == text_column)))
+         //shortened(path)//"' cannot be read as numbers")
    end subroutine read_column
 
    !> Find a dataset: how many values it has, and where in the file they are
@@ -184,30 +188,30 @@ contains
       !> Set if there is none
       type(error_t), allocatable, intent(out) :: error
 
-      integer(hid_t) :: set, space
+      integer(hid_t) :: set
       integer :: ignored
 
       offset = -1_c_int64_t
-      call open_dataset(reader, path, set, space, length, error)
+      call open_dataset(reader, path, set, length, error)
       if (allocated(error)) return
       offset = c_get_offset(int(set, c_int64_t))
-      call h5sclose_f(space, ignored)
       call h5dclose_f(set, ignored)
    end subroutine find_dataset
 
    !> Open a dataset
-   subroutine open_dataset(reader, path, set, space, length, error)
+   subroutine open_dataset(reader, path, set, length, error)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: path
-      !> The dataset and its space
-      integer(hid_t), intent(out) :: set, space
+      integer(hid_t), intent(out) :: set
       !> Number of its values
       integer, intent(out) :: length
       !> Error of code `error_input` if there is none; then nothing is open
       type(error_t), allocatable, intent(out) :: error
 
+      integer(hid_t) :: space
       integer :: ignored, status
 
+      length = 0
       call h5dopen_f(reader%file, path, set, status)
       if (status < 0) then
          call raise(error, error_input, reader%path//": there is no dataset '"//shortened(path) &
@@ -216,10 +220,10 @@ contains
       end if
       call h5dget_space_f(set, space, status)
       call read_length(space, length, status)
+      call h5sclose_f(space, ignored)
       if (status >= 0) return
       call raise(error, error_file, reader%path//": the dataset '"//shortened(path) &
-         //"' cannot be read as numbers or text")
-      call h5sclose_f(space, ignored)
+         //"' cannot be read as numbers")
       call h5dclose_f(set, ignored)
    end subroutine open_dataset
 
@@ -237,55 +241,5 @@ contains
       length = 0
       if (status >= 0) length = int(number)
    end subroutine read_length
-
-   !> Read text of variable length, of a dataset or an attribute
-   subroutine read_texts(object, is_attribute, space, type_id, column, status)
-      !> The dataset or the attribute
-      integer(hid_t), intent(in) :: object
-      logical, intent(in) :: is_attribute
-      integer(hid_t), intent(in) :: space
-      !> Its type in the file
-      integer(hid_t), intent(in) :: type_id
-      !> Column whose length is set; its texts are afterwards
-      type(column_t), intent(inout) :: column
-      !> Negative on failure, or if it is something else
-      integer, intent(out) :: status
-
-      type(c_ptr), allocatable, target :: places(:)
-      type(c_ptr) :: buffer
-      integer(hid_t) :: memory_type
-      integer :: character_set, class, i, ignored
-      logical :: varies
-
-      varies = .false.
-      call h5tget_class_f(type_id, class, status)
-      if (class == h5t_string_f) call h5tis_variable_str_f(type_id, varies, status)
-      if (.not. varies) status = -1
-      if (status < 0) return
-      call h5tget_cset_f(type_id, character_set, status)
-      call h5tcopy_f(h5t_string, memory_type, status)
-      call h5tset_cset_f(memory_type, character_set, status)
-      allocate (places(max(1, column%length)))
-      places = c_null_ptr
-      buffer = c_loc(places)
-      if (column%length == 0) then
-         continue
-      else if (is_attribute) then
-         call h5aread_f(object, memory_type, buffer, status)
-      else
-         call h5dread_f(object, memory_type, buffer, status)
-      end if
-      if (status >= 0) then
-         do i = 1, column%length
-            column%width = max(column%width, len(fortran_text(places(i))))
-         end do
-         allocate (character(len=column%width*column%length) :: column%texts)
-         do i = 1, column%length
-            column%texts((i - 1)*column%width + 1:i*column%width) = fortran_text(places(i))
-         end do
-         call h5dvlen_reclaim_f(memory_type, space, h5p_default_f, buffer, ignored)
-      end if
-      call h5tclose_f(memory_type, ignored)
-   end subroutine read_texts
 
 end module vcor_io_hdf5_reader
