@@ -7,7 +7,7 @@
 !> steps of a substitution waits for the one before.
 !>
 !> There is no pivoting. The matrices are Jacobians of Newton's method, unit matrix plus collocation
-!> matrix, and the residuals are evaluated anew in each iteration. This is an iterative refinement,
+!> matrix, and the residuals are evaluated again in each iteration. This is iterative refinement,
 !> which tolerates lost digits in the inverse.
 !>
 !> A function of a diagonalised matrix is one number a + b j per pair of eigenvalues, with j^2 = -1
