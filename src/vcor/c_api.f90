@@ -466,8 +466,9 @@ contains
       complex(wp) :: modulus(n)
 
       call find_body(self, material, body, trouble)
-      if (.not. allocated(trouble) .and. any(frequencies < 0.0_wp)) &
-         call raise(trouble, error_input, 'found a negative frequency, expected them >= 0 [rad/s]')
+      if (.not. allocated(trouble) .and. any(frequencies < 0.0_wp &
+          .or. frequencies > huge(1.0_wp))) call raise(trouble, error_input, &
+         'found a negative frequency or an infinite one, expected them >= 0 [rad/s]')
       if (.not. allocated(trouble)) then
          modulus = body%complex_modulus(cmplx(0.0_wp, frequencies, wp))
          storage = real(modulus, wp)

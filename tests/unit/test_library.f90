@@ -286,7 +286,7 @@ contains
    subroutine test_sweep()
       character(len=*), parameter :: nl = new_line('a')
       type(case_t) :: case
-      type(sweep_t) :: sweep
+      type(sweep_t) :: sweep, unbuilt
       type(summary_t) :: summary
       type(failures_t) :: failures
       type(table_t) :: table
@@ -304,6 +304,12 @@ contains
       call check(failures%count == 0, "all points have a result")
       call check(summary%quantities(1)%name == 'cor', "the first quantity is the COR")
       call check_close(summary%values(1)%reals(3), sls_cor, tolerance, "the last point")
+      call solve_sweep(sweep, 0, summary, failures, error)
+      call check(allocated(error), "no thread solves nothing")
+      call solve_sweep(unbuilt, 1, summary, failures, error)
+      call check(allocated(error), "a sweep that is not built is refused")
+      call solve_sweep(sweep, 1, summary, failures, error)
+      call success(error, "the points are solved again")
       call summary_table(table, 'sweep', case_text(case, complete=.true.), sweep%grid, summary)
       call check_close(table%columns(1)%reals(3), sls_cor, tolerance, "the same in the table")
    end subroutine test_sweep

@@ -525,8 +525,6 @@ class Material:
     def complex_modulus(self, frequencies: ArrayLike) -> NDArray[np.complex128]:
         """Complex modulus E' + i E'' [Pa] at angular frequencies >= 0 [rad/s], in their shape."""
         w = numbers(frequencies, "frequencies", np.inf, "numbers")
-        if np.isposinf(w).any():
-            raise InputError("found an infinite frequency, expected them finite [rad/s]")
         storage, loss = np.empty(w.size), np.empty(w.size)
         given = self._case._pointer, self.name, w.size, w.ravel()
         call("vcor_complex_modulus", *given, storage, loss)

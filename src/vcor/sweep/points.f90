@@ -31,6 +31,7 @@ module vcor_sweep_points
    use vcor_sweep_part, only : most_threads, new_part, part_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
       summary_t, values_of
+   use vcor_text, only : integer_text
    implicit none
    private
 
@@ -260,7 +261,13 @@ contains
       !> without results
       type(error_t), allocatable, intent(out) :: error
 
-      call new_summary(summary, sweep%grid%count(), error)
+      if (.not. allocated(sweep%grid%axes)) then
+         call raise(error, error_input, 'the sweep is empty: new_sweep has not built it')
+      else if (threads < 1 .or. threads > most_threads) then
+         call raise(error, error_input, 'found '//integer_text(threads)//' threads, expected ' &
+            //'1 to '//integer_text(most_threads))
+      end if
+      if (.not. allocated(error)) call new_summary(summary, sweep%grid%count(), error)
       if (.not. allocated(error)) call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), &
          threads, summary, failures, error)
    end subroutine solve_sweep
