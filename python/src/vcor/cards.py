@@ -55,7 +55,8 @@ def card(
         Another Poisson's ratio, at the same E(t).
     band
         First and last time [s] where a sum of exponentials follows a model that is none; None:
-        that of the data behind the model, or a hundredth to twice the time of contact.
+        that of the data behind the model, or a hundredth to twice the time of contact; with a
+        shift times at the reference temperature.
     accuracy
         Largest relative error of E(t) in the band.
     terms
@@ -93,12 +94,15 @@ def card(
             "a fast term in its place, modulus times time = viscosity"
         )
     shift: dict[str, str | float] = {}
+    impact = case
     if case[f"{material}.shift"]:
         shift = {"shift": str(case[f"{material}.shift"])}
         shift |= {key: of(key) for key in _SHIFT if case[f"{material}.{key}"]}
         shift |= {"vertical_shift": True} if case[f"{material}.vertical_shift"] else {}
         if case["impact.temperature"] is not None:
+            case = case.copy()
             case["impact.temperature"] = of("reference_temperature")
+            impact = impact if use_shift else case
     # in tension, whatever the moduli of the case are
     size = 2 * (1 + of("poisson_ratio")) if case[f"{material}.modulus_kind"] == "shear" else 1.0
     if poisson_ratio is not None and size == 1.0:
@@ -122,9 +126,11 @@ def card(
             if not has_impact:
                 raise UsageError(f"{case.name}: expected --band FROM:TO, there is no impact")
             try:
-                contact = float(case.solve(quantities=["contact_time"])["contact_time"])
+                contact = float(impact.solve(quantities=["contact_time"])["contact_time"])
             except NumericalError as error:
                 raise UsageError(f"{error}; expected --band FROM:TO for the card") from None
+            # the card shifts it back to the temperature of the impact
+            contact /= impact.material(material).time_factor()
             band = _BAND[0] * contact, _BAND[1] * contact
         equilibrium, found, misfit = _sum(case, material, band, accuracy, terms)
         remarks = [f"{len(found)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
