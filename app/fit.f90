@@ -93,7 +93,7 @@ contains
       if (allocated(request%name)) fit%data%name = request%name
       if (request%reading%poisson_ratio <= incompressible) &
          poisson_ratio = request%reading%poisson_ratio
-      remarks = fit_remarks(fit, source, samples)
+      remarks = fit_remarks(fit, printable(source)//place_of_shift(sampled), samples)
       group = material_text(fit%data, density, poisson_ratio, samples%first_time(), &
          samples%last_time(), samples%keys)
       path = ''
@@ -267,7 +267,8 @@ contains
       moduli = moduli_of(sampled%material, samples)
       samples%modulus = moduli(:n)
       samples%loss = moduli(n + 1:)
-      note = integer_text(n)//' samples of '//printable(sampled%material%name)//', '
+      note = integer_text(n)//' samples of '//printable(sampled%material%name) &
+         //place_of_shift(sampled)//', '
       if (samples%dynamic) then
          note = note//'angular frequency [rad/s], storage modulus [Pa], loss modulus [Pa]'
       else
@@ -276,6 +277,22 @@ contains
       if (.not. all(moduli > tiny(1.0_wp))) call raise(error, error_input, filename//': the ' &
          //'modulus vanishes in the range of the samples, expected a narrower one (--from, --to)')
    end subroutine sample_model
+
+   !> Temperature of a material that is shifted from that of its constants, ' at 303.15 K': a fit
+   !> has no shift
+   function place_of_shift(sampled) result(text)
+      type(sampled_t), intent(in) :: sampled
+      !> The words; empty for other materials and for data
+      character(len=:), allocatable :: text
+
+      text = ''
+      if (.not. allocated(sampled%material)) return
+      if (.not. abs(sampled%material%time_factor - 1.0_wp) > 0.0_wp) return
+      associate (case => sampled%window%case)
+         text = ' at '//trim(adjustl(significant(case%number(case%address('impact', &
+            'temperature')), 7)))//' K'
+      end associate
+   end function place_of_shift
 
    !> Take CASE.nml:NAME apart; a file of this name is a case
    subroutine take_name(source, filename, name)
@@ -403,6 +420,7 @@ contains
    !> Remarks before a group: what it was fitted to and how well
    function fit_remarks(fit, source, samples) result(text)
       type(fit_t), intent(in) :: fit
+      !> What it was fitted to, printable
       character(len=*), intent(in) :: source
       type(samples_t), intent(in) :: samples
       character(len=:), allocatable :: text
@@ -410,7 +428,7 @@ contains
       integer :: i
 
       text = '! vcor '//version//' fit of '//fit%data%model//terms_of(fit)//' to ' &
-         //printable(source)//nl &
+         //source//nl &
          //'! rms misfit '//percent(fit%rms)//', largest ' &
          //percent(fit%largest)//place_of(fit, samples)//nl
       if (fit%structured) text = text//'! '//no_noise//nl

@@ -166,6 +166,15 @@ def test_moduli(vcor, model):
             assert one == pytest.approx(other, rel=ROUNDING, nan_ok=True)
 
 
+def test_a_fit_to_a_shifted_material_says_at_which_temperature(vcor):
+    """The group that it prints has no shift."""
+    for temperature, found in ((310.5, " at 310.5000 K"), (REFERENCE, "")):
+        vcor.write(case(shifted("sls", "wlf"), temperature=temperature))
+        out = vcor.succeeds("fit", "--from-model", "case.nml", "--model", "sls")
+        assert f" samples of sheet{found}, time" in out
+        assert f"fit of sls to case.nml{found}\n" in out
+
+
 def test_what_check_prints_runs(vcor):
     vcor.write(case(shifted("sls", "wlf"), temperature=310.0))
     plain = vcor.numbers("case.nml")
