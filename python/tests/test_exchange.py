@@ -337,6 +337,20 @@ def test_what_cannot_be_is_refused_in_one_line(words, code, said, capsys):
     assert said in error
 
 
+def test_the_head_of_a_table_says_what_strikes_and_whether_its_weight_acts():
+    ball = vcor.pair(RUBBER, (0.005,))
+    assert ", Hertz radius 0.005 m\n" in str(vcor.export(ball, "table", [1.0, 2.0]))
+    cone = vcor.Case(
+        "&impact velocity = 1, gravity = 9.81 /\n"
+        "&sphere shape = 'cone', half_angle = 60, mass = 0.01, material = 'steel' /\n"
+        "&plate material = 'gel', waves = 'none' /\n"
+        "&material name = 'steel', model = 'rigid' /\n"
+        "&material name = 'gel', model = 'elastic', poisson_ratio = 0.5, modulus = 1e6 /\n"
+    )
+    head = str(vcor.export(cone, "table", [1.0, 2.0]))
+    assert ", shape cone\n" in head and ", gravity 9.81 m/s2\n" in head
+
+
 def test_contacts_that_a_program_has_not():
     seat = vcor.pair(RUBBER, (0.005, 0.01))
     seat["plate.surface_radius"] = -0.01

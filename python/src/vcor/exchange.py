@@ -280,13 +280,16 @@ def _header(case: Case, target: Target, curve: xr.Dataset) -> list[str]:
     waves = case["plate.waves"] or "none"
     name = f"{case['sphere.material']} on {case['plate.material']}"
     meaning = MEANING[curve.attrs["quantity"]] if waves != "none" else MEANING["cor"]
+    body, gravity = f"Hertz radius {curve.attrs['radius']:.6g} m", case["impact.gravity"]
+    if case["sphere.shape"] != "sphere":
+        body = f"shape {case['sphere.shape']}"
     return [
         f"vcor {_library.__version__}: {case['case.title'] or case.name}, for {target.name}",
         f"e: {meaning} ({curve.attrs['quantity']}); contact ends where the force returns to zero",
-        f"pair: {name}, reduced mass {curve.attrs['mass']:.6g} kg, "
-        f"Hertz radius {curve.attrs['radius']:.6g} m",
+        f"pair: {name}, reduced mass {curve.attrs['mass']:.6g} kg, {body}",
         f"contact law {end}, waves {waves}, temperature "
-        + (f"{temperature:g} K" if temperature else "not given"),
+        + (f"{temperature:g} K" if temperature else "not given")
+        + (f", gravity {gravity:g} m/s2" if gravity else ""),
         f"velocities: {curve.velocity.values[0]:g} to {curve.velocity.values[-1]:g} m/s, validity "
         + curve.attrs["validity"],
         *(f"with contact.mechanics = 'exact': {words}" for words in [curve.attrs.get("exact")]
