@@ -13,7 +13,7 @@ module vcor_app_material
    use vcor_text, only : integer_text, printable
    use vcor_io_table, only : table_t
    use vcor_kinds, only : wp
-   use vcor_material_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t, specimen_t
+   use vcor_material_moduli, only : compute_moduli, curves_t, loss_tangent, moduli_t
    implicit none
    private
 
@@ -31,7 +31,6 @@ contains
       !> Unallocated on success, with or without an impact that ends
       type(error_t), allocatable, intent(out) :: error
 
-      type(specimen_t), allocatable :: materials(:)
       type(moduli_t) :: moduli
       type(table_t) :: tables(3)
       character(len=:), allocatable :: title, files
@@ -41,14 +40,13 @@ contains
       call find_window(job, window, error)
       if (allocated(error)) return
       associate (case => window%case)
-         allocate (materials(case%count('material')))
-         do i = 1, size(materials)
-            call case%get('material', 'model', materials(i)%model, i)
-            call material_of_case(case, i, materials(i)%material, error)
+         allocate (moduli%materials(case%count('material')))
+         do i = 1, size(moduli%materials)
+            call case%get('material', 'model', moduli%materials(i)%model, i)
+            call material_of_case(case, i, moduli%materials(i)%material, error)
             if (allocated(error)) return
          end do
-         call compute_moduli(moduli, materials, window%contact_time, window%reference, &
-            request%range, error)
+         call compute_moduli(moduli, window%contact_time, window%reference, request%range, error)
          if (allocated(error)) return
          call case%get('case', 'title', title)
          call moduli_tables(moduli, title, case_text(case, complete=.true.), tables)
@@ -78,12 +76,12 @@ contains
          //trim(adjustl(significant(moduli%min_frequency)))//' rad/s'
       text = text//nl
       do i = 1, size(moduli%materials)
-         associate (material => moduli%materials(i))
-            text = text//nl//'  '//printable(material%name)//', '//material%model//nl
-            if (material%rigid) then
+         associate (curves => moduli%materials(i))
+            text = text//nl//'  '//printable(curves%material%name)//', '//curves%model//nl
+            if (curves%material%rigid) then
                text = text//'    does not deform: no moduli'//nl
             else
-               text = text//values_of(material)
+               text = text//values_of(curves)
             end if
          end associate
       end do
@@ -95,10 +93,10 @@ contains
       type(curves_t), intent(in) :: curves
       character(len=:), allocatable :: text
 
-      text = line('    glassy modulus', 36, 'E(0)', curves%glassy, 'Pa', '') &
-         //line('    rubbery modulus', 36, 'E(inf)', curves%rubbery, 'Pa', '')
-      if (curves%viscosity > 0.0_wp) &
-         text = text//line('    dashpot in parallel', 36, 'eta', curves%viscosity, 'Pa s', '')
+      text = line('    glassy modulus', 36, 'E(0)', curves%material%glassy(), 'Pa', '') &
+         //line('    rubbery modulus', 36, 'E(inf)', curves%material%rubbery(), 'Pa', '')
+      if (curves%material%viscosity > 0.0_wp) text = text//line('    dashpot in parallel', 36, &
+         'eta', curves%material%viscosity, 'Pa s', '')
       if (ieee_is_nan(curves%at_contact_time)) return
       text = text &
          //line('    relaxation modulus at t0', 36, 'E(t0)', curves%at_contact_time, 'Pa', '') &

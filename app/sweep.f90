@@ -3,7 +3,6 @@
 !> The first rank alone reads and writes files and talks to the user.
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
-   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
       replacement_note, write_files, write_numbers
@@ -14,7 +13,7 @@ module vcor_app_sweep
    use vcor_app_validity, only : about_numbers, joined, points_remark, points_report, &
       warn_of_bands
    use vcor_case_grid, only : grid_t
-   use vcor_error, only : error_file, error_input, error_numerical, error_t, raise
+   use vcor_error, only : error_input, error_numerical, error_t, raise
    use vcor_io_checkpoint, only : checkpoint_t, create_checkpoint, open_checkpoint, read_points
    use vcor_io_file, only : move_file, stderr_is_terminal, write_stdout, write_terminal
    use vcor_io_identity, only : identity_of, identity_t, number_of
@@ -131,8 +130,8 @@ contains
       is_unfinished = .false.
       if (watch%keeps) is_unfinished = anything_at(watch%path)
       call find_previous(job%files, watch%identity, previous)
-      call need_memory(job, threads_of(request), error)
-      if (.not. allocated(error)) call new_summary(summary, job%part%count(), error)
+      call new_summary(summary, job%part%count(), error, threads_of(request))
+      if (allocated(error)) error%message = job%case%source//': '//error%message
       if (.not. (allocated(error) .or. is_unfinished)) then
          if (request%resume .and. request%shards > 0) &
             call look_into_shard(previous, watch, summary, is_unfinished, error)
@@ -160,29 +159,6 @@ contains
       watch%start = clock()
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
-
-   !> Say at the beginning, and how much, if there is not enough memory for a sweep
-   subroutine need_memory(job, threads, error)
-      type(job_t), intent(in) :: job
-      integer, intent(in) :: threads
-      !> Error of code `error_file`, unallocated where there is enough
-      type(error_t), allocatable, intent(out) :: error
-
-      ! Outcomes are kept once as numbers of 8 bytes, and a column or two once more where they are
-      ! written; a thread has a stack of 8 MB and what it works with
-      integer(int64), parameter :: bytes_per_column = 12_int64, bytes_per_thread = 12000000_int64, &
-         megabyte = 1000000_int64
-      character, allocatable :: room(:)
-      integer(int64) :: bytes
-      integer :: status
-
-      bytes = bytes_per_column*size(quantities())*int(job%part%count(), int64) &
-         + bytes_per_thread*int(threads, int64)
-      allocate (room(bytes), stat=status)
-      if (status /= 0) call raise(error, error_file, job%case%source//': there is not enough ' &
-         //'memory for '//integer_text(job%part%count())//' points by '//integer_text(threads) &
-         //' thread(s), expected about '//integer_text(int(bytes/megabyte) + 1)//' MB')
-   end subroutine need_memory
 
    !> A shard may be finished and have points that are damaged: these are solved again
    subroutine look_into_shard(previous, watch, summary, is_unfinished, error)

@@ -341,7 +341,8 @@ contains
       if (.not. allocated(trouble) .and. min(m, n, k) < 0) call raise(trouble, error_usage, &
          'found a negative number of addresses, points or columns')
 !$omp critical (vcor_c_api)
-      if (.not. allocated(trouble)) call new_summary(summary, n, trouble)
+      if (.not. allocated(trouble)) call new_summary(summary, n, trouble, &
+         max(1, int(threads)))
       do i = 1, k
          if (allocated(trouble)) exit
          places(i) = findloc(summary%quantities%name == fortran(columns(i)), .true., dim=1)

@@ -228,16 +228,12 @@ contains
       call check(.not. allocated(error), "file can be ended")
       call check_text(content(path), "first"//lf//"second", "file holds what was written")
       call check_temporaries(0, "after success")
-      call commit(file, error)
-      call check_failed(error, "not open", "ended twice")
 
       call create_file(file, path, error)
       call put(file, "other", error)
       call discard(file)
       call check_text(content(path), "first"//lf//"second", "a file given up changes nothing")
       call check_temporaries(0, "after giving up")
-      call put(file, "more", error)
-      call check_failed(error, "not open", "written after the end")
 
       call write_file(path//"   ", "third", error)
       call check(.not. allocated(error), "padding of a path does not count")

@@ -21,7 +21,6 @@
 module vcor_io_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_null_char, &
       c_null_ptr, c_ptr, c_size_t
-   use, intrinsic :: iso_fortran_env, only : output_unit
    use vcor_error, only : error_file, error_input, error_t, raise
    use vcor_io_path, only : check_name, check_readable, directory_exists, file_exists, folder_of, &
       plain_file_exists, quoted_path, raise_system
@@ -148,8 +147,6 @@ contains
 
       integer(c_int) :: reason
 
-      call check_open(file, error)
-      if (allocated(error)) return
       call write_all(c_fileno(file%stream), text, reason)
       if (reason /= 0) call fail(file, reason, error)
    end subroutine put
@@ -179,8 +176,6 @@ contains
 
       integer(c_int) :: reason, status
 
-      call check_open(file, error)
-      if (allocated(error)) return
       status = c_fclose(file%stream)
       reason = last_errno()
       file%stream = c_null_ptr
@@ -262,16 +257,6 @@ contains
       end subroutine refuse
    end subroutine check_target
 
-   !> Check that a file is open
-   subroutine check_open(file, error)
-      type(output_file_t), intent(in) :: file
-      !> Set if it is not
-      type(error_t), allocatable, intent(out) :: error
-
-      if (.not. c_associated(file%stream)) call raise(error, error_file, &
-         'cannot write a file that is not open')
-   end subroutine check_open
-
    !> Discard a file for a reason of the system
    subroutine fail(file, reason, error)
       !> Open file; closed afterwards
@@ -338,16 +323,7 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
-      integer :: status
-      character(len=200) :: message
 
-      ! What a caller has left in the unit of Fortran comes first
-      message = ''
-      flush (output_unit, iostat=status, iomsg=message)
-      if (status /= 0) then
-         call raise(error, error_file, 'cannot write the standard output: '//trim(message))
-         return
-      end if
       call write_all(standard_output, text, reason)
       if (reason /= 0) call raise_system(error, 'cannot write the standard output', reason)
    end subroutine write_stdout

@@ -146,8 +146,8 @@ contains
       integer :: i, longest
 
       all = [(i, i=1, size(moduli%materials))]
-      soft = pack(all, .not. moduli%materials%rigid)
-      longest = maxval([(len(moduli%materials(i)%name), i=1, size(all))])
+      soft = pack(all, [(.not. moduli%materials(i)%material%rigid, i=1, size(all))])
+      longest = maxval([(len(moduli%materials(i)%material%name), i=1, size(all))])
 
       call begin(tables(1), 'summary', all)
       call add_summary(tables(1), moduli%materials)
@@ -194,7 +194,7 @@ contains
                'lowest frequency of interest, 2 pi/t0')]
          end if
          do k = 1, size(items)
-            names(k) = moduli%materials(items(k))%name
+            names(k) = moduli%materials(items(k))%material%name
          end do
          call add_dimension(table, column_of('material', names, '', 'name of the material'))
       end subroutine begin
@@ -220,23 +220,28 @@ contains
       type(curves_t), intent(in) :: materials(:)
 
       character(len=16) :: models(size(materials))
+      real(wp), dimension(size(materials)) :: density, poisson_ratio, glassy, rubbery, viscosity
       real(wp) :: tangent(size(materials))
       integer :: i
 
       do i = 1, size(materials)
          models(i) = materials(i)%model
+         associate (material => materials(i)%material)
+            density(i) = material%density()
+            poisson_ratio(i) = material%poisson_ratio()
+            glassy(i) = material%glassy()
+            rubbery(i) = material%rubbery()
+            viscosity(i) = material%viscosity
+         end associate
       end do
       tangent = loss_tangent(materials%storage_at_min, materials%loss_at_min)
       call add_column(table, column_of('model', models, '', 'model of the relaxation modulus'))
-      call add_column(table, column_of('density', materials%density, 'kg/m3', &
-         'density, 0 where not given'))
-      call add_column(table, column_of('poisson_ratio', materials%poisson_ratio, '1', &
-         "Poisson's ratio"))
-      call add_column(table, column_of('glassy_modulus', materials%glassy, 'Pa', &
-         'modulus at t = 0'))
-      call add_column(table, column_of('rubbery_modulus', materials%rubbery, 'Pa', &
+      call add_column(table, column_of('density', density, 'kg/m3', 'density, 0 where not given'))
+      call add_column(table, column_of('poisson_ratio', poisson_ratio, '1', "Poisson's ratio"))
+      call add_column(table, column_of('glassy_modulus', glassy, 'Pa', 'modulus at t = 0'))
+      call add_column(table, column_of('rubbery_modulus', rubbery, 'Pa', &
          'modulus after long times'))
-      call add_column(table, column_of('viscosity', materials%viscosity, 'Pa s', &
+      call add_column(table, column_of('viscosity', viscosity, 'Pa s', &
          'dashpot in parallel, which the relaxation modulus leaves out'))
       call add_column(table, column_of('relaxation_modulus', materials%at_contact_time, 'Pa', &
          'relaxation modulus at contact_time'))

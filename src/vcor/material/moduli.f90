@@ -11,7 +11,7 @@ module vcor_material_moduli
    implicit none
    private
 
-   public :: moduli_t, curves_t, time_range_t, specimen_t
+   public :: moduli_t, curves_t, time_range_t
    public :: compute_moduli, sampled_times, usual_range, loss_tangent
 
    !> Points per decade by default
@@ -37,22 +37,10 @@ module vcor_material_moduli
 
    !> Moduli of one material
    type :: curves_t
-      !> Its name
-      character(len=:), allocatable :: name
       !> Its model
       character(len=:), allocatable :: model
-      !> Whether the material is rigid; it then has no curves
-      logical :: rigid = .false.
-      !> Mass density [kg/m3]; 0 if unknown
-      real(wp) :: density = 0.0_wp
-      !> Poisson's ratio [-]
-      real(wp) :: poisson_ratio = 0.0_wp
-      !> Viscosity of the dashpot in parallel [Pa s]; not part of `relaxation`
-      real(wp) :: viscosity = 0.0_wp
-      !> Glassy modulus [Pa]
-      real(wp) :: glassy = 0.0_wp
-      !> Rubbery modulus [Pa]
-      real(wp) :: rubbery = 0.0_wp
+      !> The material; a rigid one has no curves
+      class(material_t), allocatable :: material
       !> Relaxation modulus at the contact time [Pa]; this and the next two are NaN if there is none
       real(wp) :: at_contact_time = 0.0_wp
       !> Storage modulus at the lowest frequency of interest [Pa]
@@ -81,21 +69,12 @@ module vcor_material_moduli
       type(curves_t), allocatable :: materials(:)
    end type moduli_t
 
-   !> A material whose moduli are computed
-   type :: specimen_t
-      !> Its model
-      character(len=:), allocatable :: model
-      !> The material
-      class(material_t), allocatable :: material
-   end type specimen_t
-
 contains
 
    !> Compute the moduli of materials
-   subroutine compute_moduli(self, materials, contact_time, reference, range, error)
-      type(moduli_t), intent(out) :: self
-      !> The materials, shape (n)
-      type(specimen_t), intent(in) :: materials(:)
+   subroutine compute_moduli(self, contact_time, reference, range, error)
+      !> Models and materials are there, their moduli afterwards
+      type(moduli_t), intent(inout) :: self
       !> Contact time of the impact [s]; 0 if it does not end
       real(wp), intent(in) :: contact_time
       !> Time around which the range is chosen [s], > 0: the contact time, or the time scale of a
@@ -109,12 +88,11 @@ contains
       type(time_range_t) :: all, usual
       integer :: i, n
 
-      n = size(materials)
-      allocate (self%materials(n))
+      n = size(self%materials)
       all = time_range_t(huge(1.0_wp), 0.0_wp, range%points)
       do i = 1, n
-         usual = usual_range(materials(i)%material, reference)
-         if (materials(i)%material%rigid .and. n > 1) cycle
+         usual = usual_range(self%materials(i)%material, reference)
+         if (self%materials(i)%material%rigid .and. n > 1) cycle
          all%first = min(all%first, usual%first)
          all%last = max(all%last, usual%last)
       end do
@@ -131,46 +109,39 @@ contains
       self%times = sampled_times(all)
       self%frequencies = sampled_times(time_range_t(1.0_wp/all%last, 1.0_wp/all%first, all%points))
       do i = 1, n
-         self%materials(i) = curves_of(materials(i)%material, self)
-         self%materials(i)%model = materials(i)%model
+         call trace(self%materials(i), self)
       end do
    end subroutine compute_moduli
 
-   !> Curves of one material
-   pure function curves_of(material, moduli) result(curves)
-      class(material_t), intent(in) :: material
+   !> Compute the curves of one material
+   pure subroutine trace(curves, moduli)
+      type(curves_t), intent(inout) :: curves
       !> Times and frequencies
       type(moduli_t), intent(in) :: moduli
-      type(curves_t) :: curves
 
       complex(wp) :: modulus(size(moduli%frequencies))
       complex(wp) :: at_min
 
-      curves%name = material%name
-      curves%rigid = material%rigid
-      curves%density = material%density()
-      curves%poisson_ratio = material%poisson_ratio()
-      curves%viscosity = material%viscosity
-      curves%glassy = material%glassy()
-      curves%rubbery = material%rubbery()
-      curves%at_contact_time = curves%glassy
-      curves%storage_at_min = curves%glassy
-      if (curves%rigid) return
-      curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
-      curves%storage_at_min = curves%at_contact_time
-      curves%loss_at_min = curves%at_contact_time
-      ! gfortran 12 does not allocate the result of an elemental type-bound function
-      allocate (curves%relaxation(size(moduli%times)))
-      curves%relaxation = material%relaxation(moduli%times)
-      modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
-      curves%storage = real(modulus, wp)
-      curves%loss = aimag(modulus)
-      if (.not. moduli%contact_time > 0.0_wp) return
-      at_min = material%complex_modulus(cmplx(0.0_wp, moduli%min_frequency, wp))
-      curves%at_contact_time = material%relaxation(moduli%contact_time)
-      curves%storage_at_min = real(at_min, wp)
-      curves%loss_at_min = aimag(at_min)
-   end function curves_of
+      associate (material => curves%material)
+         curves%at_contact_time = material%glassy()
+         curves%storage_at_min = material%glassy()
+         if (material%rigid) return
+         curves%at_contact_time = ieee_value(1.0_wp, ieee_quiet_nan)
+         curves%storage_at_min = curves%at_contact_time
+         curves%loss_at_min = curves%at_contact_time
+         ! gfortran 12 does not allocate the result of an elemental type-bound function
+         allocate (curves%relaxation(size(moduli%times)))
+         curves%relaxation = material%relaxation(moduli%times)
+         modulus = material%complex_modulus(cmplx(0.0_wp, moduli%frequencies, wp))
+         curves%storage = real(modulus, wp)
+         curves%loss = aimag(modulus)
+         if (.not. moduli%contact_time > 0.0_wp) return
+         at_min = material%complex_modulus(cmplx(0.0_wp, moduli%min_frequency, wp))
+         curves%at_contact_time = material%relaxation(moduli%contact_time)
+         curves%storage_at_min = real(at_min, wp)
+         curves%loss_at_min = aimag(at_min)
+      end associate
+   end subroutine trace
 
    !> Loss tangent E''/E'
    elemental function loss_tangent(storage, loss) result(tangent)

@@ -267,7 +267,8 @@ contains
          call raise(error, error_input, 'found '//integer_text(threads)//' threads, expected ' &
             //'1 to '//integer_text(most_threads))
       end if
-      if (.not. allocated(error)) call new_summary(summary, sweep%grid%count(), error)
+      if (.not. allocated(error)) &
+         call new_summary(summary, sweep%grid%count(), error, threads)
       if (.not. allocated(error)) call solve_points(sweep, new_part(sweep%grid%count(), 1, 1), &
          threads, summary, failures, error)
    end subroutine solve_sweep

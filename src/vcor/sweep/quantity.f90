@@ -2,6 +2,7 @@
 !> and --print; and the outcomes of many impacts column by column, each in the place of its point
 module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
+   use, intrinsic :: iso_fortran_env, only : int64
    use vcor_error, only : error_file, error_t, raise
    use vcor_impact_outcome, only : outcome_t
    use vcor_impact_trajectory, only : columns, contact_lasting, contact_resting, &
@@ -329,33 +330,46 @@ contains
       end do
    end function status_name
 
-   !> Make room; all points are pending, and have no values yet: NaN or 0
-   subroutine new_summary(self, points, error)
+   !> Make room; all points are pending, and have no values yet: NaN or 0. Whether there is memory
+   !> for all that it takes to solve and to write them is seen now, not after hours
+   subroutine new_summary(self, points, error, threads)
       type(summary_t), intent(out) :: self
       integer, intent(in) :: points
       !> Error of code `error_file` if there is not enough memory, unallocated on success
       type(error_t), allocatable, intent(out) :: error
+      !> Threads that solve them; absent: 1
+      integer, intent(in), optional :: threads
 
-      integer :: i, status
+      ! Outcomes are kept once as numbers of 8 bytes, and a column or two once more where they are
+      ! written; a thread has a stack of 8 MB and what it works with
+      integer(int64), parameter :: bytes_per_column = 12_int64, bytes_per_thread = 12000000_int64, &
+         megabyte = 1000000_int64
+      character, allocatable :: room(:)
+      integer(int64) :: bytes
+      integer :: i, status, team
 
+      team = 1
+      if (present(threads)) team = threads
       allocate (self%quantities, source=quantities())
+      bytes = bytes_per_column*size(self%quantities)*int(points, int64) &
+         + bytes_per_thread*int(team, int64)
+      allocate (room(bytes), stat=status)
+      if (status /= 0) then
+         call raise(error, error_file, 'there is not enough memory for '//integer_text(points) &
+            //' points by '//integer_text(team)//' thread(s), expected about ' &
+            //integer_text(int(bytes/megabyte) + 1)//' MB')
+         return
+      end if
+      deallocate (room)
       allocate (self%values(size(self%quantities) - 1))
-      allocate (self%status(points), stat=status)
       do i = 1, size(self%values)
-         if (status /= 0) exit
          if (self%quantities(i)%is_whole) then
-            allocate (self%values(i)%integers(points), source=0, stat=status)
+            allocate (self%values(i)%integers(points), source=0)
          else
-            allocate (self%values(i)%reals(points), source=ieee_value(1.0_wp, ieee_quiet_nan), &
-               stat=status)
+            allocate (self%values(i)%reals(points), source=ieee_value(1.0_wp, ieee_quiet_nan))
          end if
       end do
-      if (status == 0) then
-         self%status = point_pending
-      else
-         call raise(error, error_file, 'there is not enough memory for the outcomes of ' &
-            //integer_text(points)//' impacts')
-      end if
+      allocate (self%status(points), source=point_pending)
    end subroutine new_summary
 
    !> Keep the outcome of a point
