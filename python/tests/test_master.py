@@ -89,6 +89,14 @@ def test_one_file_per_temperature(tmp_path):
     assert found.log_shift[0] == pytest.approx(C1 * 10 / (C2 - 10), abs=0.02)
 
 
+def test_a_file_with_a_temperature_in_its_name(tmp_path):
+    path = tmp_path / "epdm@20C.csv"
+    path.write_text(table(f"T [C],{HEAD}", [10, 20]))
+    assert len(vcor.master(path).temperatures) == 2
+    cold = master_curve.read_curves(f"{file_of(tmp_path / 'a@b.csv', [5])}@-20C")
+    assert [curve.temperature for curve in cold] == [pytest.approx(253.15)]
+
+
 def test_command_goes_on_into_fit_and_shift_file(tmp_path, capsys, program):
     path = file_of(tmp_path / "raw.csv", np.arange(0, 60, 5))
     master_curve.main([str(path), "--reference", "20C", "--output", str(tmp_path)])

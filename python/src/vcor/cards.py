@@ -100,9 +100,8 @@ def card(
         shift |= {key: of(key) for key in _SHIFT if case[f"{material}.{key}"]}
         shift |= {"vertical_shift": True} if case[f"{material}.vertical_shift"] else {}
         if case["impact.temperature"] is not None:
-            case = case.copy()
+            impact = case.copy() if use_shift else case
             case["impact.temperature"] = of("reference_temperature")
-            impact = impact if use_shift else case
     # in tension, whatever the moduli of the case are
     size = 2 * (1 + of("poisson_ratio")) if case[f"{material}.modulus_kind"] == "shear" else 1.0
     if poisson_ratio is not None and size == 1.0:

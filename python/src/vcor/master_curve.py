@@ -286,7 +286,7 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
     A file without temperatures is one curve at nan. Shear moduli become tensile ones by Poisson's
     ratio.
     """
-    path, _, given = os.fspath(name).partition("@")
+    path, given = _parts(os.fspath(name))
     lines = _command.read_text(path).splitlines()
     if given:
         return [_curve(path, lines, _kelvin(given, path), poisson_ratio)]
@@ -331,6 +331,14 @@ def read_curves(name: str | os.PathLike[str], poisson_ratio: float = NOT_GIVEN) 
         kelvin = float(np.mean(temperature[part])) + zero
         curves.append(_curve(path, told, kelvin, poisson_ratio))
     return curves
+
+
+def _parts(name: str) -> tuple[str, str]:
+    """File and temperature of FILE@-20C; a file may have such a name itself."""
+    if "@" not in name or Path(name).exists():
+        return name, ""
+    path, _, given = name.rpartition("@")
+    return path, given
 
 
 def _curve(path: str, lines: Sequence[str], temperature: float, poisson_ratio: float) -> Curve:
