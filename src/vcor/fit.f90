@@ -95,7 +95,7 @@ contains
       !> Fixed parameters, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
       type(samples_t), intent(in) :: samples
-      !> Error of code `error_usage` if the fixed values are not possible, `error_input` if the data
+      !> Error of code `error_usage` if the fixed values are impossible, `error_input` if the data
       !> cannot be fitted, `error_numerical` if the fit fails; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
@@ -131,8 +131,8 @@ contains
       end if
    end subroutine fit_material
 
-   !> Whether the modulus falls with time, or rises with frequency, on the whole: by the sign of its
-   !> regression slope on logarithmic scales
+   !> Whether the modulus falls with time, or rises with frequency, over all samples: by the sign of
+   !> its regression slope on logarithmic scales
    pure function falls(samples) result(yes)
       !> The samples, at least two
       type(samples_t), intent(in) :: samples

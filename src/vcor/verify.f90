@@ -1,5 +1,5 @@
 !> Laws of impact for the verification table, which need no reference solution or have an
-!> independent one. Each law is explained under verify/
+!> independent one. The modules under verify/ explain each law
 module vcor_verify
    use vcor_error, only : error_internal, error_t, raise
    use vcor_verify_body, only : thick_body, thin_body
@@ -18,9 +18,9 @@ module vcor_verify
 
 contains
 
-   !> One of the laws
+   !> Build a law by its number
    subroutine build_law(number, law, error)
-      !> 1 .. `law_count`
+      !> Number of the law, 1 .. `law_count`
       integer, intent(in) :: number
       type(law_t), intent(out) :: law
       type(error_t), allocatable, intent(out) :: error

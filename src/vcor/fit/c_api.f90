@@ -1,5 +1,5 @@
-!> What the Python package alone needs: fits, which take MINPACK, so they are not in libvcor.so, and
-!> whether a file of results is damaged
+!> Functions for the Python package alone: fits, which need MINPACK and so are not in libvcor.so,
+!> and the check of a file of results for damage
 module vcor_fit_c_api
    use, intrinsic :: iso_c_binding, only : c_associated, c_double, c_int, c_null_ptr, &
       c_ptr
@@ -25,28 +25,28 @@ contains
    !> Fit a model to data
    function vcor_fit_data(file, n, columns, data, model, name, terms, m, names, values, &
       poisson_ratio, density, json, error) bind(c) result(code)
-      !> Name of the data file; null: the samples are given
+      !> Name of the data file; null: `data` has the samples
       type(c_ptr), value :: file
-      !> Number of samples, and 2 of times and relaxation moduli, 3 of angular frequencies, storage
-      !> and loss moduli
+      !> Number of samples; 2 columns for times and relaxation moduli, 3 for angular frequencies,
+      !> storage and loss moduli
       integer(c_int), value :: n, columns
-      !> The samples [s, Pa] or [rad/s, Pa, Pa], times or frequencies rising
+      !> The samples [s, Pa] or [rad/s, Pa, Pa], in increasing order of time or frequency
       real(c_double), intent(in) :: data(n, columns)
       !> Model, and name of the material
       type(c_ptr), value :: model, name
       !> Terms of a Prony series; 0: as many as the data support
       integer(c_int), value :: terms
-      !> Number of parameters that are given
+      !> Number of fixed parameters
       integer(c_int), value :: m
       !> Their names
       type(c_ptr), intent(in) :: names(m)
       !> Their values
       real(c_double), intent(in) :: values(m)
-      !> Poisson's ratio [-]; beyond 0.5: not given, 0.5 is taken
+      !> Poisson's ratio [-]; above 0.5: unknown, 0.5 is used
       real(c_double), value :: poisson_ratio
-      !> Density [kg/m3]; 0: not known
+      !> Density [kg/m3]; 0: unknown
       real(c_double), value :: density
-      !> The document of `vcor_fit_json`; released by free()
+      !> JSON document of the fit; the caller releases it with free()
       type(c_ptr), intent(out) :: json
       !> `vcor_error`, or null
       type(c_ptr), value :: error
@@ -92,16 +92,16 @@ contains
       code = report_error(trouble, error)
    end function vcor_fit_data
 
-   !> Moduli of the text of a data file, read as `vcor fit` does, in SI units
+   !> Read moduli from the text of a data file like `vcor fit`, in SI units
    function vcor_read_moduli(text, name, poisson_ratio, n, columns, values, error) bind(c) &
       result(code)
       !> The text, and the name of the file for messages
       type(c_ptr), value :: text, name
-      !> Poisson's ratio [-] for shear moduli; beyond 0.5: not given
+      !> Poisson's ratio [-] for shear moduli; above 0.5: unknown
       real(c_double), value :: poisson_ratio
-      !> Number of samples, and 2 or 3 columns as `vcor_fit_data` has them
+      !> Number of samples, and of columns, 2 or 3 as in `vcor_fit_data`
       integer(c_int), intent(out) :: n, columns
-      !> The columns, one after the other; released by free()
+      !> The columns, one after the other; the caller releases them with free()
       type(c_ptr), intent(out) :: values
       !> `vcor_error`, or null
       type(c_ptr), value :: error
@@ -129,7 +129,7 @@ contains
       code = report_error(trouble, error)
    end function vcor_read_moduli
 
-   !> Whether a file has a seal that is not its own: HDF5 may crash if it reads that
+   !> Whether the seal of a file does not match its contents: HDF5 may crash reading such a file
    function vcor_is_altered(file) bind(c) result(yes)
       !> Name of the file
       type(c_ptr), value :: file

@@ -1,4 +1,4 @@
-!> A fit as a JSON document: what `vcor fit --json` writes, and what the Python package reads
+!> A fit as a JSON document, which `vcor fit --json` writes and the Python package reads
 module vcor_fit_json
    use vcor_json, only : array, member, numbers, object
    use vcor_text, only : integer_text
@@ -16,7 +16,7 @@ module vcor_fit_json
 
 contains
 
-   !> Name of a parameter as a key of &material, with the number of its term in a series
+   !> Name of a parameter as a key of &material, with the index of its term in a series
    pure function parameter_name(fit, i) result(name)
       type(fit_t), intent(in) :: fit
       integer, intent(in) :: i
@@ -26,11 +26,11 @@ contains
       if (fit%data%model == 'prony' .and. i > 1) name = name//'('//integer_text(i/2)//')'
    end function parameter_name
 
-   !> What the standard errors of a fit to a master curve leave out: errors of the shift factors
-   !> move all points of a temperature together, which no misfit shows
+   !> Note that the standard errors of a fit to a master curve omit the errors of the shift factors:
+   !> these move all points of a temperature together, which no misfit shows
    pure function shift_note(samples) result(text)
       type(samples_t), intent(in) :: samples
-      !> In words; nothing for data without a shift
+      !> The note; empty for data without a shift
       character(len=:), allocatable :: text
 
       text = ''
@@ -39,7 +39,7 @@ contains
          //'the shift factors: vcor identify fits moduli and shift at once'
    end function shift_note
 
-   !> The document: parameters in SI units, their covariance, the misfit and the band of the data
+   !> The document: parameters in SI units, covariance, correlation, misfit and band of the data
    pure function fit_json(fit, samples, group) result(text)
       type(fit_t), intent(in) :: fit
       type(samples_t), intent(in) :: samples

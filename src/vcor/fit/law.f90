@@ -1,15 +1,15 @@
 !> Fit of the models with a few parameters: sls, power_law, cerf, mittag_leffler
 !>
-!> Every minimum of a scan over the shapes of the model starts an iteration in the logarithms of the
-!> parameters: a local minimum wins only if it is the lowest.
+!> Every local minimum of a scan over the shapes of the model starts an iteration in the logarithms
+!> of the parameters; the lowest result is the fit.
 !>
-!> About a solution that the data determine well the sum of squares is a parabola, and derivatives
-!> say how wide: that gives the standard errors. It is none where a parameter is known to a few ten
-!> percent only, or is at the end of its range. Then each parameter in turn is given other values
-!> and all others are fitted again: the interval of three standard errors ends where the sum of
-!> squares has risen by 3^2 variances (profile likelihood: D. M. Bates and D. G. Watts, Nonlinear
-!> Regression Analysis and Its Applications, Wiley 1988, chapter 6). A third of the way to the end
-!> that is further away is the standard error. Of a parabola that is the usual one.
+!> Near a solution that the data determine well, the sum of squares is quadratic and its derivatives
+!> give the standard errors. It is not if a parameter is known only to a few ten percent, or is at
+!> the end of its range. Then each parameter in turn is held at other values and all others are
+!> fitted again: the interval of three standard errors ends where the sum of squares has risen by
+!> 3^2 variances (profile likelihood: D. M. Bates and D. G. Watts, Nonlinear Regression Analysis and
+!> Its Applications, Wiley 1988, chapter 6). The standard error is a third of the distance to the
+!> farther end; for a quadratic sum of squares it is the usual one.
 module vcor_fit_law
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
@@ -25,9 +25,9 @@ module vcor_fit_law
 
    public :: fit_law
 
-   !> Most evaluations of an iteration, per unknown
+   !> Maximum number of evaluations per unknown
    integer, parameter :: patience = 400
-   !> Standard errors to the ends of an interval
+   !> Half width of the interval, in standard errors
    real(wp), parameter :: reach = 3.0_wp
 
 contains
@@ -35,9 +35,9 @@ contains
    !> Fit a model to samples
    subroutine fit_law(fit, model, fixed, samples, error)
       type(fit_t), intent(out) :: fit
-      !> Name of the model, one of those with parameters
+      !> Name of a model with a few parameters
       character(len=*), intent(in) :: model
-      !> Parameters that have a given value, shape (n)
+      !> Parameters with given values, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
       !> The samples, more than there are parameters
       type(samples_t), intent(in) :: samples
@@ -92,15 +92,15 @@ contains
       call mark_ends(fit, material, samples)
    end subroutine fit_law
 
-   !> What has come to the end of its range: a modulus or rate that vanishes is 0, an exponent 1,
-   !> and the others are fitted again; anything else keeps its value
+   !> Fix the parameters at the ends of their ranges and fit the others again: a modulus or rate
+   !> that vanishes becomes 0, an exponent 1, and any other parameter keeps its value
    subroutine follow_bounds(problem, x, r, converged)
-      !> The problem; what is at a bound is not free afterwards
+      !> The problem; on return parameters at a bound are not free
       type(law_problem_t), intent(inout) :: problem
       !> Solution
       real(wp), allocatable, intent(inout) :: x(:)
       real(wp), intent(inout) :: r(:)
-      !> Whether it is a solution
+      !> Whether the iteration has converged
       logical, intent(inout) :: converged
 
       real(wp), parameter :: touch = 1.0e-5_wp
@@ -129,17 +129,17 @@ contains
       call minimise(problem, x, r, converged, 0.0_wp, patience*(size(x) + 1))
    end subroutine follow_bounds
 
-   !> Make the standard errors those of intervals, unless the derivatives are enough
+   !> Replace the standard errors by those of intervals, unless the derivatives suffice
    subroutine widen_errors(fit, problem, squares)
-      !> The fit, with errors by the derivatives
+      !> The fit, with errors from the derivatives
       type(fit_t), intent(inout) :: fit
-      !> Its problem, in which all is free but what is given
+      !> Its problem, in which all parameters are free except the given ones
       type(law_problem_t), intent(in) :: problem
       !> Sum of the squares of the residuals
       real(wp), intent(in) :: squares
 
-      !> Error, as a part of the parameter, up to which the derivatives are enough: they are wrong
-      !> by about three times this part of themselves
+      !> Relative error of a parameter up to which the derivatives suffice: the error itself then
+      !> has a relative error of about three times this value
       real(wp), parameter :: enough = 0.02_wp
       type(law_problem_t) :: whole
       real(wp) :: ends(2)
@@ -155,35 +155,35 @@ contains
          call find_end(whole, i, 1.0_wp, squares, fit%variance, ends(2), open(2))
          associate (parameter => fit%parameters(k))
             parameter%error = maxval(abs(ends - parameter%value))/reach
-            ! not even its order of magnitude is known
+            ! the interval does not end: not even the order of magnitude is known
             if (any(open)) parameter%error = max(parameter%error, parameter%value)
          end associate
       end do
    end subroutine widen_errors
 
-   !> Find an end of the interval of an unknown
+   !> Find one end of the interval of an unknown
    subroutine find_end(problem, i, side, squares, variance, end, open)
-      !> The problem, values and errors by the derivatives set
+      !> The problem, its values and errors from the derivatives set
       type(law_problem_t), intent(in) :: problem
-      !> Number of the unknown
+      !> Index of the unknown
       integer, intent(in) :: i
       !> 1 for the upper end, -1 for the lower one
       real(wp), intent(in) :: side
-      !> Least sum of the squares of the residuals
+      !> Smallest sum of the squares of the residuals
       real(wp), intent(in) :: squares
       !> Variance of a residual
       real(wp), intent(in) :: variance
-      !> The end, a value of the parameter
+      !> The end, as a value of the parameter
       real(wp), intent(out) :: end
-      !> Whether it is only that of the range of the fit: the parameter could be anything beyond
+      !> Whether it is only the end of the range of the fit: the parameter may lie beyond
       logical, intent(out) :: open
 
-      !> Most trials, and how well the rise is met, in standard errors
+      !> Maximum number of trials, and tolerance of the rise, in standard errors
       integer, parameter :: most = 30
       real(wp), parameter :: sharp = 0.05_wp
       !> Largest first step, in the logarithm of a parameter
       real(wp), parameter :: first_step = 0.7_wp
-      !> Rise from which on it is no straight line from there to the solution, in reaches
+      !> Rise at the outer end, over `reach`, above which bisection replaces the secant
       real(wp), parameter :: steep = 4.0_wp
       type(law_problem_t) :: held
       real(wp) :: unit, limit, step, rise, inside, inside_rise, outside, outside_rise
@@ -196,7 +196,7 @@ contains
       held%parameters(k)%state = state_fixed
       call set_free(held)
       associate (best => problem%parameters(k))
-         ! what may be 0 is one of the terms of a sum, anything else is a factor
+         ! a parameter that may be 0 is a term of a sum: step linearly; any other is a factor
          unit = problem%unit(k)
          linear = unit > 0.0_wp
          bounded = merge(linear, best%unit == '1', side < 0.0_wp)
@@ -245,13 +245,14 @@ contains
       open = rise < reach .and. .not. (step < limit .or. bounded)
    end subroutine find_end
 
-   !> Fit all parameters but those that are given
+   !> Fit all free parameters, with others held
    subroutine fit_others(problem, squares, enough)
-      !> The problem: where the iteration starts, and what it comes to if that is good enough
+      !> The problem, at the start of the iteration; on return with the solution if it is good
+      !> enough
       type(law_problem_t), intent(inout) :: problem
       !> Least sum of the squares of the residuals
       real(wp), intent(out) :: squares
-      !> A sum that is good enough
+      !> Sum of squares that is good enough
       real(wp), intent(in) :: enough
 
       real(wp), allocatable :: starts(:, :)
@@ -259,7 +260,7 @@ contains
 
       squares = huge(squares)
       call descend(problem, unknowns_of(problem), squares, enough)
-      ! a scan of time and exponent would take as long as the fit has taken
+      ! a scan over time and exponent takes as long as the whole fit
       if (squares < enough .or. has_two_shapes(problem)) return
       call find_starts(problem, starts)
       do i = 1, size(starts, 2)
@@ -268,17 +269,18 @@ contains
       end do
    end subroutine fit_others
 
-   !> Iterate from a start
+   !> Iterate from one start
    subroutine descend(problem, start, squares, enough)
-      !> The problem, which gets the values of a fit that is good enough
+      !> The problem; gets the values of a fit that is good enough
       type(law_problem_t), intent(inout) :: problem
       real(wp), intent(in) :: start(:)
-      !> Least sum of squares so far
+      !> Smallest sum of squares so far
       real(wp), intent(inout) :: squares
-      !> A sum that is good enough
+      !> Sum of squares that is good enough
       real(wp), intent(in) :: enough
 
-      !> Reduction of the sum of squares that counts as none, and most evaluations, per unknown
+      !> Relative reduction of the sum of squares that ends the iteration, and maximum number of
+      !> evaluations per unknown
       real(wp), parameter :: tolerance = 1.0e-6_wp
       integer, parameter :: patience = 60
       real(wp) :: x(size(start)), r(problem%samples%count())

@@ -1,10 +1,10 @@
-!> A model with a few parameters as a problem of least squares in their logarithms, and where its
-!> iteration starts
+!> Fit of a model with a few parameters as a least-squares problem in their logarithms, and the
+!> starts of its iteration
 !>
-!> All of the models are E_0 + E_1 f(t; p), linear in two moduli for a given shape p, which is a
-!> time, an exponent or both. So the shapes are scanned over all that the data can tell apart, with
-!> the best two moduli for each by non-negative least squares. No start is guessed.
-!> What a parameter is, a modulus, a time, a rate or an exponent, its unit tells.
+!> All these models are E_0 + E_1 f(t; p), linear in two moduli for a given shape p: a time, an
+!> exponent or both. So the shapes are scanned over the whole range that the data resolve, and
+!> non-negative least squares gives the best two moduli for each; no start is guessed. The unit of a
+!> parameter tells whether it is a modulus, a time, a rate or an exponent.
 module vcor_fit_law_problem
    use vcor_error, only : error_t
    use vcor_kinds, only : wp
@@ -20,43 +20,42 @@ module vcor_fit_law_problem
    public :: law_problem_t, new_law_problem, stated_parameters, described, set_free, release
    public :: unknowns_of, find_starts, has_two_shapes, nothing
 
-   !> Range of times beyond the data, as a factor, and of moduli
+   !> Factor by which times may lie beyond those of the data, and moduli
    real(wp), parameter :: widest_time = 1.0e4_wp, widest_modulus = 1.0e6_wp
-   !> Range of times where it is asked what a parameter at its bound could be instead
+   !> The same for times while the error of a parameter at its bound is estimated
    real(wp), parameter :: widest_error = 1.0e8_wp
    !> Range of an exponent
    real(wp), parameter :: least_exponent = 1.0e-3_wp, most_exponent = 0.9999_wp
-   !> Part of its unit below which a modulus or rate counts as 0
+   !> Fraction of its `unit` below which a modulus or rate counts as 0
    real(wp), parameter :: nothing = 1.0e-7_wp
-   !> Part of its unit that stands for 0 where the misfit has to depend on the logarithm
+   !> Fraction of its `unit` that replaces 0 where the misfit must depend on the logarithm
    real(wp), parameter :: little = 1.0e-3_wp
-   !> Step of the derivatives in the logarithm of a parameter: central differences are then good to
-   !> ten digits
+   !> Step of the central differences, in the logarithm of a parameter: ten correct digits
    real(wp), parameter :: step = 1.0e-5_wp
 
-   !> Times of the scan per decade, and how far they go beyond the data, as a factor
+   !> Times of the scan per decade, and the factor by which they extend beyond the data
    real(wp), parameter :: per_decade = 4.0_wp, beyond = 1.0e2_wp
    !> Exponents of the scan
    real(wp), parameter :: exponents(*) = [0.02_wp, 0.05_wp, 0.1_wp, 0.15_wp, 0.2_wp, 0.25_wp, &
       0.3_wp, 0.35_wp, 0.4_wp, 0.45_wp, 0.5_wp, 0.55_wp, 0.6_wp, 0.65_wp, 0.7_wp, 0.75_wp, &
       0.8_wp, 0.85_wp, 0.9_wp, 0.95_wp, 0.98_wp]
-   !> Most minima of the scan that are followed
+   !> Largest number of minima of the scan from which an iteration starts
    integer, parameter :: most_starts = 6
 
-   !> The problem for MINPACK; its unknowns are the logarithms of the parameters that are free
+   !> The problem for MINPACK; its unknowns are the logarithms of the free parameters
    type, extends(least_squares_t) :: law_problem_t
       character(len=:), allocatable :: model
       type(samples_t) :: samples
-      !> What the model states of its parameters, shape (parameters)
+      !> Properties of the parameters, as the model states them, shape (parameters)
       type(parameter_t), allocatable :: stated(:)
-      !> The parameters; those that are not free have their values, shape (parameters)
+      !> Estimates; those that are not free have their values, shape (parameters)
       type(estimate_t), allocatable :: parameters(:)
-      !> What one that may be 0 is compared with: the least modulus, or the rate that is seen at the
-      !> last time; 0 where it may not be 0, shape (parameters)
+      !> Reference value of a parameter that may be 0: the smallest modulus, or the reciprocal of
+      !> the last time; 0 for any other parameter, shape (parameters)
       real(wp), allocatable :: unit(:)
-      !> Numbers of those that are free, shape (n)
+      !> Indices of the free parameters, shape (n)
       integer, allocatable :: free(:)
-      !> Range of times beyond the data, as a factor
+      !> Factor by which times may lie beyond those of the data
       real(wp) :: widest = widest_time
    contains
       procedure :: residuals
@@ -65,10 +64,10 @@ module vcor_fit_law_problem
 
 contains
 
-   !> What a model states of the numbers that a fit finds
+   !> Parameters of a model that a fit finds
    pure function stated_parameters(model) result(stated)
       character(len=*), intent(in) :: model
-      !> Its parameters that are fitted, but for lists
+      !> Fitted parameters, without lists
       type(parameter_t), allocatable :: stated(:)
 
       type(parameter_t), allocatable :: all(:)
@@ -77,11 +76,11 @@ contains
       allocate (stated, source=pack(all, all%fitted .and. .not. all%is_list))
    end function stated_parameters
 
-   !> Make the problem of a model
+   !> Build the problem of a model
    subroutine new_law_problem(self, model, fixed, samples)
       type(law_problem_t), intent(out) :: self
       character(len=*), intent(in) :: model
-      !> Parameters that have a given value, shape (n)
+      !> Parameters with given values, shape (n)
       type(estimate_t), intent(in) :: fixed(:)
       type(samples_t), intent(in) :: samples
 
@@ -107,7 +106,7 @@ contains
       call set_free(self)
    end subroutine new_law_problem
 
-   !> Note which parameters are free, and set their bounds
+   !> Set the list of free parameters, and their bounds
    subroutine set_free(problem)
       type(law_problem_t), intent(inout) :: problem
 
@@ -133,7 +132,7 @@ contains
                lower = log(softest)
                upper = log(hardest)
             else if (problem%stated(k)%unit == 'Pa s^a') then
-               ! C t^-a may have any C where a is any
+               ! for an arbitrary exponent a, C of C t^-a may have any value
                lower = log(softest) + min(0.0_wp, log(shortest))
                upper = log(hardest) + max(0.0_wp, log(longest))
             else
@@ -145,7 +144,7 @@ contains
       end do
    end subroutine set_free
 
-   !> Make what has come to its bound free again, and the bounds wider
+   !> Free the parameters at their bounds, and widen the bounds
    subroutine release(problem)
       type(law_problem_t), intent(inout) :: problem
 
@@ -154,7 +153,7 @@ contains
       call set_free(problem)
    end subroutine release
 
-   !> Unknowns of the values of the parameters, within the bounds
+   !> Unknowns, limited to the bounds, from the values of the parameters
    pure function unknowns_of(problem) result(x)
       type(law_problem_t), intent(in) :: problem
       !> Logarithms of the free parameters
@@ -164,7 +163,7 @@ contains
       x = max(problem%lower, min(problem%upper, x))
    end function unknowns_of
 
-   !> The material of given parameters
+   !> The material with the given values of the parameters
    pure function described(problem, values) result(data)
       class(law_problem_t), intent(in) :: problem
       !> Values of all parameters
@@ -178,7 +177,7 @@ contains
       do i = 1, size(values)
          call data%set(trim(problem%parameters(i)%name), values(i))
       end do
-      ! the rubbery modulus does not exceed the glassy one
+      ! keep the rubbery modulus at or below the glassy one
       if (problem%model == 'sls') &
          call data%set('alpha', min(data%number('alpha'), data%number('beta')))
    end function described
@@ -204,7 +203,7 @@ contains
       real(wp), intent(in) :: values(:)
       real(wp) :: r(problem%samples%count())
 
-      !> What stands for a model that is nothing there
+      !> Residual where the model does not exist
       real(wp), parameter :: far_off = 1.0e3_wp
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
@@ -239,7 +238,7 @@ contains
       end do
    end subroutine jacobian
 
-   !> Starts of the iteration: the minima of a scan of all shapes, the lowest ones first
+   !> Starts of the iteration: the local minima of a scan over all shapes, the lowest first
    subroutine find_starts(problem, starts)
       type(law_problem_t), intent(in) :: problem
       !> Values of all parameters, shape (parameters, starts)
@@ -280,7 +279,7 @@ contains
       yes = parameter%scale /= linear .and. abs(power_of_time(parameter%unit)) > 0.0_wp
    end function is_time
 
-   !> Whether the shape of a model is a time and an exponent
+   !> Whether the shape of a model consists of a time and an exponent
    pure function has_two_shapes(problem) result(yes)
       type(law_problem_t), intent(in) :: problem
       logical :: yes
@@ -288,8 +287,7 @@ contains
       yes = any(is_time(problem%stated)) .and. any(problem%stated%unit == '')
    end function has_two_shapes
 
-   !> Times and exponents of the scan; one that is given, or that the model does not have, is the
-   !> only one
+   !> Times and exponents of the scan: a single one if it is fixed, or if the model has none
    pure subroutine get_scan(problem, times, powers)
       type(law_problem_t), intent(in) :: problem
       !> Times [s]
@@ -321,7 +319,7 @@ contains
       end do
    end subroutine get_scan
 
-   !> The best moduli for one shape, and what is left then
+   !> Best moduli for one shape, and the remaining cost
    subroutine scan_shape(problem, time, power, values, cost)
       type(law_problem_t), intent(in) :: problem
       !> Time of the shape [s]
@@ -333,7 +331,7 @@ contains
       !> Sum of the squares of the residuals
       real(wp), intent(out) :: cost
 
-      !> Part of the data that a modulus which is not needed starts from
+      !> Fraction of the smallest datum at which a modulus that is not needed starts
       real(wp), parameter :: little = 1.0e-3_wp
       class(material_t), allocatable :: material
       type(error_t), allocatable :: error
@@ -359,7 +357,7 @@ contains
       a(:, 1) = 0.0_wp
       a(:size(problem%samples%modulus), 1) = 1.0_wp/problem%samples%modulus
       b = 1.0_wp
-      ! those of sls are sum and quotient of parameters
+      ! the two moduli of sls are a sum and a quotient of parameters
       do i = 1, 2
          if (problem%model == 'sls' .or. problem%parameters(i)%state /= state_fixed) cycle
          b = b - problem%parameters(i)%value*a(:, i)

@@ -1,14 +1,14 @@
 !> Fit of a Prony series with a given number of terms, or with as many as the data support
 !>
-!> The spectrum comes first: the moduli of rates on a fine logarithmic grid are a problem of
-!> non-negative least squares, and few of them are not zero. A relaxation time between two rates of
-!> the grid shows up as both, so neighbours are merged. Then moduli and rates are refined together,
-!> from two starts: the merged spectrum, and rates in equal steps.
+!> First non-negative least squares finds the moduli of rates on a fine logarithmic grid; few of
+!> them are not zero. A relaxation time between two rates of the grid appears at both, so neighbours
+!> are merged. Then moduli and rates are refined together, from two starts: the merged spectrum, and
+!> rates in equal logarithmic steps.
 !>
-!> As many as the data support: terms are added until the largest misfit is below what any data are
-!> good for, or as long as they pay by the Bayesian information criterion
-!> m ln(S/m) + p ln m of m moduli, p parameters and the sum of squares S (G. Schwarz, Ann. Stat. 6
-!> (1978) 461). In noise it ends where more terms would follow the noise.
+!> As many terms as the data support: terms are added until the largest misfit is below the accuracy
+!> of any data, or while they reduce the Bayesian information criterion m ln(S/m) + p ln m of m
+!> moduli, p parameters and the sum of squares S (G. Schwarz, Ann. Stat. 6 (1978) 461). In noisy
+!> data it stops before terms follow the noise.
 module vcor_fit_prony
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
@@ -23,34 +23,34 @@ module vcor_fit_prony
 
    public :: fit_prony
 
-   !> Rates per decade of the grid of the spectrum
+   !> Rates per decade on the grid of the spectrum
    real(wp), parameter :: per_decade = 8.0_wp
-   !> Largest misfit that no data beat
+   !> Largest misfit that is below the accuracy of any data
    real(wp), parameter :: good_enough = 5.0e-4_wp
-   !> Largest misfit that may become that small, as a factor
+   !> Factor above `good_enough` from which refinement may still reach it
    real(wp), parameter :: close = 4.0_wp
-   !> Fewest terms of a series whose rates are a start for others
+   !> Smallest number of terms of a series whose rates are a start for another number
    integer, parameter :: least_guide = 4
-   !> One term more that reduces the residual to this part completes a series that the data are
+   !> If one more term reduces the residual to this fraction, the data are a series of that number
    real(wp), parameter :: completes = 1.0e-3_wp
-   !> Steps that do not pay before the search ends: one may be a poor start
+   !> Unsuccessful steps that end the search: a single one may be due to a poor start
    integer, parameter :: most_in_vain = 2
-   !> Part of the misfit that more terms leave, above which the iteration may have stopped short
+   !> Misfit with more terms over that with fewer above which the iteration may have stopped early
    real(wp), parameter :: halfway = 0.7_wp
-   !> Factor by which the rates that a fit starts from go beyond the data
+   !> Factor by which the initial rates extend beyond the data
    real(wp), parameter :: around = 4.0_wp
-   !> Most terms
+   !> Largest number of terms
    integer, parameter :: most_terms = 60
-   !> Most terms per decade of the data, and a few more: t^-1/2 to 0.05 % takes 2.3 per decade
+   !> Largest number of terms per decade of the data, plus a few: t^-1/2 to 0.05 % takes 2.3
    real(wp), parameter :: terms_per_decade = 3.0_wp
    integer, parameter :: few_more = 5
-   !> Reduction of the sum of squares that counts as none, while the number is searched and at last
+   !> Relative reduction of the sum of squares that ends an iteration, in the search and at the end
    real(wp), parameter :: coarse = 1.0e-3_wp, fine = 1.0e-7_wp
-   !> Most evaluations, while the number is searched and at last
+   !> Maximum number of evaluations in the search and at the end
    integer, parameter :: first_patience = 60, last_patience = 300
-   !> Part of the largest modulus that starts a term which least squares do without
+   !> Initial modulus of a term that least squares leaves out, over the largest modulus
    real(wp), parameter :: little = 1.0e-3_wp
-   !> Part of the smallest modulus of the samples below which a term is none
+   !> Modulus over the smallest of the samples below which a term counts as absent
    real(wp), parameter :: nothing = 1.0e-6_wp
 
 contains
@@ -60,7 +60,7 @@ contains
       type(fit_t), intent(out) :: fit
       !> Number of terms; 0: as many as the data support
       integer, intent(in) :: terms
-      !> Equilibrium modulus [Pa]; negative: to be found
+      !> Equilibrium modulus [Pa]; negative: fitted
       real(wp), intent(in) :: given
       type(samples_t), intent(in) :: samples
       !> Error of code `error_numerical` if there is no solution, unallocated on success
@@ -86,7 +86,7 @@ contains
             call raise(error, error_numerical, 'the fit of a Prony series does not converge: ' &
                //'give another number of terms with --terms')
          end if
-         ! what the data do not support is not given: then take a term less
+         ! the data may not support the term found last: try one term fewer
          if (.not. allocated(error) .or. terms > 0 .or. n == 1) exit
          n = n - 1
          spectrum = series
@@ -94,8 +94,7 @@ contains
       end do
    end subroutine fit_prony
 
-   !> Take terms away as long as the series stays good enough: the search has looked at iterations
-   !> that were cut short
+   !> Remove terms while the series stays good enough: the search compares unfinished iterations
    subroutine shorten(series, spectrum)
       type(series_t), intent(inout) :: series
       type(series_t), intent(in) :: spectrum
@@ -106,13 +105,13 @@ contains
          call fit_terms(trial, size(series%rates) - 1, spectrum, last_patience, series)
          call refine(trial, fine, last_patience)
          if (.not. is_good(trial)) exit
-         ! data that are this series
+         ! the data are a series of this number of terms
          if (norm2(series%misfits) < completes*norm2(trial%misfits)) exit
          series = trial
       end do
    end subroutine shorten
 
-   !> Drop terms that the refinement has made next to nothing
+   !> Remove terms whose moduli the refinement has made negligible
    subroutine prune(series)
       type(series_t), intent(inout) :: series
 
@@ -125,11 +124,11 @@ contains
       call refine(series, fine, last_patience)
    end subroutine prune
 
-   !> The spectrum on a grid, neighbours merged
+   !> Spectrum on a grid, with neighbours merged
    subroutine find_spectrum(spectrum, samples, given)
       type(series_t), intent(out) :: spectrum
       type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
+      !> Equilibrium modulus [Pa]; negative: fitted
       real(wp), intent(in) :: given
 
       real(wp) :: width
@@ -150,7 +149,7 @@ contains
       end do
    end subroutine find_spectrum
 
-   !> Number of the rate that is closest to the next one
+   !> Index of the rate that is closest to the next one
    pure function closest(rates) result(n)
       !> Logarithms of rates, increasing
       real(wp), intent(in) :: rates(:)
@@ -159,10 +158,10 @@ contains
       n = minloc(rates(2:) - rates(:size(rates) - 1), dim=1)
    end function closest
 
-   !> Make one term of two neighbours
+   !> Merge two neighbouring terms
    pure subroutine merge_terms(series, n)
       type(series_t), intent(inout) :: series
-      !> Number of the first of the two
+      !> Index of the first of the two
       integer, intent(in) :: n
 
       associate (rates => series%rates, moduli => series%moduli)
@@ -173,13 +172,13 @@ contains
       series%moduli = [series%moduli(:n), series%moduli(n + 2:)]
    end subroutine merge_terms
 
-   !> Fit a number of terms, from both starts
+   !> Fit a given number of terms, from both starts
    subroutine fit_terms(series, terms, spectrum, most, guide)
       !> The better series
       type(series_t), intent(out) :: series
       integer, intent(in) :: terms
       type(series_t), intent(in) :: spectrum
-      !> Most evaluations
+      !> Maximum number of evaluations
       integer, intent(in) :: most
       !> A series of another number of terms, whose rates are a better start than equal steps
       type(series_t), intent(in), optional :: guide
@@ -191,7 +190,7 @@ contains
       if (present(guide)) then
          call start_from(series, spread_rates(guide%rates, terms))
       else
-         ! equal steps over the band of the data and a little more, half a step from the ends
+         ! equal steps over the band of the data and slightly beyond, half a step from the ends
          associate (first => log(1.0_wp/(around*series%samples%last_time())), &
             last => log(around/series%samples%first_time()))
             call start_from(series, first + (last - first)*[(real(2*i - 1, wp), i=1, terms)] &
@@ -209,26 +208,26 @@ contains
       if (norm2(other%misfits) < norm2(series%misfits)) series = other
    end subroutine fit_terms
 
-   !> Rates of another number of terms with the same distribution
+   !> Rates with the same distribution for another number of terms
    pure function spread_rates(rates, terms) result(others)
       !> Logarithms of rates, increasing, shape (n), n >= 2
       real(wp), intent(in) :: rates(:)
       integer, intent(in) :: terms
-      !> Logarithms of their rates, shape (terms)
+      !> Logarithms of the new rates, shape (terms)
       real(wp) :: others(terms)
 
       real(wp) :: place
       integer :: i, k
 
       do i = 1, terms
-         ! terms stand in the middle of equal parts of the spectrum
+         ! terms are in the middle of equal parts of the spectrum
          place = 0.5_wp + (real(i, wp) - 0.5_wp)*real(size(rates), wp)/real(terms, wp)
          k = max(1, min(size(rates) - 1, int(place)))
          others(i) = rates(k) + (place - real(k, wp))*(rates(k + 1) - rates(k))
       end do
    end function spread_rates
 
-   !> Make a series of rates a start of an iteration: no modulus is 0
+   !> Set the rates at the start of an iteration, and moduli that are not 0
    subroutine start_from(series, rates)
       type(series_t), intent(inout) :: series
       !> Logarithms of the rates
@@ -239,7 +238,7 @@ contains
          little*max(maxval(series%moduli), minval(series%samples%modulus)))
    end subroutine start_from
 
-   !> Search the number of terms: with growing steps as far as it pays, then with steps that halve
+   !> Search the number of terms: with growing steps while they succeed, then with halved steps
    subroutine search(series, spectrum)
       type(series_t), intent(out) :: series
       type(series_t), intent(in) :: spectrum
@@ -275,7 +274,7 @@ contains
          call try(size(series%rates) - 1, better)
          if (.not. better) exit
       end do
-      ! data that are a series of one term more are told by what is left then
+      ! one more term shows whether the data are a series of that number
       if (size(series%rates) == most) return
       call fit_terms(trial, size(series%rates) + 1, spectrum, first_patience)
       if (norm2(trial%misfits) < completes*norm2(series%misfits)) series = trial
@@ -285,7 +284,7 @@ contains
       !> Try a number of terms
       subroutine try(terms, better)
          integer, intent(in) :: terms
-         !> Whether it is the best so far
+         !> Whether it is the best one so far
          logical, intent(out) :: better
 
          real(wp) :: value
@@ -300,15 +299,15 @@ contains
          else
             call fit_terms(trial, terms, spectrum, first_patience)
          end if
-         ! nearly there, or a term less, or no closer than with fewer terms, which is a place on the
-         ! way: worth a closer look, before longer ones are tried
+         ! refine further if the series is nearly good enough, has one term fewer, or has more terms
+         ! and hardly a smaller misfit, so that its iteration may have stopped early
          look = maxval(abs(trial%misfits)) <= close*good_enough
          if (allocated(series%rates)) look = look .or. terms == size(series%rates) - 1 .or. &
             (terms > size(series%rates) &
             .and. norm2(trial%misfits) > halfway*norm2(series%misfits))
          if (look .and. .not. is_good(trial)) call refine(trial, fine, last_patience)
          value = criterion(trial)
-         ! of those that are good enough the shortest
+         ! among series that are good enough the shortest is best
          if (is_good(trial)) value = -0.5_wp*huge(value)*(1.0_wp - 1.0e-3_wp*real(terms, wp))
          better = value < best
          if (.not. better) return
@@ -317,7 +316,7 @@ contains
       end subroutine try
    end subroutine search
 
-   !> Whether a series is as good as any data
+   !> Whether a series is as accurate as any data
    pure function is_good(series) result(yes)
       type(series_t), intent(in) :: series
       logical :: yes
@@ -337,7 +336,7 @@ contains
       value = m*log(max(sum(series%misfits**2)/m, epsilon(m)**2)) + p*log(m)
    end function criterion
 
-   !> Make the fit of a series: parameters, misfit, standard errors
+   !> Build the fit from a series: parameters, misfit, standard errors
    subroutine conclude(fit, found, error)
       type(fit_t), intent(out) :: fit
       type(series_t), intent(in) :: found

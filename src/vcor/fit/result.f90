@@ -1,4 +1,4 @@
-!> What a fit has found: estimates with standard errors, and what the data cannot say
+!> Result of a fit: estimates with standard errors, and what the data cannot determine
 module vcor_fit_result
    use vcor_error, only : error_numerical, error_t, raise
    use vcor_kinds, only : wp
@@ -13,31 +13,31 @@ module vcor_fit_result
    public :: fit_t, estimate_t, state_free, state_fixed, state_bound, unseen_earlier, unseen_later
    public :: judge, set_errors, is_structured, mark_ends
 
-   !> State of a parameter: found by the fit
+   !> State of a parameter: determined by the fit
    integer, parameter :: state_free = 0
    !> Given by the user
    integer, parameter :: state_fixed = 1
-   !> Run to the end of its range: the data say no more than how far away it can be
+   !> At the end of its range: the data only limit its distance from there
    integer, parameter :: state_bound = 2
-   !> What a parameter depends on beyond the data: on what relaxes before they begin
+   !> What a parameter depends on beyond the data: relaxation before they begin
    integer, parameter :: unseen_earlier = 1
-   !> On what relaxes after they end
+   !> Relaxation after they end
    integer, parameter :: unseen_later = 2
-   !> Condition of the scaled derivatives beyond which parameters are not determined: they would
-   !> have no digit in common with those of data that differ by 1e-7
+   !> Condition number of the scaled derivatives above which parameters are not determined: with a
+   !> change of the data by 1e-7 they would have no common digit
    real(wp), parameter :: worst_condition = 1.0e7_wp
 
-   !> Root mean square misfit that is as good as any data: numbers of three digits are no better
+   !> Root mean square misfit below the accuracy of any data: numbers have three digits at best
    real(wp), parameter :: negligible = 5.0e-3_wp
-   !> Root mean square misfit, a factor of two, that is no noise of moduli, whatever its order
+   !> Root mean square misfit, a factor of two, that is too large for noise of any kind
    real(wp), parameter :: hopeless = log(2.0_wp)
    !> Standard deviations above the mean that one fit in a thousand exceeds by chance
    real(wp), parameter :: unlikely = 3.1_wp
-   !> Residuals more than parameters, at least: with fewer no correlation is so far above the mean
+   !> Minimum excess of residuals over parameters: with fewer no correlation is significant
    integer, parameter :: least = 5
 
-   !> Change of the modulus over a decade that is none: for a series as good as any data, for a law,
-   !> which goes on by itself, more
+   !> Relative change of the modulus over a decade that counts as zero: for a series the accuracy of
+   !> any data, for a law, which extrapolates, more
    real(wp), parameter :: flat_series = 5.0e-3_wp, flat_law = 0.1_wp
 
    !> Estimate of a parameter
@@ -48,40 +48,40 @@ module vcor_fit_result
       character(len=8) :: unit = ''
       !> Value, in this unit
       real(wp) :: value = 0.0_wp
-      !> Standard error, in this unit; 0 if the value is given
+      !> Standard error, in this unit; 0 if the value is fixed
       real(wp) :: error = 0.0_wp
       !> One of the `state_*` constants
       integer :: state = state_free
-      !> What its value depends on that the data do not show: `unseen_earlier`, `unseen_later`, or 0
+      !> Relaxation beyond the data on which it depends: `unseen_earlier`, `unseen_later`, or 0
       integer :: unseen = 0
    end type estimate_t
 
-   !> A fit
+   !> Result of a fit
    type :: fit_t
       type(material_data_t) :: data
       !> Its parameters; moduli and times of a Prony series alternate, the fastest term first
       type(estimate_t), allocatable :: parameters(:)
       !> Root of the mean square of the relative misfits [-]
       real(wp) :: rms = 0.0_wp
-      !> Largest relative misfit, with its sign: model over data less 1 [-]
+      !> Largest relative misfit [-], signed: model over data minus 1
       real(wp) :: largest = 0.0_wp
-      !> Time [s] or angular frequency [rad/s] where it is
+      !> Its time [s] or angular frequency [rad/s]
       real(wp) :: largest_at = 0.0_wp
-      !> Whether it is one of the loss modulus
+      !> Whether it belongs to the loss modulus
       logical :: largest_in_loss = .false.
-      !> Variance of the data, as relative misfits, if the model is right [-]
+      !> Variance of the data, as relative misfits, if the model is correct [-]
       real(wp) :: variance = 0.0_wp
-      !> Whether the misfits are no noise: the model does not follow the data
+      !> Whether the misfits are systematic, not noise: the model does not follow the data
       logical :: structured = .false.
-      !> Correlation of the parameters [-], shape (n, n); 0 of those that are given
+      !> Correlation of the parameters [-], shape (n, n); 0 for fixed ones
       real(wp), allocatable :: correlation(:, :)
-      !> Condition of the derivatives by the parameters that are free, each scaled to length 1
+      !> Condition number of the derivatives by the free parameters, each scaled to length 1
       real(wp) :: condition = 1.0_wp
    end type fit_t
 
 contains
 
-   !> Say how well a material agrees with samples
+   !> Set the misfits of a material to samples
    pure subroutine judge(fit, material, samples)
       type(fit_t), intent(inout) :: fit
       class(material_t), intent(in) :: material
@@ -99,19 +99,18 @@ contains
       fit%largest_at = samples%at(place)
    end subroutine judge
 
-   !> Set standard errors from the derivatives at the solution: those of a linear problem about it;
-   !> and tell whether the residuals are the noise that they are made of.
-   !> What is at its bound is an unknown of it like the others: their errors allow for what it could
-   !> be instead
+   !> Set standard errors from the derivatives at the solution, by linearisation, and find whether
+   !> the residuals are noise. Parameters at a bound are unknowns like the others, so the errors of
+   !> the others allow for their possible values
    subroutine set_errors(fit, problem, x, r, free, points, error)
       !> The fit, its values and states set
       type(fit_t), intent(inout) :: fit
       class(least_squares_t), intent(in) :: problem
-      !> Its solution, logarithms of the parameters `free`; what is 0 has a small value, shape (n)
+      !> Its solution, logarithms of the parameters `free`, with a small value for 0, shape (n)
       real(wp), intent(in) :: x(:)
-      !> Residuals there, shape (m)
+      !> Residuals at the solution, shape (m)
       real(wp), intent(in) :: r(:)
-      !> Numbers of the parameters that the unknowns stand for, shape (n)
+      !> Indices of the parameters of the unknowns, shape (n)
       integer, intent(in) :: free(:)
       !> Number of times or frequencies
       integer, intent(in) :: points
@@ -119,8 +118,8 @@ contains
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: j(size(r), size(x)), inverse(size(x), size(x)), condition
-      !> Standard deviations of the unknowns over that of a residual; of a rate, whose logarithm is
-      !> that of the time but for its sign, with another sign
+      !> Standard deviations of the unknowns over that of a residual; negative for a rate whose time
+      !> is the parameter, as ln(time) = -ln(rate)
       real(wp) :: deviations(size(x))
       integer, allocatable :: inner(:)
       integer :: i
@@ -141,7 +140,7 @@ contains
       do i = 1, size(x)
          deviations(i) = sqrt(inverse(i, i))
          associate (parameter => fit%parameters(free(i)))
-            ! the unknown of a time of a series is its rate
+            ! the unknown of a time is the logarithm of its rate
             if (parameter%name == 'times') then
                parameter%error = parameter%value*sqrt(fit%variance)*deviations(i)
                deviations(i) = -deviations(i)
@@ -156,28 +155,28 @@ contains
       end do
    end subroutine set_errors
 
-   !> Whether neighbouring residuals have so much in common that they are no noise
+   !> Whether neighbouring residuals are correlated too much for noise
    !>
-   !> Noise knows nothing of its neighbour, a model that is wrong misses the data in the same sense
-   !> over many points. So it is not the size of the residuals that tells, but their correlation
-   !> with the next one, rho = sum r_i r_(i+1)/sum r_i^2, in order of time or frequency. Of noise it
-   !> would be 0 but for the fit, which has taken from the residuals what its p parameters could
-   !> follow, and that is smooth. Residuals r = M e of independent noise e of one variance, with M
-   !> the projection on what the derivatives by the parameters do not span and A r the mean of the
-   !> two neighbours (rho = r'A r/r'r), have a rho of the mean and variance
+   !> Noise is independent from point to point, while a wrong model errs in the same direction over
+   !> many points. So the test uses not the size of the residuals but their correlation with the
+   !> next one, rho = sum r_i r_(i+1)/sum r_i^2, in order of time or frequency. For noise it would
+   !> be 0, but the fit has removed from the residuals the smooth part that its p parameters could
+   !> follow. Let r = M e with independent noise e of one variance and the projection M orthogonal
+   !> to the derivatives by the parameters, and let A r be the mean of the two neighbours, so
+   !> rho = r'A r/r'r. Then rho has the mean and the variance
    !>
    !>    tr(MA)/n,   2 (tr(MAMA) - tr(MA)^2/n)/(n (n + 2)),   n = m - p
    !>
    !> for any number m of points (J. Durbin and G. S. Watson, Biometrika 37 (1950) 409,
    !> doi:10.1093/biomet/37.3-4.409).
    pure function is_structured(r, j, points) result(yes)
-      !> Residuals of a least squares fit, one or more sequences after each other, shape (m)
+      !> Residuals of a least squares fit, one or more sequences in turn, shape (m)
       real(wp), intent(in) :: r(:)
-      !> Their derivatives by the parameters that were free, of full rank, shape (m, p)
+      !> Their derivatives by the free parameters, of full rank, shape (m, p)
       real(wp), intent(in) :: j(:, :)
-      !> Points of a sequence
+      !> Number of points of a sequence
       integer, intent(in) :: points
-      !> True if they are not negligible and no noise, false if there are too few to tell
+      !> True if they are neither negligible nor noise; false if there are too few to decide
       logical :: yes
 
       real(wp) :: q(size(j, 1), size(j, 2)), aq(size(j, 1), size(j, 2)), g(size(j, 2), size(j, 2))
@@ -201,17 +200,17 @@ contains
       mean = -sum([(g(i, i), i=1, size(g, 1))])/n
       square = 0.5_wp*real(size(r) - sequences, wp) - 2.0_wp*sum(aq**2) + sum(g**2)
       rho = dot_product(r, neighbours(r, points))/sum(r**2)
-      ! storage and loss modulus may share their noise, or one of them have next to all of it: then
-      ! chance has the variance of one sequence
+      ! storage and loss modulus may share their noise, or one of them may have nearly all of it: in
+      ! both cases the variance is that of one sequence
       yes = rho - mean > unlikely*sqrt(real(sequences, wp)*2.0_wp*(square - n*mean**2) &
          /(n*(n + 2.0_wp)))
    end function is_structured
 
-   !> Mean of the two neighbours of each number; where there is none it counts as 0
+   !> Mean of the two neighbours of each number; a missing neighbour counts as 0
    pure function neighbours(r, points) result(means)
-      !> Numbers, one or more sequences after each other
+      !> Numbers, one or more sequences in turn
       real(wp), intent(in) :: r(:)
-      !> Numbers of a sequence
+      !> Length of a sequence
       integer, intent(in) :: points
       !> Means of neighbours, same shape
       real(wp) :: means(size(r))
@@ -226,15 +225,14 @@ contains
       end do
    end function neighbours
 
-   !> Mark the parameters whose values depend on what the data do not show: on what relaxes before
-   !> they begin and after they end
+   !> Mark the parameters whose values depend on relaxation before the data begin or after they end
    !>
-   !> A modulus that still falls where the data end goes on falling, and no datum tells how far. A
-   !> law of few parameters says how, and is right if it is the law of the material. A series has no
-   !> say: what relaxes later is part of its equilibrium modulus, and its slowest term lies in
-   !> between. The same holds where the data begin. So what the standard error of a modulus is worth
-   !> depends on the slope at that end: if a decade more of it is more than the standard error, the
-   !> error is only that of a material that the model describes beyond the data too. So is that of a
+   !> A modulus that still falls at the end of the data continues to fall, and no datum tells how
+   !> far. A law with few parameters extrapolates, correctly if it is the law of the material. A
+   !> series does not: it adds what relaxes later to its equilibrium modulus and to its slowest
+   !> term. The same holds at the beginning of the data. So the slope at that end decides: if the
+   !> modulus would change by more than its standard error over another decade, the error is valid
+   !> only if the model also describes the material beyond the data. The same applies to a
    !> relaxation time beyond the data.
    subroutine mark_ends(fit, material, samples)
       !> The fit, with standard errors
@@ -253,7 +251,7 @@ contains
       error = 0.0_wp
       do i = 1, n
          associate (parameter => fit%parameters(i))
-            ! a time of a series goes with its modulus
+            ! a time of a series is marked with its modulus
             if (parameter%name /= 'times') error = parameter%error
             if (parameter%state /= state_free) cycle
             select case (parameter%name)
@@ -281,14 +279,14 @@ contains
       end do
    end subroutine mark_ends
 
-   !> Fall of the modulus over a decade, by its slope; 0 where it is flat
+   !> Fall of the modulus over a decade, from its slope; 0 if it is flat
    function fall(material, time, dynamic, flat) result(change)
       class(material_t), intent(in) :: material
       !> Time [s]
       real(wp), intent(in) :: time
-      !> Whether it is that of the storage modulus at the angular frequency 1/time
+      !> Whether to use the storage modulus at the angular frequency 1/time
       logical, intent(in) :: dynamic
-      !> Part of the modulus that is no change
+      !> Fraction of the modulus that counts as no change
       real(wp), intent(in) :: flat
       !> Fall of the relaxation modulus, or of the storage modulus [Pa]
       real(wp) :: change

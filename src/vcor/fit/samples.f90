@@ -1,8 +1,8 @@
-!> Measured moduli that a material is identified from, and what a model misses of them
+!> Measured moduli from which a material is identified
 !>
-!> Moduli run over decades and are measured to so many percent of themselves, so what counts is the
-!> logarithm of model over data. For small misfits that is the relative misfit; of a noise of 1 %
-!> it makes a bias of 5e-5, half of what relative misfits make.
+!> Moduli range over decades and have relative errors, so a fit minimises the logarithms of model
+!> over data. For small misfits these are the relative misfits; with noise of 1 % they give a bias
+!> of 5e-5, half of that of relative misfits.
 module vcor_fit_samples
    use vcor_kinds, only : wp
    use vcor_material_type, only : material_t
@@ -13,15 +13,15 @@ module vcor_fit_samples
 
    !> Samples of E(t), or of E' and E'' over the angular frequency
    type :: samples_t
-      !> Whether they are storage and loss moduli over frequency
+      !> Whether they are storage and loss moduli over angular frequency
       logical :: dynamic = .false.
       !> Times [s], or angular frequencies [rad/s], increasing, > 0, shape (points)
       real(wp), allocatable :: at(:)
       !> Relaxation or storage moduli [Pa], > 0, shape (points)
       real(wp), allocatable :: modulus(:)
-      !> Loss moduli [Pa], > 0, shape (points); of relaxation data shape (0)
+      !> Loss moduli [Pa], > 0, shape (points); shape (0) for relaxation data
       real(wp), allocatable :: loss(:)
-      !> Lines of keys that the head of the file gives for the &material group; may be unallocated
+      !> Lines of keys in the head of the file for the &material group; may be unallocated
       character(len=:), allocatable :: keys
    contains
       procedure :: count => count_moduli
@@ -32,7 +32,7 @@ module vcor_fit_samples
 
 contains
 
-   !> Number of moduli, that of the residuals of a fit
+   !> Number of moduli, which is that of the residuals of a fit
    pure function count_moduli(self) result(n)
       class(samples_t), intent(in) :: self
       integer :: n
@@ -40,7 +40,7 @@ contains
       n = size(self%modulus) + size(self%loss)
    end function count_moduli
 
-   !> Time from which on the samples say something: of frequencies the reciprocal of the largest
+   !> First time of the samples; for frequencies the reciprocal of the largest
    pure function first_time(self) result(time)
       class(samples_t), intent(in) :: self
       !> Time [s]
@@ -50,7 +50,7 @@ contains
       if (self%dynamic) time = 1.0_wp/self%at(size(self%at))
    end function first_time
 
-   !> Time up to which the samples say something: of frequencies the reciprocal of the smallest
+   !> Last time of the samples; for frequencies the reciprocal of the smallest
    pure function last_time(self) result(time)
       class(samples_t), intent(in) :: self
       !> Time [s]
@@ -60,7 +60,7 @@ contains
       if (self%dynamic) time = 1.0_wp/self%at(1)
    end function last_time
 
-   !> All moduli as one list: relaxation, or storage and then loss
+   !> All moduli in one list: relaxation, or storage and then loss
    pure function all_moduli(self) result(moduli)
       class(samples_t), intent(in) :: self
       !> The moduli [Pa], shape (count)
@@ -70,7 +70,7 @@ contains
       moduli(size(self%modulus) + 1:) = self%loss
    end function all_moduli
 
-   !> Moduli of a material where there are samples
+   !> Moduli of a material at the samples
    pure function moduli_of(material, samples) result(moduli)
       class(material_t), intent(in) :: material
       type(samples_t), intent(in) :: samples

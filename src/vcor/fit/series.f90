@@ -1,5 +1,5 @@
-!> A Prony series and how it misses samples: a problem of least squares in the logarithms of its
-!> moduli and rates, which keeps all of them positive
+!> A Prony series and its misfit to samples: a least-squares problem in the logarithms of its moduli
+!> and rates, which keeps all of them positive
 module vcor_fit_series
    use vcor_kinds, only : wp
    use vcor_fit_samples, only : samples_t
@@ -11,28 +11,28 @@ module vcor_fit_series
    public :: series_t, new_series, set_bounds, unknowns_of, solve_moduli, refine, slowest_rate, &
       fastest_rate
 
-   !> Largest rate times the first time of the samples, smallest rate times the last one. A term
-   !> beyond would be seen by one sample only: its modulus would be the noise of that sample times
-   !> the exponential of this number
+   !> Largest rate times the first time of the samples, and smallest rate times the last one. Only
+   !> one sample would show a term beyond: the modulus would be the noise of that sample times the
+   !> exponential of this number
    real(wp), parameter :: fastest = 4.0_wp, slowest = 0.25_wp
-   !> The same for frequencies, of which a term is seen further away: like 1/x
+   !> The same for frequencies, which show a term farther away: it decays only as 1/x
    real(wp), parameter :: fastest_seen = 30.0_wp, slowest_seen = 0.03_wp
-   !> Range of a modulus beyond that of the samples, as a factor
+   !> Factors by which a modulus may lie below and above those of the samples
    real(wp), parameter :: softest = 1.0e-8_wp, hardest = 1.0e4_wp
-   !> Part of the smallest modulus below which the equilibrium modulus counts as 0
+   !> Equilibrium modulus over the smallest modulus of the samples that counts as 0
    real(wp), parameter :: nothing = 1.0e-6_wp
-   !> Part of the smallest modulus that an equilibrium modulus starts from at least
+   !> Smallest initial equilibrium modulus over the smallest modulus of the samples
    real(wp), parameter :: seed = 1.0e-2_wp
-   !> What stands for a modulus of 0, whose logarithm is taken
+   !> Replaces a modulus of 0 in logarithms [Pa]
    real(wp), parameter :: least_modulus = 1.0e-200_wp
 
-   !> A series; the unknowns of the problem are the logarithms of the equilibrium modulus, if that
-   !> is free, of the moduli and of the rates
+   !> A series; the unknowns of the problem are the logarithms of the equilibrium modulus, if it is
+   !> free, of the moduli and of the rates
    type, extends(least_squares_t) :: series_t
       type(samples_t) :: samples
       !> Their moduli as one list [Pa]
       real(wp), allocatable :: data(:)
-      !> Equilibrium modulus that is given [Pa]; negative: it is to be found
+      !> Fixed equilibrium modulus [Pa]; negative: fitted
       real(wp) :: given = -1.0_wp
       !> Whether the equilibrium modulus is an unknown
       logical :: is_free = .false.
@@ -44,7 +44,7 @@ module vcor_fit_series
       real(wp), allocatable :: rates(:)
       !> Logarithms of model over data, shape (count)
       real(wp), allocatable :: misfits(:)
-      !> Whether the iteration has ended at a solution
+      !> Whether the iteration has converged
       logical :: converged = .false.
    contains
       procedure :: residuals
@@ -56,7 +56,7 @@ contains
    !> A series without terms
    pure function new_series(samples, given) result(series)
       type(samples_t), intent(in) :: samples
-      !> Equilibrium modulus [Pa]; negative: to be found
+      !> Equilibrium modulus [Pa]; negative: fitted
       real(wp), intent(in) :: given
       type(series_t) :: series
 
@@ -81,8 +81,8 @@ contains
       rate = log(merge(fastest_seen, fastest, samples%dynamic)/samples%first_time())
    end function fastest_rate
 
-   !> Moduli of a term of modulus 1 where there are samples: exp(-l t), or with x = omega/l
-   !> x^2/(1 + x^2) and x/(1 + x^2)
+   !> Response of a term of modulus 1 at the samples: exp(-l t), or, with x = omega/l, x^2/(1 + x^2)
+   !> and x/(1 + x^2)
    pure function response(samples, rate) result(moduli)
       type(samples_t), intent(in) :: samples
       !> Logarithm of the rate l
@@ -105,7 +105,7 @@ contains
 
    !> Set the rates, and the moduli by non-negative least squares of the relative misfits
    subroutine solve_moduli(series, rates)
-      !> The series; its moduli are >= 0 afterwards
+      !> The series; on return its moduli are >= 0
       type(series_t), intent(inout) :: series
       !> Logarithms of the rates, shape (n)
       real(wp), intent(in) :: rates(:)
@@ -129,7 +129,7 @@ contains
       series%moduli = x(1:)
    end subroutine solve_moduli
 
-   !> Set what is free, and the bounds of the unknowns
+   !> Set the number of unknowns, and their bounds
    pure subroutine set_bounds(self, is_free)
       class(series_t), intent(inout) :: self
       !> Whether the equilibrium modulus is an unknown
@@ -147,10 +147,10 @@ contains
       self%upper(first:) = fastest_rate(self%samples)
    end subroutine set_bounds
 
-   !> The unknowns
+   !> Unknowns of a series
    pure function unknowns_of(series, least) result(x)
       type(series_t), intent(in) :: series
-      !> Part of the smallest modulus that stands for an equilibrium modulus below it
+      !> Smallest equilibrium modulus over the smallest modulus of the samples
       real(wp), intent(in) :: least
       real(wp), allocatable :: x(:)
 
@@ -159,12 +159,12 @@ contains
          x = [log(max(series%equilibrium, least*minval(series%samples%modulus))), x]
    end function unknowns_of
 
-   !> Refine a series: all moduli and rates at once, and put its terms in the order of their rates
+   !> Refine all moduli and rates together, and sort the terms by their rates
    subroutine refine(series, tolerance, most)
       type(series_t), intent(inout) :: series
-      !> Reduction of the sum of squares that counts as none
+      !> Relative reduction of the sum of squares that ends the iteration
       real(wp), intent(in) :: tolerance
-      !> Most evaluations
+      !> Maximum number of evaluations
       integer, intent(in) :: most
 
       call iterate(series, series%given < 0.0_wp)
@@ -188,7 +188,7 @@ contains
          call set_bounds(series, is_free)
          n = size(series%rates)
          first = merge(1, 0, is_free)
-         ! least squares for given rates may do without a modulus that the refinement needs
+         ! non-negative least squares may have left out a modulus that the refinement needs
          allocate (x, source=unknowns_of(series, seed))
          call minimise(series, x, r, converged, tolerance, most)
          if (is_free) series%equilibrium = exp(x(1))
@@ -200,7 +200,7 @@ contains
       end subroutine iterate
    end subroutine refine
 
-   !> Put the terms of a series in the order of their rates
+   !> Sort the terms of a series by their rates
    pure subroutine order(series)
       type(series_t), intent(inout) :: series
 
@@ -239,7 +239,7 @@ contains
       r = log(max(r, least_modulus)/self%data)
    end subroutine residuals
 
-   !> Derivatives of the residuals. By ln l: -l t exp(-l t), -2 x^2/(1 + x^2)^2 and
+   !> Derivatives of the residuals. Those by ln l are -l t exp(-l t), and -2 x^2/(1 + x^2)^2 and
    !> -x (1 - x^2)/(1 + x^2)^2
    subroutine jacobian(self, x, j)
       class(series_t), intent(in) :: self

@@ -1,4 +1,4 @@
-!> Laws of the verification table about plates by elastodynamics, waves = 'body': their limits
+!> Laws of the verification table for plates by elastodynamics, waves = 'body': their limits
 module vcor_verify_body
    use vcor_constants, only : pi
    use vcor_impact_outcome, only : outcome_t
@@ -15,25 +15,26 @@ module vcor_verify_body
 
    !> Elastic half space: modulus [Pa], Poisson's ratio [-]
    real(wp), parameter :: modulus = 70.0e9_wp, nu = 0.25_wp
-   !> Moduli of the thin plates [Pa]: their x = H/(c_s T) falls with the power -0.15, from 0.016 to
-   !> 0.002. Zener's parameter, and the part of the modulus that a solid keeps [-]
+   !> Moduli of the thin plates [Pa]: x = H/(c_s T), proportional to modulus^-0.15, falls from 0.016
+   !> to 0.002. Zener's parameter, and rubbery over glassy modulus of the solid [-]
    real(wp), parameter :: stiff(2) = 1.5e18_wp*[1.0_wp, 2.0_wp**20], lambda = 0.5_wp, &
       drop = 0.25_wp
 
 contains
 
-   !> A half space takes int kappa F'^2 dt to first order, kappa = I(nu)/(2 pi mu c_s) by G. F.
-   !> Miller and H. Pursey, Proc. R. Soc. A 223 (1954) 521; in Hertz's impact
+   !> Thick plates. To first order the waves in a half space take the energy int kappa F'^2 dt, with
+   !> kappa = I(nu)/(2 pi mu c_s) by G. F. Miller and H. Pursey, Proc. R. Soc. A 223 (1954) 521. In
+   !> Hertz's impact
    !>
    !>     int F'^2 dt = (9/5) B(4/5, 3/2) k^2 v0 s0^2,   k s0^(5/2) = (5/4) m v0^2
    !>
-   !> which is v0^0.6 of the energy. Two velocities with half of that leave its square, and their
-   !> static limit, in which the layer gives way as Hertz' half space does. A layer from whose far
-   !> face no wave comes back in time is a half space
+   !> so their share of the energy grows as v0^0.6. Two velocities, the second with half the share,
+   !> are extrapolated with an error of order share^2, also to the static limit, Hertz's half space.
+   !> A layer is a half space if no wave returns from the far face in time
    subroutine thick_body(law)
       type(law_t), intent(inout) :: law
 
-      ! half a wave's way to and fro takes 0.2 ms, the contacts 0.15 and 0.19 ms
+      ! the fastest wave returns from the far face after 0.34 ms; the contacts last 0.15 and 0.19 ms
       real(wp), parameter :: velocity = 0.05_wp, half_thickness = 0.75_wp
       character(len=*), parameter :: square = 'accuracy, and the square of the share of the waves'
       type(material_data_t) :: plate
@@ -58,8 +59,8 @@ contains
          reason='accuracies of the two', quantity='cor_sphere', twin=size(strikes))
    end subroutine thick_body
 
-   !> Energy of the waves, which is all that the sphere loses, over that of first order, its growth
-   !> with v0^0.6 removed
+   !> Energy of the waves, which is all that the sphere loses, over its first-order value,
+   !> extrapolated to a share of zero
    pure function over_first_order(outcomes) result(ratio)
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: ratio
@@ -93,7 +94,7 @@ contains
       duration = without_waves(outcomes%contact_time/hertz_time(outcomes))
    end function static_duration
 
-   !> Limit of a number by two impacts of which the second one has half of the waves' share
+   !> Number extrapolated to a share of zero, from two impacts, the second with half the share
    pure function without_waves(numbers) result(limit)
       real(wp), intent(in) :: numbers(:)
       real(wp) :: limit
@@ -111,7 +112,7 @@ contains
       velocity = sqrt(2.0_wp*outcome%initial_energy/strike%mass)
    end function velocity
 
-   !> T of Hertz' impact on the half space [s]
+   !> Time scale T of Hertz's impact on the half space [s]
    elemental function hertz_time(outcome) result(scale)
       type(outcome_t), intent(in) :: outcome
       real(wp) :: scale
@@ -122,18 +123,19 @@ contains
          *sqrt(velocity(outcome))))**0.4_wp
    end function hertz_time
 
-   !> Thin plates. A layer has C = (alpha/s) [1 - (2/(5 pi)) (6 - 6 nu)^(1/2) y ln y + O(y)] with
-   !> y = s H/c_s where the footprint is small against H. The term with ln x, x = H/(c_s T), is a
-   !> spring between sphere and plate, so the restitution is off by
+   !> Thin plates. If the contact area is small against H, a layer has the compliance
+   !> C = (alpha/s) [1 - (2/(5 pi)) (6 - 6 nu)^(1/2) y ln y + O(y)]
+   !> with y = s H/c_s. The term with ln x, x = H/(c_s T), acts as a spring between sphere and
+   !> plate, so the restitution differs from its thin limit by
    !>
    !>     x [A ln(1/x) + B] + O(x^2 ln(x)^2)
    !>
-   !> with A of the impact with such a spring, tests/reference/make_thin_limit.py
+   !> with A from the impact with such a spring by tests/reference/make_thin_limit.py
    subroutine thin_body(law)
       type(law_t), intent(inout) :: law
 
       real(wp), parameter :: a_elastic = 0.0248552_wp, a_sls = 0.0152017_wp
-      ! at the second x
+      ! tolerances at the second x
       real(wp), parameter :: left = 1.0e-4_wp, left_of_a = 2.0e-4_wp
       character(len=*), parameter :: why = 'a twentieth of x', &
          why_a = 'x ln(x)^2 of the first plate, and the accuracies over x of the second one'
@@ -163,9 +165,9 @@ contains
       call law%add_row('x ln(1/x) of it, SLS', a_sls, 0.0_wp, left_of_a, why_a, measure=approach)
    end subroutine thin_body
 
-   !> Rate over ln(1/x) of the difference to the thin plate over x
+   !> Slope over ln(1/x) of the difference to the thin plate divided by x, which tends to A
    pure function approach(outcomes) result(rate)
-      !> Of two layers and of their thin limits
+      !> Outcomes of two layers and of their thin limits
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: rate
 

@@ -1,4 +1,4 @@
-!> Laws of the verification table with a closed form or a scaling: elastic impacts, materials
+!> Laws of the verification table with a closed form or a scaling law: elastic impacts, materials
 !> without a time scale, limits of models
 module vcor_verify_closed_forms
    use vcor_impact_outcome, only : outcome_t
@@ -12,17 +12,17 @@ module vcor_verify_closed_forms
 
    public :: hertz, zener, power_law, mittag_leffler, weak_maxwell, scaling, limits
 
-   !> Modulus of the elastic bodies, glassy modulus of the paper's standard linear solid [Pa]
+   !> Modulus of the elastic bodies, and glassy modulus of the paper's standard linear solid [Pa]
    real(wp), parameter :: modulus = 15.0e6_wp
-   !> Parts of the contact time over the time of relaxation in `weak_maxwell`, falling by 8 [-]
+   !> Contact time over relaxation time in `weak_maxwell`, each an eighth of the one before [-]
    real(wp), parameter :: epsilon(3) = 1.0e-2_wp*[1.0_wp, 1.0_wp/8.0_wp, 1.0_wp/64.0_wp]
 
 contains
 
-   !> Hertz's impact, m s'' = -k s^1.5 with s(0) = 0, s'(0) = v0. By the energy integral
-   !> s'^2 = v0^2 - (4/5) (k/m) s^(5/2) the largest indentation is (5/4)^(2/5) v0 T with
+   !> Hertz's impact, m s'' = -k s^1.5 with s(0) = 0, s'(0) = v0, loses no energy. By the energy
+   !> integral s'^2 = v0^2 - (4/5) (k/m) s^(5/2) the largest indentation is (5/4)^(2/5) v0 T with
    !> T = (m/(k sqrt(v0)))^(2/5), the largest force k s^1.5 = (5/4)^(3/5) m v0/T, and the duration
-   !> 2 int ds/s' = (4/5) B(2/5, 1/2) (5/4)^(2/5) T = 3.2180654597190435 T. Nothing is lost
+   !> 2 int ds/s' = (4/5) B(2/5, 1/2) (5/4)^(2/5) T = 3.2180654597190435 T
    subroutine hertz(law)
       type(law_t), intent(inout) :: law
 
@@ -46,10 +46,10 @@ contains
    end subroutine hertz
 
    !> Zener's elastic sphere on an elastic plate that carries waves away,
-   !> sigma'' + sigma^1.5 + lambda (sigma^1.5)' = 0 with sigma(0) = 0, sigma'(0) = 1: restitution
-   !> -sigma' at the end is a function of lambda alone. The numbers are those of the script
-   !> tests/reference/make_kelvin_voigt.py, by Taylor series in 50 digits, and agree with the 13
-   !> digits of tests/reference/reference.csv, which come from another method
+   !> sigma'' + sigma^1.5 + lambda (sigma^1.5)' = 0 with sigma(0) = 0, sigma'(0) = 1. The
+   !> restitution -sigma' at the end depends on lambda alone. The values come from Taylor series in
+   !> 50 digits, tests/reference/make_kelvin_voigt.py, and agree with the 13 digits of
+   !> tests/reference/reference.csv, which come from another method
    subroutine zener(law)
       type(law_t), intent(inout) :: law
 
@@ -69,8 +69,8 @@ contains
       end do
    end subroutine zener
 
-   !> A pure power law has no time scale: in units of its own T the impact has no parameter left but
-   !> the exponent. Two impacts that differ in everything else show it
+   !> A pure power law has no time scale: in units of its own T the exponent is the only parameter
+   !> of the impact. Two impacts with different values of everything else must agree
    subroutine power_law(law)
       type(law_t), intent(inout) :: law
 
@@ -95,11 +95,11 @@ contains
       end do
    end subroutine power_law
 
-   !> Mittag-Leffler's function of exponent 1/2, E_0 + E_1 E_{1/2}(-sqrt(t/tau)), is CERF's
-   !> exp(b^2 t) erfc(b sqrt(t)) with b = tau^(-1/2), and that of exponent 1 is exp(-t/tau), the
-   !> standard linear solid. The two of each pair are different code for E(t), its integral and its
-   !> spectrum: of exponent 1 itself a material is a Prony series, so it is taken next to it, where
-   !> cor is off by less than the distance
+   !> With exponent 1/2 the Mittag-Leffler function, E_0 + E_1 E_{1/2}(-sqrt(t/tau)), is CERF's
+   !> exp(b^2 t) erfc(b sqrt(t)) with b = tau^(-1/2); with exponent 1 it is exp(-t/tau), the
+   !> standard linear solid. The two models of each pair have different code for E(t), its integral
+   !> and its spectrum. With exponent exactly 1 the material would be a Prony series, so an exponent
+   !> next to 1 is used; it changes cor by less than its distance from 1
    subroutine mittag_leffler(law)
       type(law_t), intent(inout) :: law
 
@@ -129,13 +129,13 @@ contains
    !>
    !>     W_h = int F ds = (1/tau) int F s dt - (3/5) k s0^(5/2),   k s0^(3/2) = I0/tau
    !>
-   !> at the end of contact. In Hertz's impact int F s dt = m int s'^2 dt = (10/9) W0 t_c and I0 = 2
-   !> m v0. With epsilon = t_c/tau and t_c = 3.218 T that makes
+   !> at the end of contact. In Hertz's impact int F s dt = m int s'^2 dt = (10/9) W0 t_c and
+   !> I0 = 2 m v0. With epsilon = t_c/tau and t_c = 3.218 T
    !>
    !>     (1 - e)/epsilon = 5/9 - c epsilon^(2/3) + O(epsilon),   c = (3/5) (2/3.218)^(5/3)
    !>
-   !> and all powers of epsilon^(1/3) from there on. Three impacts with epsilon falling by 8 give
-   !> the limit with the powers 2/3 and 1 removed, and c with the two powers after it removed
+   !> with all powers of epsilon^(1/3) from there on. Three values of epsilon, each an eighth of the
+   !> one before, give the limit without the powers 2/3 and 1, and c without the next two
    subroutine weak_maxwell(law)
       type(law_t), intent(inout) :: law
 
@@ -158,7 +158,7 @@ contains
          'accuracy over (t_c/tau)^(5/3), and the power 1 that is left', measure=maxwell_slope)
    end subroutine weak_maxwell
 
-   !> Limit of (1 - cor)/epsilon, the powers 2/3 and 1 removed
+   !> Limit of (1 - cor)/epsilon, extrapolated without the powers 2/3 and 1
    pure function maxwell_limit(outcomes) result(limit)
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: limit
@@ -170,7 +170,7 @@ contains
       limit = (8.0_wp*first(2) - first(1))/7.0_wp
    end function maxwell_limit
 
-   !> Coefficient of epsilon^(2/3) in (1 - cor)/epsilon, the next powers 1/3 and 2/3 removed
+   !> Coefficient of epsilon^(2/3) in (1 - cor)/epsilon, without the relative powers 1/3 and 2/3
    pure function maxwell_slope(outcomes) result(slope)
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: slope
@@ -182,14 +182,14 @@ contains
       slope = (4.0_wp*first(2) - first(1))/3.0_wp
    end function maxwell_slope
 
-   !> Without a plate mass m, Hertz radius R and speed enter the impact through m/sqrt(R v0) alone.
-   !> Factors that are powers of 4 keep that ratio to the last bit, so that both impacts take the
-   !> same steps
+   !> Without a plate the impact depends on mass m, Hertz radius R and velocity only through
+   !> m/sqrt(R v0). Factors that are powers of 4 leave this ratio exact in floating point, so both
+   !> impacts take the same steps
    subroutine scaling(law)
       type(law_t), intent(inout) :: law
 
       real(wp), parameter :: velocity = 3.0_wp, mass = 0.02_wp, radius = 0.01_wp
-      ! some tens of roundings of numbers near 1
+      ! some tens of rounding errors of numbers near 1
       real(wp), parameter :: rounding = 1.0e-14_wp
       type(material_data_t) :: data(2)
       type(strike_t) :: one
@@ -215,10 +215,10 @@ contains
       end do
    end subroutine scaling
 
-   !> A standard linear solid that relaxes never, or at once, is elastic with its glassy, or its
-   !> rubbery modulus. What is left of the other limit: a relaxation by beta t0; and a dashpot of
-   !> viscosity E_1/beta beside the rubbery spring E_r, which without the plate costs
-   !> (6/5) (5/4)^(3/5) B(3/5, 3/2) E_1/(E_r beta T) of the restitution, with it less
+   !> A standard linear solid that never relaxes, or relaxes at once, is elastic with its glassy or
+   !> its rubbery modulus. The remaining differences are a relaxation of beta t0, and a dashpot of
+   !> viscosity E_1/beta beside the rubbery spring E_r. Without a plate the dashpot reduces cor by
+   !> (6/5) (5/4)^(3/5) B(3/5, 3/2) E_1/(E_r beta T), with a plate by less
    subroutine limits(law)
       type(law_t), intent(inout) :: law
 

@@ -1,4 +1,4 @@
-!> The impacts of Green's paper in the verification table: own reference values and printed ones
+!> Impacts of Green's paper in the verification table: our own reference values, and printed ones
 module vcor_verify_golden
    use vcor_impact_plate, only : waves_frozen, waves_hereditary, waves_none, waves_relaxing
    use vcor_kinds, only : wp
@@ -10,20 +10,20 @@ module vcor_verify_golden
 
    public :: golden, beyond, printed
 
-   !> Quantities that are compared
+   !> Compared quantities
    character(len=*), parameter :: quantity(6) = [character(len=20) :: 'cor', 'cor_sphere', &
       'contact_time', 'max_indentation', 'max_force', 'residual_ratio']
    !> Units of the table: milliseconds and millimetres
    real(wp), parameter :: unit(6) = [1.0_wp, 1.0_wp, 1.0e-3_wp, 1.0e-3_wp, 1.0_wp, 1.0_wp]
-   !> Their names
+   !> Names in the table
    character(len=*), parameter :: label(6) = [character(len=24) :: 'cor', 'cor_sphere', &
       'contact time [ms]', 'largest indentation [mm]', 'largest force [N]', 'residual ratio']
 
 contains
 
    !> Steel sphere on plates of four materials at 10 m/s. The values are the rows sls_v10,
-   !> butyl_prony_v10, butyl_cerf_v10 and butyl_power_law_v10 of tests/reference/reference.csv, made
-   !> by a method that shares nothing with vcor's (spectral collocation of the Volterra equation)
+   !> butyl_prony_v10, butyl_cerf_v10 and butyl_power_law_v10 of tests/reference/reference.csv, from
+   !> spectral collocation of the Volterra equation, which has nothing in common with vcor's methods
    subroutine golden(law)
       type(law_t), intent(inout) :: law
 
@@ -53,8 +53,8 @@ contains
       end do
    end subroutine golden
 
-   !> The SLS impact where contact, plate or pair are others than the paper's. The values are the
-   !> impacts 6, 7, 9, 10, 66 and 67 of tests/reference/make_impacts.py, made as those above
+   !> The SLS impact with another contact, plate or pair than the paper's. The values are the
+   !> impacts 6, 7, 9, 10, 66 and 67 of tests/reference/make_impacts.py, by the same method as above
    subroutine beyond(law)
       type(law_t), intent(inout) :: law
 
@@ -87,8 +87,8 @@ contains
       end do
    end subroutine beyond
 
-   !> Printed digits of the paper that its discretisation does not touch; the others are repeated
-   !> with its own scheme, see docs/reproducing_the_paper.md
+   !> Digits printed in the paper that do not depend on its discretisation; the others are
+   !> reproduced with its scheme, see docs/reproducing_the_paper.md
    subroutine printed(law)
       type(law_t), intent(inout) :: law
 
@@ -107,7 +107,7 @@ contains
          'min_frequency')
    end subroutine printed
 
-   !> Materials of the paper: Eqs. (14), (26), (24) and (23-b)
+   !> Materials of the paper, Eqs. (14), (26), (24) and (23-b)
    pure function material(number) result(data)
       !> Number, 1 .. 4
       integer, intent(in) :: number

@@ -1,4 +1,4 @@
-!> Laws of the viscoelastic sphere of Kelvin and Voigt for the verification table
+!> Laws of the verification table for a viscoelastic sphere of Kelvin and Voigt
 !>
 !> A spring beside a dashpot, F = k (u + A u') with A = viscosity/modulus, is the contact of
 !> Kuwabara and Kono (1987) and Brilliantov et al. (1996), F = k (s^1.5 + 3/2 A sqrt(s) s'). In
@@ -8,20 +8,20 @@
 !>
 !> and ends where x'' = 0, that is F = 0 (Schwager and Poeschel 2008), at x = -b x' > 0.
 !>
-!> Zener's elastic plate obeys the same equation with b = (3/2) lambda; there F is the spring's
-!> force alone and the contact ends at x = 0. Between the two ends w = -x' obeys
+!> Zener's elastic plate obeys the same equation with b = (3/2) lambda; there F is the force of the
+!> spring alone and the contact ends at x = 0. Between the two ends w = -x' obeys
 !> dw/dx = b sqrt(x) - x^1.5/w. With w = e y and x = b e xi, e being the restitution at x = 0,
 !>
 !>     dy/dxi = p (sqrt(xi) - xi^1.5/y),   y(0) = 1,   p = b^(5/2) sqrt(e),
 !>
-!> so the two restitutions are related by Y(p) = y at xi = y,
+!> so Y(p), the value of y where xi = y, relates the two restitutions:
 !>
 !>     e_F=0 = e_s=0 Y(p),   Y = 1 + 4/15 p + 13/150 p^2 + 4897/160875 p^3 + ...
 !>
 !> With sqrt(x) as the variable and dt = sqrt(x) dsigma the equation is polynomial. So e_s=0 is
-!> analytic in b and e_F=0 in sqrt(b), and the coefficients of the series are those of the first
-!> one, 1 - C b + (3/5) C^2 b^2 + ..., with those of Y. C = (4/5) (5/4)^(3/5) B(3/5, 3/2) is the
-!> work of the dashpot along Hertz's impact; from b^3 on they are fitted to solutions in 50 digits
+!> analytic in b and e_F=0 in sqrt(b). The series of e_F=0 is Y times that of e_s=0,
+!> 1 - C b + (3/5) C^2 b^2 + ..., where C = (4/5) (5/4)^(3/5) B(3/5, 3/2) is the work of the dashpot
+!> along Hertz's impact; the coefficients of e_s=0 from b^3 on are fitted to solutions in 50 digits
 !> (tests/reference/make_kelvin_voigt.py).
 module vcor_verify_kelvin_voigt
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
@@ -35,7 +35,7 @@ module vcor_verify_kelvin_voigt
 
    public :: series, pade, exact, zener_relation
 
-   !> Modulus of the spring [Pa]; in units of T nothing depends on it
+   !> Modulus of the spring [Pa]; in units of T nothing depends on its value
    real(wp), parameter :: modulus = 15.0e6_wp
    !> C = (4/5) (5/4)^(3/5) B(3/5, 3/2) = 1.1534488580952888
    real(wp), parameter :: c = 0.8_wp*1.25_wp**0.6_wp*gamma(0.6_wp)*gamma(1.5_wp)/gamma(2.1_wp)
@@ -47,15 +47,14 @@ module vcor_verify_kelvin_voigt
    real(wp), parameter :: ends(0:6) = [1.0_wp, 4.0_wp/15.0_wp, 13.0_wp/150.0_wp, &
       4897.0_wp/160875.0_wp, 453263.0_wp/40540500.0_wp, 4.23002985517994e-3_wp, &
       1.63464708309717e-3_wp]
-   !> Damping of the two impacts that show the order of the remainder
+   !> Damping b of the two impacts that show the order of the remainder
    real(wp), parameter :: halved(2) = [0.02_wp, 0.01_wp]
 
 contains
 
-   !> The series of Schwager and Poeschel in powers of v0^(1/10), for weak dashpots: three speeds,
-   !> one material. What is left out begins with b^(11/2) and a coefficient below 1. Cut after
-   !> b^(7/2) the series leaves a remainder whose order, from b and b/2, is 4 and what the next two
-   !> terms add to it
+   !> The series of Schwager and Poeschel in powers of v0^(1/10), for a weak dashpot at three
+   !> velocities. The omitted terms begin with b^(11/2) and a coefficient below 1. The order of the
+   !> remainder after b^(7/2), measured with b and b/2, is 4 plus the effect of the next two terms
    subroutine series(law)
       type(law_t), intent(inout) :: law
 
@@ -91,11 +90,10 @@ contains
          measure=order_of_remainder)
    end subroutine series
 
-   !> The Pade approximant [1/4] in sqrt(b) of Mueller and Poeschel. It is made of the series up to
-   !> b^(5/2), so its constants follow: with a = 2/(3 C^2) it is
-   !> (1 + a x)/(1 + a x + C x^2 + a C x^3 + (2/5) C^2 x^4), x = sqrt(b), and
-   !> a = 0.501086, C = 1.15345, a C = 0.577977, (2/5) C^2 = 0.532177. Its own error, against
-   !> solutions in 50 digits, is the tolerance
+   !> The Pade approximant [1/4] in sqrt(b) of Mueller and Poeschel, which agrees with the series up
+   !> to b^(5/2). So with x = sqrt(b) and a = 2/(3 C^2) it is
+   !> (1 + a x)/(1 + a x + C x^2 + a C x^3 + (2/5) C^2 x^4), where a = 0.501086, C = 1.15345,
+   !> a C = 0.577977 and (2/5) C^2 = 0.532177. The tolerance is its error against 50 digits
    subroutine pade(law)
       type(law_t), intent(inout) :: law
 
@@ -117,7 +115,7 @@ contains
       end do
    end subroutine pade
 
-   !> The equation in x, solved by Taylor series in 50 digits
+   !> The scaled equation of motion, solved by Taylor series in 50 digits
    subroutine exact(law)
       type(law_t), intent(inout) :: law
 
@@ -135,8 +133,9 @@ contains
       end do
    end subroutine exact
 
-   !> Zener's plate against the dashpot: e_F=0 = e_s=0 Y(p), with Y up to p^6. What is left out is
-   !> below p^7/(1 - p), as the coefficients fall from 4/15 on, and p is largest with e = 1
+   !> Zener's plate against the dashpot: e_F=0 = e_s=0 Y(p), with Y up to p^6. The coefficients fall
+   !> from 4/15 on, and p is largest with e = 1, so the omitted terms are below p^7/(1 - p) times
+   !> the last coefficient
    subroutine zener_relation(law)
       type(law_t), intent(inout) :: law
 
@@ -166,8 +165,7 @@ contains
       strike%plate = kelvin_voigt(modulus, b/1.5_wp*time_scale(strike, modulus)*modulus)
    end function damped
 
-   !> Order of the remainder that the series leaves when cut after b^(7/2), from the impacts of
-   !> damping `halved`
+   !> Order of the remainder of the series after b^(7/2), from the impacts of damping `halved`
    pure function order_of_remainder(outcomes) result(order)
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: order
@@ -182,7 +180,7 @@ contains
       if (remainder(1)*remainder(2) > 0.0_wp) order = log(remainder(1)/remainder(2))/log(2.0_wp)
    end function order_of_remainder
 
-   !> Restitution at F = 0 from that at s = 0, that of Zener's plate, which is the second impact
+   !> Restitution at F = 0 from that at s = 0, which is that of the second impact, Zener's plate
    pure function from_zener(outcomes) result(cor)
       type(outcome_t), intent(in) :: outcomes(:)
       real(wp) :: cor

@@ -1,8 +1,8 @@
-!> A law of the verification table, and the judge of its rows
+!> Laws of the verification table, and the judgement of their rows
 !>
-!> A law (Hertz's, Zener's ...) is a list of checks: impacts, and rows that say what is expected of
-!> their outcomes and how far off it may be, with the reason. Each check is solved by both methods,
-!> ive and direct, and its rows are judged for each. What does not pass fails, NaN too.
+!> A law (Hertz's, Zener's ...) is a list of checks. A check has impacts, and rows that state the
+!> expected value of a quantity of their outcomes, the tolerance and its reason. Both methods, ive
+!> and direct, solve each check, and its rows are judged for each method. NaN fails.
 module vcor_verify_law
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_error, only : error_t
@@ -19,21 +19,21 @@ module vcor_verify_law
 
    public :: row_t, law_t, verdict_t, judge, evaluate_law, others_follow
 
-   !> Why most tolerances are what they are: that of cor ...
+   !> Reason of most tolerances of cor ...
    character(len=*), parameter :: as_asked = 'twice what the method is asked for'
-   !> ... and those of other quantities: the steps are chosen for cor, and the others follow with
-   !> errors of the same order
+   !> ... and of other quantities: the steps are chosen for cor, and the errors of the others are of
+   !> the same order
    character(len=*), parameter :: others_follow = 'ten times the accuracy asked of cor'
    !> Methods that solve the impacts
    character(len=*), parameter :: methods(2) = [character(len=6) :: 'ive', 'direct']
-   !> Accuracies that they are to show, asked for half of it. Half of that of ive is the smallest
-   !> that it takes, the other half is left to rounding, some 5e-13 per panel. That of direct is its
-   !> default: below it the estimate of its error is too small where an elastic contact ends on a
-   !> moving plate
+   !> Accuracies that the methods must reach; half of these is requested. For ive half of it is the
+   !> smallest value that the solver accepts, and the other half allows for rounding, about 5e-13
+   !> per panel. For direct it is the default: below it the error estimate is too small if an
+   !> elastic contact ends on a moving plate
    real(wp), parameter :: accuracies(2) = [2.0e-11_wp, 1.0e-6_wp]
 
    abstract interface
-      !> A number that is made of the outcomes of a check, in the order of its impacts
+      !> A number computed from the outcomes of a check, in the order of its impacts
       pure function measure_i(outcomes) result(value)
          import :: outcome_t, wp
          type(outcome_t), intent(in) :: outcomes(:)
@@ -41,29 +41,29 @@ module vcor_verify_law
       end function measure_i
    end interface
 
-   !> What is expected of the outcomes of a check
+   !> Expected value of a quantity of the outcomes of a check
    type :: row_t
       character(len=40) :: name = ''
-      !> The number that is known
+      !> Expected value
       real(wp) :: expected = 0.0_wp
-      !> Largest deviation that passes, in the unit of the number: so many accuracies of the method
-      !> and so much more
+      !> Largest deviation that passes, in the unit of the value: `times` the accuracy of the method
+      !> plus `more`
       real(wp) :: times = 1.0_wp, more = 0.0_wp
-      !> Why the tolerance is what it is
+      !> Reason of the tolerance
       character(len=100) :: reason = as_asked
-      !> What is found: this quantity of this outcome, in this unit ...
+      !> The value found: this quantity of this outcome, in this unit ...
       character(len=20) :: quantity = 'cor'
       integer :: subject = 1
       real(wp) :: unit = 1.0_wp
-      !> ... or, if there is one, this number made of all outcomes
+      !> ... or, if associated, this function of all outcomes
       procedure(measure_i), pointer, nopass :: measure => null()
-      !> What takes the place of `expected`: the same quantity of another outcome, 0: none ...
+      !> Outcome whose same quantity is expected instead of `expected`; 0: none ...
       integer :: twin = 0
-      !> ... or, if there is one, this number made of all outcomes
+      !> ... or, if associated, this function of all outcomes
       procedure(measure_i), pointer, nopass :: expectation => null()
    end type row_t
 
-   !> Impacts and what is expected of them; the first `count` rows are in use
+   !> Impacts and the rows about them; the first `count` rows are in use
    type :: check_t
       type(strike_t), allocatable :: strikes(:)
       !> Whether ive alone solves them
@@ -74,7 +74,7 @@ module vcor_verify_law
 
    !> Checks from one source; the first `count` are in use
    type :: law_t
-      !> What the law says, and where its numbers come from, one line each
+      !> What the law says and the source of its numbers, one line each
       character(len=:), allocatable :: title, source
       type(check_t), allocatable :: checks(:)
       integer :: count = 0
@@ -84,12 +84,12 @@ module vcor_verify_law
       procedure :: add_row
    end type law_t
 
-   !> What came out of a row by one method
+   !> Judgement of a row for one method
    type :: verdict_t
       character(len=40) :: name = ''
       character(len=6) :: method = ''
       character(len=100) :: reason = ''
-      !> NaN for what there is not
+      !> NaN if there is no value
       real(wp) :: expected = 0.0_wp, found = 0.0_wp, deviation = 0.0_wp
       real(wp) :: tolerance = 0.0_wp
       logical :: passed = .false.
@@ -122,7 +122,7 @@ contains
       if (present(ive_only)) self%checks(self%count)%ive_only = ive_only
    end subroutine add_check
 
-   !> Append a row to the last check; what is left out has the default of `row_t`
+   !> Append a row to the last check; absent arguments take the defaults of `row_t`
    subroutine add_row(self, name, expected, times, more, reason, quantity, unit, subject, twin, &
                       measure, expectation)
       class(law_t), intent(inout) :: self
@@ -154,7 +154,7 @@ contains
    !> Solve the impacts of a law and judge its rows
    subroutine evaluate_law(law, verdicts)
       type(law_t), intent(in) :: law
-      !> Check by check, for each its rows by ive, then those by direct
+      !> For each check the rows by ive, then those by direct
       type(verdict_t), allocatable, intent(out) :: verdicts(:)
 
       type(outcome_t), allocatable :: outcomes(:)
@@ -171,7 +171,7 @@ contains
       end do
    end subroutine evaluate_law
 
-   !> Outcomes of the impacts of a check; none if one of them fails or does not end in separation
+   !> Outcomes of the impacts of a check; shape (0) if one fails or does not end in separation
    subroutine solve_check(check, method, outcomes)
       type(check_t), intent(in) :: check
       integer, intent(in) :: method
@@ -189,7 +189,7 @@ contains
       allocate (outcomes(0))
       do i = 1, size(check%strikes)
          call check%strikes(i)%get_impact(impact, error)
-         ! a layer is solved to what it can be
+         ! a layer has no accuracy to request: it is solved as accurately as possible
          if (check%strikes(i)%waves == waves_body) settings%accuracy = 0.0_wp
          if (.not. allocated(error)) call solve_impact(impact, outcome(i), error, settings)
          if (allocated(error)) return
@@ -203,7 +203,7 @@ contains
       type(row_t), intent(in) :: row
       !> Number of the method: 1 ive, 2 direct
       integer, intent(in) :: method
-      !> Outcomes in the order of the impacts; none: an impact had no outcome
+      !> Outcomes in the order of the impacts; shape (0): an impact had no outcome
       type(outcome_t), intent(in) :: outcomes(:)
       type(verdict_t) :: verdict
 

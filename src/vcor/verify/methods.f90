@@ -1,10 +1,10 @@
-!> One case by several methods: what of its outcome can be trusted
+!> One case solved by several methods: how many digits of its outcome can be trusted
 !>
-!> The internal variables at the accuracy of the case and at a hundredth of it, product integration
-!> with three steps halved from one to the next, and the case's own scheme where it is another one.
-!> Product integration gets its steps from the contact time, not from the case. The two methods
-!> share the equation of motion and nothing else, so what they agree on is its solution. The judge
-!> says whether they agree within the errors they state.
+!> The solutions are internal variables at the accuracy of the case and at a hundredth of it,
+!> product integration with dt, dt/2 and dt/4, and the case's own scheme if it is different. The
+!> step dt comes from the contact time, not from the case. The two methods have only the equation of
+!> motion in common, so a result on which they agree is its solution. The judgement is whether they
+!> agree within their stated errors.
 module vcor_verify_methods
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_quiet_nan, ieee_value
    use vcor_case_case, only : case_t
@@ -25,27 +25,27 @@ module vcor_verify_methods
    public :: attempt_count, attempt_case, attempt_first, attempt_refined, attempt_halved
    public :: judge_ends, judge_numbers, is_honest, error_of_best
 
-   !> How many times the stated error the true one may be: measured over the cases of
-   !> tests/reference with the steps used here, it is below 3 wherever it is above `rounding`
+   !> Largest true error over the stated one: over the cases of tests/reference with these steps the
+   !> ratio is below 3 wherever the error is above `rounding`
    real(wp), parameter :: honest_factor = 3.0_wp
-   !> Accuracy of quantities other than cor, and of the energy budget, over that of cor: the steps
-   !> are chosen for cor, the others follow with errors of the same order
+   !> Accuracy of the energy budget and of quantities other than cor over that of cor: the steps are
+   !> chosen for cor, and the errors of the others are of the same order
    real(wp), parameter :: other_quantities = 10.0_wp
-   !> What rounding and the error of the reference itself leave of any number, over its size
+   !> Relative error of any number by rounding and by the error of the reference itself
    real(wp), parameter :: rounding = 1.0e-10_wp
 
    !> Number of attempts
    integer, parameter :: attempt_count = 6
-   !> The case's own solver, if it is none of the others
+   !> The case's own solver, if it differs from the others
    integer, parameter :: attempt_case = 1
-   !> The method that `auto` takes, at the accuracy of the case
+   !> The first method of `auto`, at the accuracy of the case
    integer, parameter :: attempt_first = 2
    !> The internal variables, refined
    integer, parameter :: attempt_refined = 3
    !> Product integration with dt, dt/2 and dt/4
    integer, parameter :: attempt_halved(3) = [4, 5, 6]
 
-   !> Quantities that are compared, cor first
+   !> Compared quantities, cor first
    character(len=*), parameter :: compared_names(7) = [character(len=20) :: 'cor', 'cor_sphere', &
       'contact_time', 'max_indentation', 'max_force', 'residual_indentation', &
       'hysteresis_energy']
@@ -54,17 +54,17 @@ module vcor_verify_methods
    type :: attempt_t
       !> Whether it was tried
       logical :: made = .false.
-      !> How: ive, direct, or the scheme of the case
+      !> ive, direct, or the scheme of the case
       character(len=21) :: label = ''
-      !> Accuracy that was asked for, 0 where the step is given
+      !> Requested accuracy; 0 if the step is given
       real(wp) :: accuracy = 0.0_wp
-      !> Step [s], 0 where it follows from the accuracy
+      !> Step [s]; 0 if it follows from the accuracy
       real(wp) :: time_step = 0.0_wp
-      !> What went wrong, one line; unallocated if nothing did
+      !> Reason of a failure, one line; unallocated if there was none
       character(len=:), allocatable :: failure
-      !> Outcome, if nothing went wrong
+      !> Outcome, if there was no failure
       type(outcome_t) :: outcome
-      !> Distances of its cor and cor_sphere from the most accurate ones
+      !> Distances of its cor and cor_sphere from the best ones [-]
       real(wp) :: seen(2) = 0.0_wp
    contains
       procedure :: solve
@@ -76,42 +76,42 @@ module vcor_verify_methods
    !> One quantity by all methods
    type :: compared_t
       character(len=20) :: name = ''
-      !> Value of each attempt, NaN where there is none
+      !> Value of each attempt, NaN if there is none
       real(wp) :: value(attempt_count) = 0.0_wp
-      !> Product integration, extrapolated
+      !> Product integration, extrapolated to dt = 0
       type(richardson_t) :: direct
       !> The most accurate value
       real(wp) :: best = 0.0_wp
-      !> What its digits are counted against: its own size, or that of what it is a part of
+      !> Size that the digits are relative to: its own, or that of the whole that it is a part of
       real(wp) :: scale = 1.0_wp
       !> Significant digits that can be trusted
       integer :: digits = 0
    end type compared_t
 
-   !> All of it
+   !> The attempts and their judgement
    type :: comparison_t
       !> Solutions, by the constants `attempt_*`
       type(attempt_t) :: attempts(attempt_count)
-      !> Whether there are two methods to compare
+      !> Whether two methods are compared
       logical :: two_methods = .true.
       !> Whether the bodies separate in all solutions
       logical :: separated = .false.
       !> Quantities, defined if they separate
       type(compared_t) :: compared(size(compared_names))
-      !> The first thing that is wrong, one line; unallocated if nothing is
+      !> The first objection, one line; unallocated if there is none
       character(len=:), allocatable :: objection
    end type comparison_t
 
 contains
 
-   !> Solve a case by all methods and judge what comes out
+   !> Solve a case by all methods and judge the results
    subroutine compare(case, impact, comparison, error)
       !> A validated case
       type(case_t), intent(in) :: case
       type(impact_t), intent(in) :: impact
       type(comparison_t), intent(out) :: comparison
-      !> What no method can do; numerical failures are part of the comparison. Unallocated on
-      !> success
+      !> An error that no method can avoid, but no numerical failure: those are part of the
+      !> comparison. Unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(solver_settings_t) :: settings
@@ -126,13 +126,13 @@ contains
          call try(first, settings, impact, error)
          if (allocated(error)) return
          if (method == 'auto' .and. allocated(first%failure)) then
-            ! as auto does: direct by itself where ive fails
+            ! like `auto`, use direct alone if ive fails
             comparison%two_methods = .false.
             first = attempt_t()
             settings = settings_of(case, 'direct')
             call try(first, settings, impact, error)
          else
-            ! a hundredth is more than anybody has asked for, and may be more than ive can do
+            ! a hundredth of the accuracy may be more than ive can reach
             settings%accuracy = max(0.01_wp*settings%accuracy, finest_accuracy)
             call try(comparison%attempts(attempt_refined), settings, impact, error, lenient=.true.)
          end if
@@ -157,9 +157,9 @@ contains
       type(attempt_t), intent(inout) :: attempt
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
-      !> What is no numerical failure; unallocated on success
+      !> An error that is not numerical; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Whether an error far above the accuracy is no failure; absent: it is one
+      !> Whether to accept a result whose error is far above the accuracy; absent: it is a failure
       logical, intent(in), optional :: lenient
 
       class(solver_t), allocatable :: solver
@@ -171,7 +171,7 @@ contains
       if (.not. allocated(error)) call attempt%solve(solver, impact, error, lenient)
    end subroutine try
 
-   !> What the attempts take over from the case; not its steps, its scheme or its ghost lines
+   !> Settings of the case for the attempts, without step, scheme or motion after separation
    function settings_of(case, method) result(settings)
       !> A validated case
       type(case_t), intent(in) :: case
@@ -192,26 +192,26 @@ contains
          call case%get('solver', 'volterra_coefficient', settings%second_coefficient)
    end function settings_of
 
-   !> Product integration with steps dt, dt/2 and dt/4; once, and with steps of its own, where the
-   !> bodies do not separate and there is no number to extrapolate
+   !> Product integration with steps dt, dt/2 and dt/4. Without separation there is no number to
+   !> extrapolate, and it runs once with steps of its own
    subroutine halve(attempts, settings, impact, error)
-      !> All attempts; the first one is made
+      !> All attempts; the first one has been made
       type(attempt_t), intent(inout) :: attempts(:)
-      !> Settings but for method and step
+      !> Settings except method and step
       type(solver_settings_t), intent(in) :: settings
       type(impact_t), intent(in) :: impact
       type(error_t), allocatable, intent(out) :: error
 
-      ! steps per contact
+      ! steps per contact time
       real(wp) :: per_contact
       type(solver_settings_t) :: direct
       integer :: i
 
       direct = settings
       direct%method = 'direct'
-      ! the steps are given
+      ! zero accuracy: the step is given
       direct%accuracy = 0.0_wp
-      ! each takes two values of the compliance of a layer
+      ! each step takes two values of the compliance of a layer
       per_contact = merge(200.0_wp, 1000.0_wp, impact%plate%layered())
       if (attempts(attempt_first)%separated()) then
          direct%time_step = attempts(attempt_first)%outcome%contact_time/per_contact
@@ -229,14 +229,14 @@ contains
       end do
    end subroutine halve
 
-   !> Solve, and keep a numerical failure
+   !> Solve, and store a numerical failure
    subroutine solve(self, solver, impact, error, lenient)
       class(attempt_t), intent(inout) :: self
       class(solver_t), intent(in) :: solver
       type(impact_t), intent(in) :: impact
-      !> What is no numerical failure; unallocated on success
+      !> An error that is not numerical; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Whether an error far above the accuracy is no failure; absent: it is one
+      !> Whether to accept a result whose error is far above the accuracy; absent: it is a failure
       logical, intent(in), optional :: lenient
 
       type(trajectory_t) :: trajectory
@@ -257,7 +257,7 @@ contains
       end if
    end subroutine solve
 
-   !> Errors of cor and cor_sphere that a solution with separation states
+   !> Stated errors of cor and cor_sphere of a solution with separation
    pure function stated(self)
       class(attempt_t), intent(in) :: self
       real(wp) :: stated(2)
@@ -265,7 +265,7 @@ contains
       stated = [self%outcome%cor_error, self%outcome%cor_sphere_error]
    end function stated
 
-   !> Whether it ended in separation
+   !> Whether the solution ended in separation
    pure function separated(self)
       class(attempt_t), intent(in) :: self
       logical :: separated
@@ -274,7 +274,7 @@ contains
       if (separated) separated = self%outcome%status == contact_separated
    end function separated
 
-   !> What the budget of energies misses, over the energy before the impact [-]
+   !> Imbalance of the energy budget over the initial energy [-]
    elemental function imbalance(self)
       class(attempt_t), intent(in) :: self
       real(wp) :: imbalance
@@ -282,7 +282,7 @@ contains
       imbalance = self%outcome%energy_imbalance/self%outcome%initial_energy
    end function imbalance
 
-   !> Note what is wrong, the first time
+   !> Store an objection if it is the first
    pure subroutine object(self, objection)
       type(comparison_t), intent(inout) :: self
       character(len=*), intent(in) :: objection
@@ -290,7 +290,7 @@ contains
       if (.not. allocated(self%objection)) self%objection = objection
    end subroutine object
 
-   !> Whether no attempt failed and all ended in the same way
+   !> Object if an attempt failed or they did not all end in the same way
    pure subroutine judge_ends(self)
       type(comparison_t), intent(inout) :: self
 
@@ -313,7 +313,7 @@ contains
          .and. self%attempts(attempt_first)%separated()
    end subroutine judge_ends
 
-   !> Compare all numbers
+   !> Compare all quantities
    pure subroutine judge_numbers(self)
       !> The comparison, all attempts separated
       type(comparison_t), intent(inout) :: self
@@ -332,16 +332,16 @@ contains
       call judge_energies(self)
    end subroutine judge_numbers
 
-   !> One quantity by all methods. Its best value is that of the refined internal variables, or the
-   !> limit of product integration; how many of its digits can be trusted is decided by what is
-   !> farthest from it, the solution at the accuracy of the case or the limit of the other method
+   !> Compare one quantity. Its best value is that of the refined internal variables or, with one
+   !> method, the limit of product integration. Its trusted digits follow from the value farthest
+   !> from it, that at the accuracy of the case or the limit of the other method
    pure subroutine tabulate(self, name, attempts, two_methods)
       type(compared_t), intent(inout) :: self
       character(len=*), intent(in) :: name
       type(attempt_t), intent(in) :: attempts(attempt_count)
       logical, intent(in) :: two_methods
 
-      ! the internal variables have no more than 11
+      ! the internal variables have at most 11 digits
       integer, parameter :: most_digits = 11
       real(wp) :: uncertainty(2)
       integer :: i
@@ -368,8 +368,8 @@ contains
       self%digits = min(most_digits, max(0, floor(-log10(maxval(uncertainty)))))
    end subroutine tabulate
 
-   !> Whether each attempt is as far from the best cor and cor_sphere as it says, however good it
-   !> is. Not the case's own scheme: how far that is off is shown, and the choice of the case
+   !> Object if an attempt is farther from the best cor and cor_sphere than its stated errors allow.
+   !> The case's own scheme, the user's choice, is not judged: the table shows its distance
    pure subroutine judge_errors(self)
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
@@ -389,19 +389,19 @@ contains
       end do
    end subroutine judge_errors
 
-   !> Whether the errors that an attempt states are honest
+   !> Whether the stated errors of an attempt are honest
    pure function is_honest(self, reference)
-      !> The attempt, `seen` being set
+      !> The attempt, `seen` set
       type(attempt_t), intent(in) :: self
-      !> Errors that the best cor and cor_sphere state themselves
+      !> Stated errors of the best cor and cor_sphere
       real(wp), intent(in) :: reference(2)
       logical :: is_honest(2)
 
       is_honest = within(self%seen, honest_factor*(self%stated() + reference) + rounding)
    end function is_honest
 
-   !> Errors that the best cor and cor_sphere state: those of the refined internal variables, or of
-   !> the shortest step, whose limit is better
+   !> Stated errors of the best cor and cor_sphere: those of the refined internal variables, or that
+   !> of the shortest step, whose limit is more accurate
    pure function error_of_best(self) result(error)
       !> The comparison, tabulated
       type(comparison_t), intent(in) :: self
@@ -412,7 +412,7 @@ contains
       if (self%two_methods) error = self%attempts(attempt_refined)%stated()
    end function error_of_best
 
-   !> Whether a number is at most so large; one that is not finite is not
+   !> Whether a number is finite and of absolute value at most `largest`
    elemental function within(value, largest)
       real(wp), intent(in) :: value
       real(wp), intent(in) :: largest
@@ -424,8 +424,8 @@ contains
       within = abs(value) <= largest
    end function within
 
-   !> Whether product integration with the shortest step is as far from the best values as its own
-   !> convergence says
+   !> Object if product integration with the shortest step is farther from the best values than its
+   !> own convergence allows
    pure subroutine judge_distances(self)
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
@@ -455,8 +455,8 @@ contains
       end do
    end subroutine judge_distances
 
-   !> Whether the energies close: within the accuracy where one was asked for; with given steps the
-   !> imbalance must go to zero as fast as it changes
+   !> Object if the energies do not balance: to within the accuracy if one was requested; with given
+   !> steps, the imbalance must be as small as its changes from step to step say
    pure subroutine judge_energies(self)
       !> The comparison, tabulated
       type(comparison_t), intent(inout) :: self
@@ -478,7 +478,7 @@ contains
          call object(self, 'the energies of direct do not close')
    end subroutine judge_energies
 
-   !> Change from step to step, over the size of a number, that is no matter: what the case allows
+   !> Relative change of a number from step to step that is acceptable at the accuracy of the case
    pure function allowed_change(self) result(change)
       type(comparison_t), intent(in) :: self
       real(wp) :: change
@@ -486,14 +486,14 @@ contains
       change = other_quantities*self%attempts(attempt_first)%accuracy + rounding
    end function allowed_change
 
-   !> Whether three values get closer to each other, or are close enough. Where they do not, the
-   !> error that is estimated from them is large and would allow anything. Where the first one is
-   !> right by chance and errors halve at least, the last difference is up to one and a half times
-   !> the first: maxima on a grid jump like that
+   !> Whether three values get closer to each other, or are close enough. If they do not, the error
+   !> estimated from them is large and would allow anything. If the first is right by chance and
+   !> errors at least halve, the last difference is up to one and a half times the first, as for
+   !> maxima on a grid
    pure function settles(value, close_enough)
-      !> Values with steps halved from one to the next
+      !> Values with steps dt, dt/2 and dt/4
       real(wp), intent(in) :: value(3)
-      !> Difference that is no matter
+      !> Acceptable difference
       real(wp), intent(in) :: close_enough
       logical :: settles
 
@@ -504,11 +504,11 @@ contains
          max(chance*abs(value(2) - value(1)), close_enough))
    end function settles
 
-   !> What a quantity is a part of, against which its digits are counted where it is small or none
+   !> Size of the whole that a quantity is a part of; digits of a small part are relative to it
    pure function size_of_whole(name, outcome) result(whole)
       character(len=*), intent(in) :: name
       type(outcome_t), intent(in) :: outcome
-      !> Size of the whole, 0 if the quantity stands for itself
+      !> Size of the whole; 0 if the quantity is a whole itself
       real(wp) :: whole
 
       select case (name)

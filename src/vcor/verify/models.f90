@@ -1,4 +1,4 @@
-!> One case by other mechanics: what the choice of the model is worth
+!> One case solved with other models: how much each choice of a model changes the restitution
 module vcor_verify_models
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
@@ -18,22 +18,22 @@ module vcor_verify_models
       character(len=10) :: waves = ''
       character(len=9) :: law = ''
       character(len=6) :: pair = ''
-      !> Whether it is that of the case
+      !> Whether it is the combination of the case
       logical :: given = .false.
-      !> Why there is no outcome, one line; unallocated if there is one
+      !> Reason why there is no outcome, one line; unallocated if there is one
       character(len=:), allocatable :: failure
       type(outcome_t) :: outcome
    end type model_t
 
 contains
 
-   !> Solve a case with every plate model and both contact laws, by the internal variables, then all
-   !> of it with the other pair where that makes a difference. A plate without half thickness or
-   !> density has the model `none` only
+   !> Solve a case with every plate model and both contact laws by the internal variables, then all
+   !> of it with the other pair if that makes a difference. A plate without half thickness or
+   !> density has only the model `none`
    subroutine solve_models(case, models)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> The table
+      !> The combinations
       type(model_t), allocatable, intent(out) :: models(:)
 
       character(len=*), parameter :: plates(6) = [character(len=10) :: 'none', 'constant', &
@@ -80,24 +80,24 @@ contains
       reads = why_unread(case, case%address('contact', key)) == ''
    end function reads
 
-   !> Whether two outcomes have another restitution, or only one of them has any
+   !> Whether two outcomes differ in restitution by more than their errors, or only one has any
    elemental function differ(a, b)
       type(outcome_t), intent(in) :: a, b
       logical :: differ
 
-      ! a solution that failed has no number, which a debug build must not compare
+      ! a failed solution has NaN, whose comparison traps in a debug build
       differ = a%status /= b%status .or. (ieee_is_nan(a%cor) .neqv. ieee_is_nan(b%cor))
       if (.not. (differ .or. ieee_is_nan(a%cor))) &
          differ = abs(a%cor - b%cor) > a%cor_error + b%cor_error
    end function differ
 
-   !> Solve a case with other mechanics
+   !> Solve a case with other models
    subroutine solve_model(case, model, valid)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Its row, outcome or failure to be set
+      !> Combination; on return with its outcome or failure
       type(model_t), intent(inout) :: model
-      !> Whether it still describes an impact
+      !> Whether the combination describes an impact
       logical, intent(out) :: valid
 
       type(case_t) :: other
@@ -114,14 +114,14 @@ contains
       call other%set(other%address('solver', 'method'), 'auto', given=.false.)
       call other%set(other%address('solver', 'scheme'), 'product', given=.false.)
       call other%unset(other%address('solver', 'continue_after_separation'))
-      ! a layer is solved to what it can be
+      ! a layer has no accuracy to request: it is solved as accurately as possible
       if (model%waves == 'body') call other%unset(other%address('solver', 'accuracy'))
       call problem_of_case(problem, other, error)
       valid = .not. allocated(error)
       if (valid) call solve_impact(problem%solver, problem%impact, trajectory, model%outcome, error)
       if (allocated(error)) then
          model%failure = error%message
-         ! a number with an error above all bounds is none
+         ! a number whose error is out of bounds is discarded
          model%outcome = outcome_t()
       end if
    end subroutine solve_model

@@ -1,8 +1,8 @@
 !> An impact of the verification table: a sphere, rigid unless a law says otherwise, on a plate
 !>
-!> The sphere and the plate are those of Green's paper unless a law needs others: a ball of 10 mm
-!> radius and 7800 kg/m3 on a plate of 20 mm half thickness, 1100 kg/m3 and Poisson's ratio 0.5.
-!> Time scale and lambda are computed here anew, not taken from the impact that the solvers see.
+!> The default sphere and plate are those of Green's paper: a ball of 10 mm radius and 7800 kg/m3 on
+!> a plate of 20 mm half thickness, 1100 kg/m3 and Poisson's ratio 0.5. Time scale and lambda are
+!> computed here independently of the impact that the solvers see.
 module vcor_verify_strike
    use vcor_constants, only : pi
    use vcor_error, only : error_t
@@ -18,8 +18,8 @@ module vcor_verify_strike
    public :: strike_t, time_scale, zener_plate, hertz_duration, elastic, sls, kelvin_voigt
    public :: density
 
-   !> Duration of Hertz's impact in units of T, (4/5) B(2/5, 1/2) (5/4)^(2/5) = 3.2180654597190435;
-   !> anew, not the constant that the solvers use [-]
+   !> Duration of Hertz's impact in units of T, (4/5) B(2/5, 1/2) (5/4)^(2/5) = 3.2180654597190435
+   !> [-], independent of the constant that the solvers use
    real(wp), parameter :: hertz_duration = 0.8_wp*1.25_wp**0.4_wp &
       *gamma(0.4_wp)*gamma(0.5_wp)/gamma(0.9_wp)
    !> Density [kg/m3] and 1/(1 - nu^2) of the plates
@@ -49,7 +49,7 @@ module vcor_verify_strike
 
 contains
 
-   !> The equation of motion
+   !> Build the impact, its equation of motion
    subroutine get_impact(self, impact, error)
       class(strike_t), intent(in) :: self
       type(impact_t), intent(out) :: impact
@@ -74,7 +74,7 @@ contains
          0.0_wp, modulus, plate, error, law)
    end subroutine get_impact
 
-   !> A material of the plates' density
+   !> Build a material with the density of the plates
    subroutine make_body(body, material, error)
       class(material_t), allocatable, intent(out) :: body
       type(material_data_t), intent(in) :: material
@@ -91,7 +91,7 @@ contains
    !> Time scale T = (m/(k sqrt(v0)))^(2/5), k = (4/3) sqrt(R) E/(1 - nu^2), of a rigid sphere [s]
    pure function time_scale(strike, modulus) result(scale)
       type(strike_t), intent(in) :: strike
-      !> Young's modulus E of the plate that counts [Pa]
+      !> Young's modulus E of the plate [Pa]
       real(wp), intent(in) :: modulus
       real(wp) :: scale
 
@@ -99,12 +99,12 @@ contains
          *sqrt(strike%velocity)))**0.4_wp
    end function time_scale
 
-   !> A rigid sphere on an elastic plate of given lambda = alpha m/T, alpha = sqrt(3 rho/E')/(16 rho
-   !> h^2), which falls with the square of the half thickness h
+   !> A rigid sphere on an elastic plate of given lambda = alpha m/T, with
+   !> alpha = sqrt(3 rho/E')/(16 rho h^2), which falls with the square of the half thickness h
    pure function zener_plate(modulus, waves, lambda) result(strike)
       !> Young's modulus [Pa]
       real(wp), intent(in) :: modulus
-      !> One of the `waves_*` constants, not none
+      !> One of the `waves_*` constants, except `waves_none`
       integer, intent(in) :: waves
       !> Zener's parameter [-], > 0
       real(wp), intent(in) :: lambda
@@ -127,9 +127,9 @@ contains
 
    !> A standard linear solid
    pure function sls(glassy_modulus, alpha, beta) result(data)
-      !> Modulus at first [Pa]
+      !> Modulus at t = 0 [Pa]
       real(wp), intent(in) :: glassy_modulus
-      !> Rates of Eq. (13) [1/s]: `beta` is that of relaxation
+      !> Rates of Eq. (13) [1/s]: `beta` is the relaxation rate
       real(wp), intent(in) :: alpha, beta
       type(material_data_t) :: data
 
