@@ -323,6 +323,7 @@ def test_command(tmp_path, capsys):
         (["--for", "lamps"], 2, "unknown program 'lamps', known: table"),
         (["--velocities", "1:2"], 2, "expected such as 0.05:5:20"),
         (["--velocities", "2:1:5"], 2, "expected such as 0.05:5:20"),
+        (["--velocities", "1:inf:5"], 2, "expected such as 0.05:5:20"),
         (["--for", "lammps", "--master"], 2, "--master is a table"),
     ],
 )

@@ -463,6 +463,14 @@ def test_a_script_makes_the_same_figure(results, tmp_path):
     assert (tmp_path / "a.svg").read_bytes() == first
 
 
+def test_a_script_stands_in_no_package_s_way(results, tmp_path, capsys):
+    for name in ("vcor", "numpy"):
+        with pytest.raises(SystemExit):
+            main([str(results / "sweep.h5"), "--script", "--output", f"{tmp_path}/{name}.svg"])
+        assert f"a script {name}.py would stand in the way" in capsys.readouterr().err
+        assert not (tmp_path / f"{name}.py").exists()
+
+
 def test_a_folder(results, tmp_path):
     folder = tmp_path / "new" / "figures"
     main([str(results / "cube.h5"), "--output", str(folder), "--format", "png", "--quiet"])

@@ -4,7 +4,7 @@ All numbers are in SI units; results are `xarray.Dataset` objects with units in 
 """
 
 import importlib
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ._library import (
     Error,
@@ -18,6 +18,13 @@ from ._library import (
 from .case import Case, Material, read
 from .fit import Fit, fit
 from .results import open  # noqa: A004  (vcor.open reads as vcor.read does)
+
+if TYPE_CHECKING:
+    from .cards import card, read_card
+    from .exchange import export, pair
+    from .identification import identify
+    from .master_curve import master
+    from .uncertainty import propagate, sensitivities
 
 __all__ = [
     "Case",

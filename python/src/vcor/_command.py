@@ -115,6 +115,8 @@ def printable(text: str) -> str:
 
 def read_text(path: str | os.PathLike[str], errors: str = "replace") -> str:
     """Text of a file, without a byte order mark."""
+    if not os.fspath(path):
+        raise FileError("the name of a file is empty")
     try:
         return Path(path).read_text(encoding="utf-8-sig", errors=errors)
     except OSError as error:

@@ -167,7 +167,7 @@ def _sum(
     before = np.geomspace(first * 1e-35, first, 4001)
     area = trapezoid(case.material(material).relaxation(before) * before, np.log(before))
     best = np.inf
-    for n in range(2, most + 1):
+    for n in range(min(2, most), most + 1):
         times = np.append(first / 10, np.geomspace(first / 3, last, n - 1))
         values = np.hstack([np.ones((t.size, 1)), np.exp(-t[:, None] / times)])
         values /= relaxation[:, None]

@@ -134,7 +134,7 @@ class Case:
         if getattr(self, "_pointer", None):
             free(self._pointer)
 
-    def __setitem__(self, address: str, value: Value) -> None:
+    def __setitem__(self, address: str, value: ArrayLike) -> None:
         """Set a value; what the impact does not read is refused when it is solved."""
         written = _written(value, address) if not isinstance(value, str) else value
         call("vcor_set", self._pointer, address, written)

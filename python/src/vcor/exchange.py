@@ -517,9 +517,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _work(options: argparse.Namespace) -> None:
     try:
         low, high, count = options.velocities.split(":")
-        velocities = np.geomspace(float(low), float(high), int(count))
         if not (0 < float(low) < float(high) < math.inf and 2 <= int(count) <= 10000):
             raise ValueError
+        velocities = np.geomspace(float(low), float(high), int(count))
     except ValueError:
         raise UsageError(
             f"--velocities {options.velocities}: expected such as 0.05:5:20, from small to large"

@@ -737,7 +737,7 @@ def _with_model(
         raise UsageError("--model: the free parameters must be those of one material")
     name = names[0]
     kind, _, terms = str(model).partition(":")
-    if not re.fullmatch(r"prony:0*[1-9]\d*|[^:]*", str(model)):
+    if not re.fullmatch(r"prony:0*[1-9]\d?|[^:]*", str(model)):
         raise UsageError(f"--model {model}: expected the name of a model, or such as prony:2")
     first, last = window([observations(case, one, free) for one in sources], case, name)
     times = np.geomspace(first, last, 60)

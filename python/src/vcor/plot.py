@@ -82,7 +82,7 @@ class _Wishes:
 
 
 def figure(
-    files: Sequence[Source],
+    files: Source | Sequence[Source],
     *,
     kind: str | None = None,
     quantities: Sequence[str] | None = None,
@@ -99,7 +99,7 @@ def figure(
     ----------
     files
         Files of results (.h5) or materials (.nml) or sweeps of `Case.run`, all of one kind, and
-        files of measured points (any other ending).
+        files of measured points (any other ending); one or several.
     kind
         One of `KINDS`; None: what the first file is for.
     quantities
@@ -183,9 +183,12 @@ def _check_axes(
     for name, ends in ranges.items():
         with contextlib.suppress(TypeError, ValueError):
             low, high = (None if end is None else float(end) for end in ends)
-            if name in ("x", "y", "z") and low != high and np.isfinite([low or 0, high or 0]).all():
+            sizes = [abs(end) for end in (low, high) if end]
+            if name in ("x", "y", "z") and low != high and all(1e-30 < s < 1e30 for s in sizes):
                 continue
-        raise UsageError(f"found '{name}={ends}', expected a range such as x=0.1:10 or y=0:")
+        found = [*ends] if np.iterable(ends) else [ends]
+        words = ":".join("" if end is None else str(end) for end in found)
+        raise UsageError(f"found '{name}={words}', expected a range such as x=0.1:10 or y=0:")
     if np.ndim(levels) == 0:
         whole(levels, "levels", 2, _MOST_LEVELS)
     elif not np.isfinite(numbers(levels, "levels")).all():
@@ -491,7 +494,7 @@ def _map(wishes: _Wishes) -> Figure:
 
 def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
     """Levels of a map: those that are wanted, or round numbers over its range."""
-    bounds = wishes.ranges.get("z", (None, None))
+    bounds, smallest, largest = wishes.ranges.get("z", (None, None)), low, high
     low, high = (end if end is not None else e for end, e in zip(bounds, (low, high), strict=True))
     if not isinstance(wishes.levels, (int, np.integer)):
         levels = sorted({float(level) for level in wishes.levels})
@@ -508,6 +511,9 @@ def _levels(wishes: _Wishes, low: float, high: float) -> list[float]:
         levels = [float(round(tick, 12)) for tick in ticks]
     if len(levels) < 2:
         raise UsageError("found one level, expected two or more")
+    if levels[-1] < smallest or levels[0] > largest:
+        raise UsageError(f"found levels from {levels[0]:g} to {levels[-1]:g}, expected some among "
+                         f"the values, which are from {smallest:.4g} to {largest:.4g}")  # fmt: skip
     return levels
 
 
@@ -775,6 +781,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         first = next(name for name in options.files if is_result(name))
         usual = f"{Path(first).stem}_{options.kind or Result(first).kind()}"
         path = _command.place(options.output, usual, FORMATS, options.format, options.files)
+        if options.script and path.stem in sys.modules:
+            raise UsageError(f"a script {path.stem}.py would stand in the way of the package "
+                             f"{path.stem}, expected another --output")  # fmt: skip
         save(made, path)
         written = [path]
         if options.script:

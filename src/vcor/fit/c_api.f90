@@ -14,7 +14,7 @@ module vcor_fit_c_api
    use vcor_kinds, only : wp
    use vcor_material, only : identifiable_models
    use vcor_text, only : printable
-   use vcor_words, only : contains_word, join_words, suggestion
+   use vcor_words, only : contains_word, suggestion
    implicit none
    private
 
@@ -70,8 +70,8 @@ contains
          fixed(i)%value = values(i)
       end do
       if (.not. contains_word(identifiable_models, wanted)) then
-         call raise(trouble, error_usage, "found model '"//printable(wanted)//"', expected one " &
-            //'of '//join_words(identifiable_models)//'; '//suggestion(wanted, identifiable_models))
+         call raise(trouble, error_usage, "unknown model '"//printable(wanted)//"'; " &
+            //suggestion(wanted, identifiable_models))
       else if (c_associated(file)) then
          allocate (reading%units(0))
          reading%poisson_ratio = poisson_ratio
