@@ -3,16 +3,14 @@ program test_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_error, only : error_input, error_t
    use vcor_impact_outcome, only : outcome_t
-   use vcor_impact_problem, only : impact_t
    use vcor_impact_trajectory, only : contact_separated, trajectory_t
    use vcor_io_case_reader, only : override, read_case_text
    use vcor_material_parameter, only : spaced
    use vcor_kinds, only : wp
-   use vcor_solver, only : solver_t
    use vcor_case_address, only : swept_addresses
    use vcor_case_case, only : address_t, case_t, operator(==)
    use vcor_case_checks, only : validate
-   use vcor_case_grid, only : axis_t, grid_t, new_grid
+   use vcor_case_grid, only : grid_t, new_grid
    use vcor_case_problem, only : problem_of_case, problem_t
    use vcor_sweep_quantity, only : new_summary, point_failed, point_invalid, point_pending, &
       status_name, summary_t, values_of

@@ -4,7 +4,7 @@
 !> as C and Python count. A grid without axes has one point. A list of points is a grid in which all
 !> axes go on together.
 module vcor_case_grid
-   use vcor_error, only : error_file, error_input, error_t, raise
+   use vcor_error, only : error_file, error_t, raise
    use vcor_material_parameter, only : log_spacing, spaced
    use vcor_kinds, only : wp
    use vcor_case_address, only : resolve

@@ -23,10 +23,9 @@ module vcor_io_checkpoint
    use vcor_error, only : error_file, error_t, raise
    use vcor_io_file, only : close_file, create_file, discard, move_file, output_file_t, remove_file
    use vcor_io_hdf5, only : fill_hdf5
-   use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, &
-      read_column, reader_t
+   use vcor_io_hdf5_reader, only : close_hdf5, find_dataset, open_hdf5, reader_t
    use vcor_io_identity, only : check_same, identity_t, read_identity
-   use vcor_io_path, only : anything_at, check_plain, join_path, quoted_path, raise_system
+   use vcor_io_path, only : anything_at, check_plain, quoted_path, raise_system
    use vcor_io_posix, only : c_fclose, c_fileno, c_fopen, c_fsync, c_link, c_lockf, c_pwrite, &
       c_text, errno_exists, errno_locked, file_at, last_errno, lock_alone, open_file, same_file_id
    use vcor_io_results, only : axis_column, quantity_column
@@ -34,6 +33,7 @@ module vcor_io_checkpoint
    use vcor_kinds, only : wp
    use vcor_numeric_crc, only : crc32
    use vcor_sweep_quantity, only : point_pending, quantity_t, summary_t
+   use vcor_text, only : integer_text, printable
    implicit none
    private
 
@@ -82,7 +82,8 @@ contains
       call lay_out(tables(1), identity, grid, summary%quantities)
       call fill_hdf5(file, tables, error, identity%data, identity%part)
       if (.not. allocated(error)) call close_file(file, error)
-      if (.not. allocated(error)) call attach(self, file%temporary, summary%quantities, error)
+      if (.not. allocated(error)) call attach(self, file%temporary, summary%quantities, &
+         size(summary%status), error)
       if (.not. allocated(error)) call self%put(1, size(summary%status), summary, error)
       if (.not. allocated(error)) call name_file(file%temporary, path, error)
       if (allocated(error)) call self%close()
@@ -176,42 +177,27 @@ contains
       else
          call read_points(path, identity, summary, error)
       end if
-      if (.not. allocated(error)) call attach(self, path, summary%quantities, error)
+      if (.not. allocated(error)) &
+         call attach(self, path, summary%quantities, size(summary%status), error)
       if (allocated(error) .or. .not. anew) return
       call self%put(1, size(summary%status), summary, error)
    end subroutine open_checkpoint
 
    !> Open a file that is there for writing, and learn where its columns are
-   subroutine attach(self, place, quantities, error)
+   subroutine attach(self, place, quantities, points, error)
       type(checkpoint_t), intent(inout) :: self
       !> Its path, as long as it does not have its name
       character(len=*), intent(in) :: place
       type(quantity_t), intent(in) :: quantities(:)
+      !> Number of points
+      integer, intent(in) :: points
       !> Set if it cannot be written
       type(error_t), allocatable, intent(out) :: error
 
-      type(reader_t) :: reader
-      character(len=:), allocatable :: name
       integer(c_int) :: reason
-      integer :: i, length
 
-      self%offsets = [(0_c_int64_t, i=0, size(quantities))]
-      call open_hdf5(reader, place, error)
+      call find_columns(place, quantities, points, self%offsets, error)
       if (allocated(error)) return
-      do i = 1, size(self%offsets)
-         name = 'check'
-         if (i <= size(quantities)) name = quantities(i)%name
-         call find_dataset(reader, path_of(name), length, self%offsets(i), error)
-         if (.not. allocated(error) .and. self%offsets(i) < 0) call raise(error, error_file, &
-            reader%path//": the dataset '"//path_of(name)//"' is not in one piece")
-         if (allocated(error)) exit
-      end do
-      call close_hdf5(reader)
-      if (allocated(error)) then
-         error%code = error_file
-         return
-      end if
-
       self%stream = c_fopen(c_text(place), c_text('rb+'))
       reason = last_errno()
       if (.not. c_associated(self%stream)) then
@@ -356,46 +342,74 @@ contains
       !> Error of code `error_file` if it cannot be read, or is not about what is expected
       type(error_t), allocatable, intent(out) :: error
 
-      type(reader_t) :: reader
-      type(column_t) :: column
-      integer :: i
+      integer(c_int64_t), allocatable :: offsets(:)
+      integer, allocatable :: checks(:)
+      integer :: i, n, status, unit
 
       call check_part(path, identity, error)
-      if (.not. allocated(error)) call open_hdf5(reader, path, error)
-      if (allocated(error)) return
-      do i = 1, size(summary%quantities)
-         associate (quantity => summary%quantities(i))
-            call read_column(reader, path_of(quantity%name), quantity%is_whole, &
-               size(summary%status), column, error)
-         end associate
-         if (allocated(error)) exit
-         if (i > size(summary%values)) then
-            call move_alloc(column%integers, summary%status)
-         else
-            call move_alloc(column%integers, summary%values(i)%integers)
-            call move_alloc(column%reals, summary%values(i)%reals)
-         end if
-      end do
       if (.not. allocated(error)) &
-         call read_column(reader, path_of('check'), .true., size(summary%status), column, error)
-      call close_hdf5(reader)
-      if (allocated(error)) then
-         error%code = error_file
-         error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
+         call find_columns(path, summary%quantities, size(summary%status), offsets, error)
+      if (allocated(error)) return
+      n = size(summary%values)
+      allocate (checks(size(summary%status)))
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
+         action='read', iostat=status)
+      do i = 1, n
+         if (status /= 0) exit
+         associate (values => summary%values(i))
+            if (allocated(values%reals)) then
+               read (unit, pos=offsets(i) + 1, iostat=status) values%reals
+            else
+               read (unit, pos=offsets(i) + 1, iostat=status) values%integers
+            end if
+         end associate
+      end do
+      if (status == 0) read (unit, pos=offsets(n + 1) + 1, iostat=status) summary%status
+      if (status == 0) read (unit, pos=offsets(n + 2) + 1, iostat=status) checks
+      close (unit, iostat=i)
+      if (status /= 0) then
+         call raise(error, error_file, printable(path)//': cannot be read')
          return
       end if
-      where (column%integers /= checks_of(summary, 1, size(summary%status))) &
-         summary%status = point_pending
+      where (checks /= checks_of(summary, 1, size(checks))) summary%status = point_pending
    end subroutine read_points
 
-   !> Path of the dataset of a column
-   pure function path_of(name) result(path)
-      character(len=*), intent(in) :: name
-      !> Its path in the file
-      character(len=:), allocatable :: path
+   !> Find the columns of the file of a part
+   subroutine find_columns(path, quantities, points, offsets, error)
+      character(len=*), intent(in) :: path
+      type(quantity_t), intent(in) :: quantities(:)
+      !> Number of points
+      integer, intent(in) :: points
+      !> Bytes before the numbers of each column: those of the summary in their order, check
+      integer(c_int64_t), allocatable, intent(out) :: offsets(:)
+      !> Error of code `error_file` if one is not there as this program lays it out
+      type(error_t), allocatable, intent(out) :: error
 
-      path = 'summary/'//trim(name)
-   end function path_of
+      type(reader_t) :: reader
+      character(len=:), allocatable :: name
+      integer :: i, length
+
+      allocate (offsets(size(quantities) + 1))
+      call open_hdf5(reader, path, error)
+      if (allocated(error)) return
+      do i = 1, size(offsets)
+         name = 'summary/check'
+         if (i <= size(quantities)) name = 'summary/'//trim(quantities(i)%name)
+         call find_dataset(reader, name, length, offsets(i), error)
+         if (allocated(error)) exit
+         if (length /= points) then
+            call raise(error, error_file, reader%path//': found '//integer_text(length) &
+               //" values in '"//name//"', expected "//integer_text(points))
+         else if (offsets(i) < 0) then
+            call raise(error, error_file, reader%path//": the dataset '"//name &
+               //"' is not in one piece")
+         end if
+         if (allocated(error)) exit
+      end do
+      call close_hdf5(reader)
+      if (.not. allocated(error)) return
+      error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
+   end subroutine find_columns
 
    !> Check sums of points: CRC-32 of their numbers as the file has them, in the order of columns,
    !> and of their places, so that two points that have changed places are found

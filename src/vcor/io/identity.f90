@@ -90,18 +90,14 @@ contains
       character(len=*), intent(in) :: path
       !> What it is about; one shard without points where it says nothing of those
       type(identity_t), intent(out) :: identity
-      !> Error of code `error_file` if it cannot be read, or is no HDF5 file
+      !> Set if it cannot be read, or is no HDF5 file
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
 
       identity%version = ''
       call open_hdf5(reader, path, error)
-      if (allocated(error)) then
-         ! it is no input: it stands where results belong
-         error%code = error_file
-         return
-      end if
+      if (allocated(error)) return
       if (text_attribute(reader, 'program') == 'vcor') &
          identity%version = text_attribute(reader, 'version')
       identity%title = text_attribute(reader, 'title')

@@ -29,7 +29,7 @@ module vcor_verify_kelvin_voigt
    use vcor_impact_plate, only : waves_constant
    use vcor_kinds, only : wp
    use vcor_verify_law, only : law_t
-   use vcor_verify_strike, only : elastic, kelvin_voigt, strike_t, time_scale, zener_plate
+   use vcor_verify_strike, only : kelvin_voigt, strike_t, time_scale, zener_plate
    implicit none
    private
 
