@@ -354,19 +354,21 @@ contains
       allocate (checks(size(summary%status)))
       open (newunit=unit, file=path, access='stream', form='unformatted', status='old', &
          action='read', iostat=status)
-      do i = 1, n
-         if (status /= 0) exit
-         associate (values => summary%values(i))
-            if (allocated(values%reals)) then
-               read (unit, pos=offsets(i) + 1, iostat=status) values%reals
-            else
-               read (unit, pos=offsets(i) + 1, iostat=status) values%integers
-            end if
-         end associate
-      end do
-      if (status == 0) read (unit, pos=offsets(n + 1) + 1, iostat=status) summary%status
-      if (status == 0) read (unit, pos=offsets(n + 2) + 1, iostat=status) checks
-      close (unit, iostat=i)
+      if (status == 0) then
+         do i = 1, n
+            if (status /= 0) exit
+            associate (values => summary%values(i))
+               if (allocated(values%reals)) then
+                  read (unit, pos=offsets(i) + 1, iostat=status) values%reals
+               else
+                  read (unit, pos=offsets(i) + 1, iostat=status) values%integers
+               end if
+            end associate
+         end do
+         if (status == 0) read (unit, pos=offsets(n + 1) + 1, iostat=status) summary%status
+         if (status == 0) read (unit, pos=offsets(n + 2) + 1, iostat=status) checks
+         close (unit)
+      end if
       if (status /= 0) then
          call raise(error, error_file, printable(path)//': cannot be read')
          return
