@@ -305,3 +305,11 @@ def test_the_figure_has_its_legend_where_all_matplotlibs_have_one(sls):
     texts = [text.get_text() for text in axis.get_legend().get_texts()]
     assert texts == ["− one standard deviation", "+ one"]
     assert not axis.figure.legends
+
+
+def test_a_name_in_the_figure_is_no_formula(half_space):
+    case = vcor.Case(half_space.text().replace("'rubber'", r"'$\frac$'"))
+    figure = vcor.propagate(case, {r"$\frac$.beta": "5%"}, samples=64).figure()
+    figure.draw_without_rendering()
+    (label,) = figure.axes[0].get_yticklabels()
+    assert label.get_text() == r"\$\frac\$ beta"

@@ -193,7 +193,8 @@ class Uncertainty:
         order = np.argsort(np.abs(above - below))
         with drawn(COLUMN, 2.5 + 0.6 * len(order)) as (made, axis):
             joint = f"{row.parameter.size - row.source.size + 1} parameters together"
-            names = [_name_of(str(name)) if "." in str(name) else joint
+            # a dollar in the name of a material begins no formula
+            names = [_name_of(str(name)).replace("$", r"\$") if "." in str(name) else joint
                      for name in row.source.values[order]]  # fmt: skip
             attrs = _library.columns(0)[quantity].attrs
             factor, label = _labelled(quantity, attrs, row["value"].values)
