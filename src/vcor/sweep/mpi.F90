@@ -14,7 +14,7 @@ module vcor_sweep_mpi
    private
 
    public :: join_ranks, leave_ranks, this_rank, rank_count
-   public :: from_first_rank, largest_of_ranks, gathered, differs, share_error, numbers_of, text_of
+   public :: from_first_rank, largest_of_ranks, gathered, differs, share_error
 
    !> Number of this rank, from 0
    integer :: rank = 0
@@ -129,9 +129,10 @@ contains
       !> is known to the first rank
       type(error_t), allocatable, intent(inout) :: error
 
-      ! more than the largest code
-      integer, parameter :: codes = 1000
+      ! more than the largest code, and the letters that a number has room for
+      integer, parameter :: codes = 1000, room = storage_size(1.0_wp)/8
       character(len=:), allocatable :: message
+      real(wp), allocatable :: letters(:)
       character(len=24) :: name
       integer :: found(1)
 
@@ -146,28 +147,10 @@ contains
          write (name, '(a, i0, a)') 'rank ', rank, ':'
          if (rank > 0) message = trim(name)//' '//message
       end if
-      call raise(error, mod(-found(1), codes), trim(text_of(gathered(numbers_of(message)))))
+      allocate (letters, source=gathered(transfer(message//repeat(' ', &
+         modulo(-len(message), room)), [1.0_wp])))
+      message = transfer(letters, repeat(' ', room*size(letters)))
+      call raise(error, mod(-found(1), codes), trim(message))
    end subroutine share_error
-
-   !> A text as numbers
-   pure function numbers_of(text) result(numbers)
-      character(len=*), intent(in) :: text
-      !> Its letters, with blanks behind them that fill the last number
-      real(wp), allocatable :: numbers(:)
-
-      integer, parameter :: bytes = storage_size(1.0_wp)/8
-
-      numbers = transfer(text//repeat(' ', modulo(-len(text), bytes)), [1.0_wp])
-   end function numbers_of
-
-   !> A text from numbers
-   pure function text_of(numbers) result(text)
-      !> Numbers, as `numbers_of` made them
-      real(wp), intent(in) :: numbers(:)
-      !> The text and blanks
-      character(len=size(numbers)*storage_size(1.0_wp)/8) :: text
-
-      text = transfer(numbers, text)
-   end function text_of
 
 end module vcor_sweep_mpi
