@@ -1,7 +1,7 @@
-!> Ranks, the only module that knows of MPI
+!> MPI ranks; no other module uses MPI
 !>
-!> Built with the macro `VCOR_MPI` there is MPI, without it there is one rank. All ranks call the
-!> same procedures in the same order; only the thread that called `join_ranks` calls any of them.
+!> With the macro `VCOR_MPI` the module uses MPI, without it there is one rank. All ranks call the
+!> same procedures in the same order, only from the thread that called `join_ranks`.
 module vcor_sweep_mpi
 #ifdef VCOR_MPI
    use mpi_f08, only : mpi_allreduce, mpi_bcast, mpi_comm_rank, mpi_comm_size, mpi_comm_world, &
@@ -16,14 +16,14 @@ module vcor_sweep_mpi
    public :: join_ranks, leave_ranks, this_rank, rank_count
    public :: from_first_rank, largest_of_ranks, gathered, differs, share_error
 
-   !> Number of this rank, from 0
+   !> Index of this rank, from 0
    integer :: rank = 0
    !> Number of ranks
    integer :: ranks = 1
 
 contains
 
-   !> Begin, before anything else
+   !> Initialise MPI, before anything else
    subroutine join_ranks()
 #ifdef VCOR_MPI
       integer :: provided
@@ -34,16 +34,16 @@ contains
 #endif
    end subroutine join_ranks
 
-   !> Finalise, after all ranks have come here
+   !> Finalise MPI; returns after all ranks have called it
    subroutine leave_ranks()
 #ifdef VCOR_MPI
       call mpi_finalize()
 #endif
    end subroutine leave_ranks
 
-   !> Number of this rank
+   !> Index of this rank
    function this_rank() result(number)
-      !> Number, from 0
+      !> Index, from 0
       integer :: number
 
       number = rank
@@ -56,11 +56,11 @@ contains
       number = ranks
    end function rank_count
 
-   !> Numbers of the first rank
+   !> Send numbers of the first rank to all
    function from_first_rank(numbers) result(those)
-      !> Numbers of this rank, of any shape and value on all but the first one
+      !> Numbers of this rank, ignored except on the first
       integer, intent(in) :: numbers(:)
-      !> Those of the first rank
+      !> Numbers of the first rank
       integer, allocatable :: those(:)
 #ifdef VCOR_MPI
       integer :: n
@@ -75,11 +75,11 @@ contains
 #endif
    end function from_first_rank
 
-   !> The largest numbers of all ranks, one by one
+   !> Elementwise maximum over all ranks
    function largest_of_ranks(numbers) result(most)
-      !> Numbers of this rank, as many as on the others
+      !> Numbers of this rank, of the same shape on all ranks
       integer, intent(in) :: numbers(:)
-      !> The largest ones
+      !> Elementwise maximum
       integer :: most(size(numbers))
 
 #ifdef VCOR_MPI
@@ -89,11 +89,11 @@ contains
 #endif
    end function largest_of_ranks
 
-   !> Numbers of all ranks, in the order of the ranks
+   !> Concatenate the numbers of all ranks, in the order of ranks
    function gathered(numbers) result(those)
       !> Numbers of this rank
       real(wp), intent(in) :: numbers(:)
-      !> Numbers of all; none on other ranks than the first
+      !> Numbers of all ranks on the first rank; shape (0) on the others
       real(wp), allocatable :: those(:)
 #ifdef VCOR_MPI
       integer :: sizes(ranks), offsets(ranks), i
@@ -109,27 +109,27 @@ contains
 #endif
    end function gathered
 
-   !> Whether a number is another one on different ranks
+   !> Whether a number differs between ranks
    function differs(number)
       !> Number of this rank
       integer, intent(in) :: number
-      !> Whether not all are the same
+      !> Whether not all are equal
       logical :: differs
 
       integer :: ends(2)
 
-      ! the largest of the numbers and of their complements
+      ! maxima of the numbers and of their complements
       ends = largest_of_ranks([number, not(number)])
       differs = ends(1) /= not(ends(2))
    end function differs
 
-   !> An error of one rank becomes that of all: that of the lowest rank that has one
+   !> Share an error with all ranks: that of the lowest rank that has one
    subroutine share_error(error)
-      !> Error of this rank; on return that of all, or unallocated if no rank has one. Its message
-      !> is known to the first rank
+      !> Error of this rank; on return that of all, or unallocated if no rank has one. Only the
+      !> first rank has its message
       type(error_t), allocatable, intent(inout) :: error
 
-      ! more than the largest code, and the letters that a number has room for
+      ! above the largest code; characters in the room of a number
       integer, parameter :: codes = 1000, room = storage_size(1.0_wp)/8
       character(len=:), allocatable :: message
       real(wp), allocatable :: letters(:)

@@ -1,24 +1,24 @@
-!> A part of a list of points: what a shard of a sweep solves, and what a rank solves of a round
+!> A part of a list of points, which a shard of a sweep solves, or a rank in a round
 !>
-!> Part I of N has one of each N points that follow one another: the I-th of the first N, the next
-!> of the next N, and so on around. So all parts take about the same time, whatever is swept and
-!> wherever its impacts are slowest. (Always the I-th would be the same value of the last parameter
-!> where N points make a row of the grid.) Within its part a point has a place.
+!> Part I of N has one point of every N consecutive ones: the I-th of the first N, the next one of
+!> the next N, and so on cyclically. So all parts take about the same time, wherever in the sweep
+!> impacts are slow. (With the I-th point of every N, a part would have a single value of the last
+!> parameter if N points are a row of the grid.) Points of a part are numbered by their place in it.
 module vcor_sweep_part
    implicit none
    private
 
    public :: part_t, new_part, most_threads
 
-   !> Most threads of a process that can be asked for
+   !> Largest number of threads of a process
    integer, parameter :: most_threads = 1024
 
    !> A part of the points
    type :: part_t
-      !> Number of the part, from 1 to `parts`
+      !> Index of the part, 1 .. `parts`
       integer :: number = 1
       integer :: parts = 1
-      !> Points of all parts together
+      !> Number of points of all parts
       integer :: points = 0
    contains
       procedure :: point
@@ -29,9 +29,9 @@ contains
 
    !> A part of a list of points
    pure function new_part(points, number, parts) result(part)
-      !> Points of all parts together, > 0
+      !> Number of points of all parts, > 0
       integer, intent(in) :: points
-      !> Number of the part, from 1 to `parts`
+      !> Index of the part, 1 .. `parts`
       integer, intent(in) :: number
       !> Number of parts, > 0
       integer, intent(in) :: parts
@@ -40,22 +40,22 @@ contains
       part = part_t(number=number, parts=parts, points=points)
    end function new_part
 
-   !> Number of points
+   !> Number of points of the part
    pure function count_places(self) result(n)
       class(part_t), intent(in) :: self
-      !> Number; 0 where there are more parts than points and this one has none
+      !> Number; 0 if there are more parts than points and this part has none
       integer :: n
 
       n = self%points/self%parts
       if (self%point(n + 1) <= self%points) n = n + 1
    end function count_places
 
-   !> Point at a place
+   !> Point at a place of the part
    pure function point(self, place)
       class(part_t), intent(in) :: self
       !> Place in the part, from 1
       integer, intent(in) :: place
-      !> Number of the point among those of all parts, from 1
+      !> Index of the point among those of all parts, from 1
       integer :: point
 
       point = (place - 1)*self%parts + mod(self%number + place - 2, self%parts) + 1

@@ -1,19 +1,20 @@
-!> The points of a sweep, or of a part of it, solved by all ranks and their threads. An impact by
-!> itself is a sweep of one point
+!> Solve the points of a sweep, or of a part of it, on all ranks and their threads; a single impact
+!> is a sweep of one point
 !>
-!> A point is the case with some numbers set, which the problem of the case follows, so nothing is
-!> read, looked up or checked as a whole for it, and no rules of a solver are made. A point that
-!> makes no sense, or cannot be solved, has a status instead of numbers and stops no other.
+!> A point is the case with some numbers replaced. The problem of the case follows these numbers, so
+!> no point reads, looks up or checks the whole case, or computes the rules of a solver again. A
+!> point that is impossible or cannot be solved has a status instead of numbers and does not stop
+!> the others.
 !>
-!> The work goes in rounds. In a round each rank solves its part of the next points, the first rank
-!> takes the outcomes of all, and all agree on how long the next round is and whether there is one.
-!> Outcomes are kept by the place of their point, so they are the same bits for any number of ranks
-!> and threads. Points without a result are grouped by the reason, and those whose result is less
-!> accurate than asked for are counted.
+!> The work is done in rounds. In a round each rank solves its part of the next points, the first
+!> rank gathers the outcomes, and all ranks agree on the length of the next round and whether there
+!> is one. Outcomes are stored by the place of their point, so they are bitwise the same for any
+!> number of ranks and threads. Points without a result are grouped by reason, and those less
+!> accurate than requested are counted.
 !>
-!> What threads call has no static storage. That includes the functions that return a text of
-!> deferred length, whose length gfortran 12 keeps there: such a function is called before the
-!> threads begin, or by one at a time.
+!> Procedures that threads call have no static storage. gfortran 12 keeps the length of a function
+!> result of deferred length there: such a function is called before the threads begin, or by one
+!> thread at a time.
 module vcor_sweep_points
    use, intrinsic :: iso_fortran_env, only : int64
 !$ use omp_lib, only : omp_get_max_threads, omp_get_thread_num
@@ -40,51 +41,51 @@ module vcor_sweep_points
 
    !> All impacts of a case; immutable once built, so that threads can share it
    type :: sweep_t
-      !> Its points
+      !> Grid of its points
       type(grid_t) :: grid
-      !> The case; what varies has its first values
+      !> The case, with the first valid value of each parameter that varies
       type(case_t), private :: case
-      !> Its problem
+      !> Problem of this case
       type(problem_t) :: problem
-      !> Ranges of what varies, shape (axes)
+      !> Valid ranges of the parameters that vary, shape (axes)
       type(interval_t), allocatable, private :: ranges(:)
-      !> What to say about a value that is out of range, shape (axes)
+      !> Message for a value out of range, shape (axes)
       type(error_t), allocatable, private :: objections(:)
    contains
       procedure :: is_grid
    end type sweep_t
 
-   !> What one thread works with: the impact it is at
+   !> Working storage of one thread: its current impact
    type :: worker_t
       !> The impact and its solver
       type(problem_t) :: problem
-      !> Its course
+      !> Its trajectory
       type(trajectory_t) :: trajectory
       !> The case with the numbers of the impact
       type(case_t), private :: case
-      !> Whether case and problem are those of the sweep, at one of its points
+      !> Whether case and problem have been copied from the sweep
       logical, private :: is_ready = .false.
    end type worker_t
 
-   !> Time that a round should take [s]: what a kill loses, and long against the time in which ranks
-   !> and threads wait for each other at its end
+   !> Target time of a round [s]: a killed process loses no more, and it is long against the time in
+   !> which ranks and threads wait for each other at its end
    real(wp), parameter :: round_time = 0.2_wp
-   !> Fewest points of a round for each thread: so many of them end at about the same time
+   !> Minimum points of a round per thread, so that threads end at about the same time
    integer, parameter :: fewest = 4
-   !> How much longer than the one before a round may be
+   !> Largest ratio of the length of a round to the one before
    integer, parameter :: growth = 4
-   !> Most points that a thread takes at a time
+   !> Largest number of points that a thread takes at once
    integer, parameter :: longest_chunk = 16
 
-   !> Most reasons that are told apart
+   !> Largest number of different reasons
    integer, parameter :: most_reasons = 20
 
-   !> One reason, of fixed length so that ranks can send it
+   !> A reason, of fixed length so that ranks can send it
    type :: failure_t
       integer :: count = 0
-      !> First of them
+      !> Number of its first point
       integer :: first = huge(1)
-      !> What was wrong there; blank: the estimated error is above the accuracy asked for
+      !> Message of that point; blank: the estimated error is above the requested accuracy
       character(len=504) :: message = ''
    end type failure_t
 
@@ -93,26 +94,26 @@ module vcor_sweep_points
       !> Number of points without a result
       integer :: count = 0
       integer :: reasons = 0
-      !> Reasons; those in use are 1 to `reasons`
+      !> Reasons; 1 .. `reasons` are in use
       type(failure_t) :: reason(most_reasons)
-      !> Points with an estimated error above the accuracy asked for
+      !> Points with an estimated error above the requested accuracy
       type(failure_t) :: inexact
    contains
       procedure :: note, sort, add_packed
       procedure :: pack => pack_reasons
    end type failures_t
 
-   !> Who watches a sweep: keeps what is finished, shows how far it is, says when to stop
+   !> Observer of a sweep: it stores results, shows progress and may stop the sweep
    type, abstract :: monitor_t
    contains
-      !> Points are finished
+      !> Called when points are finished
       procedure(finished_i), deferred :: finished
       !> Whether the sweep has to stop
       procedure(stop_code_i), deferred, nopass :: stop_code
    end type monitor_t
 
    abstract interface
-      !> Points are finished; called on the first rank only
+      !> Called on the first rank when points are finished
       subroutine finished_i(self, first, last, count, summary, error)
          import :: error_t, monitor_t, summary_t
          class(monitor_t), intent(inout) :: self
@@ -120,16 +121,16 @@ module vcor_sweep_points
          integer, intent(in) :: first
          !> Last place that may have changed
          integer, intent(in) :: last
-         !> Number of points between them that are new
+         !> Number of newly finished points between these places
          integer, intent(in) :: count
          type(summary_t), intent(inout) :: summary
-         !> What ends the sweep: its results cannot be kept, say; unallocated on success
+         !> Error that ends the sweep, such as a full disk; unallocated on success
          type(error_t), allocatable, intent(out) :: error
       end subroutine finished_i
 
-      !> Whether the sweep has to stop, after the points that are at work
+      !> Whether the sweep has to stop after the points in progress
       function stop_code_i() result(code)
-         !> 0 to go on; whatever else is handed to who has begun the sweep
+         !> 0 to continue; any other code is passed to the caller of the sweep
          integer :: code
       end function stop_code_i
    end interface
@@ -144,7 +145,7 @@ contains
       yes = size(self%grid%axes) > 0
    end function is_grid
 
-   !> Build what the impacts of a case have in common
+   !> Build what all impacts of a case have in common
    subroutine new_sweep(self, case, error)
       type(sweep_t), intent(out) :: self
       !> A validated case, its data read
@@ -174,7 +175,7 @@ contains
       end do
       call problem_of_case(self%problem, self%case, error)
       if (.not. allocated(error)) return
-      ! what varies may be sound at other points
+      ! other values of the parameters that vary may be valid
       do i = 1, n
          if (.not. has_part(self%case, self%grid%axes(i)%address, error)) cycle
          deallocate (error)
@@ -185,14 +186,14 @@ contains
    !> Solve one point
    subroutine solve_point(self, point, worker, outcome, error)
       type(sweep_t), intent(in) :: self
-      !> Number of the point, from 1
+      !> Index of the point, from 1
       integer, intent(in) :: point
-      !> Impact and trajectory of the point; begins as a new one and may be used again for others
+      !> Working storage of the thread: a new one, or that of an earlier point
       type(worker_t), intent(inout) :: worker
-      !> Its outcome; without numbers on failure
+      !> Outcome; without numbers on failure
       type(outcome_t), intent(out) :: outcome
-      !> Error of code `error_input` if the parameters describe no impact that can be solved, or of
-      !> another if the solution fails; unallocated on success, with or without a separation
+      !> Error of code `error_input` if the parameters describe no impact that can be solved, of
+      !> another code if the solution fails; unallocated on success, even without separation
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: value
@@ -220,10 +221,10 @@ contains
          steps=outcome%steps)
    end subroutine solve_point
 
-   !> Why an impact has no coefficient of restitution
+   !> Reason why an impact has no coefficient of restitution
    pure function lacking(status) result(reason)
       integer, intent(in) :: status
-      !> In words; empty where it has one
+      !> In words; empty if it has one
       character(len=:), allocatable :: reason
 
       select case (status)
@@ -238,10 +239,10 @@ contains
       end select
    end function lacking
 
-   !> Threads where none are asked for: the cores that the process may use, or what the environment
-   !> variable OMP_NUM_THREADS says
+   !> Default number of threads: the cores that the process may use, or OMP_NUM_THREADS of the
+   !> environment
    function default_threads() result(threads)
-      !> Number, at least 1; without OpenMP 1
+      !> Number, >= 1; without OpenMP 1
       integer :: threads
 
       threads = 1
@@ -251,14 +252,14 @@ contains
    !> Solve all points of a sweep
    subroutine solve_sweep(sweep, threads, summary, failures, error)
       type(sweep_t), intent(in) :: sweep
-      !> Threads, > 0; without OpenMP there is one
+      !> Number of threads, > 0; without OpenMP there is one
       integer, intent(in) :: threads
-      !> Outcomes, each at the number of its point
+      !> Outcomes, each at the index of its point
       type(summary_t), intent(out) :: summary
-      !> What points have no result and why
+      !> Points without a result, and the reasons
       type(failures_t), intent(out) :: failures
-      !> Error of code `error_file` if there is not enough memory, unallocated on success, with or
-      !> without results
+      !> Error of code `error_file` if memory is too small, `error_input` if sweep or threads are
+      !> invalid; unallocated on success, even if no point has a result
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. allocated(sweep%grid%axes)) then
@@ -273,26 +274,25 @@ contains
          threads, summary, failures, error)
    end subroutine solve_sweep
 
-   !> Solve what is pending of a part of a sweep; all ranks call this
+   !> Solve the pending points of a part of a sweep; all ranks call this
    subroutine solve_points(sweep, part, threads, summary, failures, error, monitor, stopped)
       type(sweep_t), intent(in) :: sweep
       !> Part of its points
       type(part_t), intent(in) :: part
       !> Threads of this rank, > 0; without OpenMP there is one
       integer, intent(in) :: threads
-      !> Outcomes of all places of the part, those that are there already included; on the first
-      !> rank
+      !> On the first rank the outcomes at all places of the part; those already there are kept
       type(summary_t), intent(inout) :: summary
-      !> What points have no result and why; on the first rank
+      !> On the first rank the points without a result, and the reasons
       type(failures_t), intent(out) :: failures
-      !> What ended the sweep; unallocated on success. Ranks may have different ones
+      !> Error that ended the sweep, which may differ between ranks; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Who watches, if anyone
+      !> Observer of the sweep
       class(monitor_t), intent(inout), optional :: monitor
-      !> Stop code of the monitor if it has ended the sweep before its time, 0 otherwise
+      !> Stop code of the monitor if it ended the sweep early, 0 otherwise
       integer, intent(out), optional :: stopped
 
-      !> What the threads of this rank work with, one for each; kept from round to round
+      !> Working storage of the threads of this rank, kept from round to round
       type(worker_t), allocatable :: workers(:)
       integer, allocatable :: pending(:)
       real(wp), allocatable :: numbers(:)
@@ -312,7 +312,7 @@ contains
       done = 0
       length = fewest*threads*rank_count()
       do
-         ! the first rank's length, and any rank's wish to stop
+         ! length of the next round from the first rank; a wish to stop from any rank
          agreed = [merge(length, 0, this_rank() == 0), stop_code(monitor), &
             merge(1, 0, allocated(error))]
          agreed = largest_of_ranks(agreed)
@@ -335,14 +335,14 @@ contains
       call failures%sort()
       if (.not. present(stopped)) return
       stopped = agreed(2)
-      ! what came too late to end anything
+      ! a stop after the last point has no effect
       if (this_rank() == 0) then
          if (.not. any(summary%status == point_pending)) stopped = 0
       end if
 
    contains
 
-      !> Solve the points of a round: this rank its part of them
+      !> Solve the points of a round, each rank its part
       subroutine solve_round(places)
          !> Places of the points of the round
          integer, intent(in) :: places(:)
@@ -357,7 +357,7 @@ contains
          columns = size(values_of(outcome_t()))
          allocate (rows(columns, own%count()))
          team = max(1, min(threads, own%count()))
-         ! short enough that all threads end at about the same time
+         ! small enough for all threads to end at about the same time
          chunk = max(1, min(longest_chunk, own%count()/(8*team)))
 !$omp parallel default(none) num_threads(team) &
 !$omp shared(sweep, part, own, places, chunk, workers, rows, failures, monitor)
@@ -407,20 +407,20 @@ contains
       end subroutine solve_round
    end subroutine solve_points
 
-   !> Whether to stop
+   !> Stop code of a monitor, if there is one
    function stop_code(monitor) result(code)
-      !> Who watches, if anyone
+      !> Observer of the sweep
       class(monitor_t), intent(in), optional :: monitor
-      !> 0 to go on
+      !> 0 to continue
       integer :: code
 
       code = 0
       if (present(monitor)) code = monitor%stop_code()
    end function stop_code
 
-   !> Time by the clock on the wall
+   !> Wall-clock time
    function clock() result(time)
-      !> Time since some moment, > 0 [s]
+      !> Time since an arbitrary origin, > 0 [s]
       real(wp) :: time
 
       integer(int64) :: count, rate
@@ -429,14 +429,14 @@ contains
       time = real(count, wp)/real(rate, wp)
    end function clock
 
-   !> Note points. In whatever order they come, the reasons are the same in the end, as long as
-   !> there are not more than `most_reasons`; the rest counts for the last one
+   !> Count points for a reason. The result does not depend on the order of calls, as long as there
+   !> are no more than `most_reasons` reasons; the last one includes the rest
    pure subroutine note(self, point, message, count)
       class(failures_t), intent(inout) :: self
-      !> Number of the first of the points
+      !> Index of the first of the points
       integer, intent(in) :: point
-      !> Why they have no result; what differs in its numbers only is the same reason. Empty: they
-      !> have one with an estimated error above the accuracy asked for
+      !> Why they have no result; messages that differ only in numbers are one reason. Empty: they
+      !> have a result with an estimated error above the requested accuracy
       character(len=*), intent(in) :: message
       !> Number of points; absent: 1
       integer, intent(in), optional :: count
@@ -470,7 +470,7 @@ contains
       end subroutine add
    end subroutine note
 
-   !> All reasons as numbers
+   !> All reasons as numbers, which ranks can send
    pure function pack_reasons(self) result(numbers)
       class(failures_t), intent(in) :: self
       !> Numbers, shape (n)
@@ -482,7 +482,7 @@ contains
    !> Add reasons from numbers
    pure subroutine add_packed(self, numbers)
       class(failures_t), intent(inout) :: self
-      !> Numbers, as `pack` made them, any number of times, shape (n)
+      !> Numbers from any number of calls of `pack`, shape (n)
       real(wp), intent(in) :: numbers(:)
 
       type(failure_t), allocatable :: others(:)
@@ -495,7 +495,7 @@ contains
       end do
    end subroutine add_packed
 
-   !> Order the reasons by their first point
+   !> Sort the reasons by their first point
    pure subroutine sort(self)
       class(failures_t), intent(inout) :: self
 
@@ -515,7 +515,7 @@ contains
    !> A message without its numbers
    pure function words_of(message) result(words)
       character(len=*), intent(in) :: message
-      !> Its text without what numbers are written with
+      !> The text without the characters of numbers
       character(len=:), allocatable :: words
 
       character(len=*), parameter :: numeric = '0123456789+-.eE'

@@ -1,5 +1,5 @@
-!> The columns of a summary and of a history: their names, units and values, for files, the screen
-!> and --print; and the outcomes of many impacts column by column, each in the place of its point
+!> Columns of a summary and of a history for files, the screen and --print: names, units and values;
+!> and the outcomes of many impacts by column
 module vcor_sweep_quantity
    use, intrinsic :: ieee_arithmetic, only : ieee_quiet_nan, ieee_value
    use, intrinsic :: iso_fortran_env, only : int64
@@ -19,7 +19,7 @@ module vcor_sweep_quantity
    public :: summary_t, values_t, new_summary
    public :: status_t, statuses, status_name, point_pending, point_invalid, point_failed
 
-   !> Status of a point of a sweep beside the `contact_*` constants: it is not solved yet
+   !> Status of a point of a sweep beside the `contact_*` constants: not solved yet
    integer, parameter :: point_pending = contact_unknown
    !> Its parameters describe no impact
    integer, parameter :: point_invalid = 3
@@ -32,14 +32,14 @@ module vcor_sweep_quantity
       integer :: code
       !> Its name in the column `status`
       character(len=13) :: name
-      !> What it says, one line
+      !> Meaning, one line
       character(len=64) :: meaning
-      !> What to do about it, one line
+      !> Advice, one line
       character(len=96) :: advice
    end type status_t
 
-   !> All that a contact, or a point of a sweep, may come to; by their code, the first one at the
-   !> end
+   !> All states of a contact or of a point of a sweep, in the order of their codes, except that the
+   !> smallest code is last
    type(status_t), parameter :: statuses(*) = [ &
       status_t(contact_separated, 'separated', 'the force returned to zero: the normal end', ''), &
       status_t(contact_lasting, 'no_separation', &
@@ -65,47 +65,46 @@ module vcor_sweep_quantity
       character(len=8) :: symbol
       !> Unit; 1 for a pure number, empty for a text
       character(len=8) :: unit
-      !> What it is
+      !> Meaning
       character(len=56) :: meaning
       !> Whether its values are whole numbers
       logical :: is_whole = .false.
-      !> Texts that these numbers stand for, each with a blank before it; empty where they are
-      !> numbers
+      !> Texts that the numbers stand for, each after a blank; empty if the values are numbers
       character(len=320) :: labels = ''
       !> Number of the first text
       integer :: first = 0
    end type quantity_t
 
-   !> Most columns of a summary
+   !> Largest number of columns of a summary
    integer, parameter :: most = 64
-   !> Letters of the longest text of a column
+   !> Length of the longest text of a column
    integer, parameter :: label_length = 20
 
-   !> The columns of a summary as `list_columns` goes through them
+   !> Columns of a summary, as `list_columns` fills them
    type :: list_t
       !> Number of columns
       integer :: n = 0
-      !> Their values
+      !> Values
       real(wp) :: values(most) = 0.0_wp
-      !> What they are, shape (most); unallocated where nobody asks
+      !> Descriptions, shape (most); unallocated if only values are needed
       type(quantity_t), allocatable :: quantities(:)
    contains
       procedure :: add
    end type list_t
 
-   !> Values of one column, shape (points); NaN or 0 where a point has none, or is new
+   !> Values of one column, shape (points); NaN or 0 if a point has none or is new
    type :: values_t
-      !> Of numbers, in their unit
+      !> Real numbers, in their unit
       real(wp), allocatable :: reals(:)
-      !> Of whole numbers and of the numbers that stand for texts
+      !> Whole numbers, and numbers of texts
       integer, allocatable :: integers(:)
    end type values_t
 
-   !> Outcomes
+   !> Outcomes of many impacts, by column
    type :: summary_t
-      !> What the columns are, the status the last one
+      !> Descriptions of the columns, the status last
       type(quantity_t), allocatable :: quantities(:)
-      !> All but the status, in the order of `quantities`
+      !> Values of all columns except the status, in the order of `quantities`
       type(values_t), allocatable :: values(:)
       !> Status, one of the `contact_*` and `point_*` constants, shape (points)
       integer, allocatable :: status(:)
@@ -113,7 +112,7 @@ module vcor_sweep_quantity
       procedure :: put, put_part
    end type summary_t
 
-   !> Columns of a history, in the order of the rows of a trajectory's state
+   !> Columns of a history, in the order of the rows of the state of a trajectory
    type(quantity_t), parameter :: history_quantities(columns) = [ &
       quantity_t('time', 't', 's', 'time since first contact'), &
       quantity_t('indentation', 's', 'm', 'indentation'), &
@@ -127,12 +126,12 @@ module vcor_sweep_quantity
 
 contains
 
-   !> The columns of a summary, in their order: name, symbol, unit, meaning, value. This is the only
-   !> place that a new column needs. An outcome without result has NaN for its numbers
+   !> List the columns of a summary in their order: name, symbol, unit, meaning, value. A new column
+   !> needs no other place. Without a result the outcome has NaN for its numbers
    pure subroutine list_columns(list, outcome)
       !> The columns
       type(list_t), intent(inout) :: list
-      !> The outcome that they are of
+      !> Outcome that the values are taken from
       type(outcome_t), intent(in) :: outcome
 
       call list%add('cor', 'e', '1', 'coefficient of restitution, relative velocity', outcome%cor)
@@ -197,7 +196,7 @@ contains
          labels=[character(len=label_length) :: 'none', thresholds%measure], first=0)
       call list%add('steps', '', '1', 'number of time steps', real(outcome%steps, wp), &
          is_whole=.true.)
-      ! it has to be the last one
+      ! the status must be the last column
       call list%add('status', '', '', 'how the contact ended', real(outcome%status, wp), &
          labels=[statuses(size(statuses))%name, statuses(:size(statuses) - 1)%name], &
          first=point_pending)
@@ -207,9 +206,9 @@ contains
    pure subroutine add(self, name, symbol, unit, meaning, value, is_whole, labels, first)
       class(list_t), intent(inout) :: self
       character(len=*), intent(in) :: name, symbol, unit, meaning
-      !> Value, in this unit, which is empty for texts; the number of the text
+      !> Value in this unit, or number of the text; the unit of texts is empty
       real(wp), intent(in) :: value
-      !> Whether its values are whole numbers; those of texts are
+      !> Whether values are whole numbers, as those of texts always are
       logical, intent(in), optional :: is_whole
       !> All texts, each one word, and the number of the first one
       character(len=*), intent(in), optional :: labels(:)
@@ -233,7 +232,7 @@ contains
 
    !> Columns of a summary
    pure function quantities()
-      !> What they are, in their order; the status is the last one
+      !> Descriptions, in their order, the status last
       type(quantity_t), allocatable :: quantities(:)
 
       type(list_t) :: list
@@ -243,7 +242,7 @@ contains
       quantities = list%quantities(:list%n)
    end function quantities
 
-   !> An outcome as numbers
+   !> Values of an outcome
    pure function values_of(outcome) result(values)
       type(outcome_t), intent(in) :: outcome
       !> Values of the columns, each in its unit, in the order of `quantities`
@@ -258,7 +257,7 @@ contains
    !> Place of a quantity among the columns
    pure function quantity_place(name) result(place)
       character(len=*), intent(in) :: name
-      !> Its place in `quantities`; 0 where there is none of this name
+      !> Place in `quantities`; 0 if there is none of this name
       integer :: place
 
       type(quantity_t), allocatable :: list(:)
@@ -269,12 +268,12 @@ contains
       end do
    end function quantity_place
 
-   !> Value of a quantity
+   !> Value of a quantity of an outcome
    pure function quantity_value(outcome, name) result(value)
       type(outcome_t), intent(in) :: outcome
       !> Name of the quantity
       character(len=*), intent(in) :: name
-      !> Value, in its unit; NaN where the impact has none, or there is no quantity of this name
+      !> Value, in its unit; NaN if the impact has none, or there is no such quantity
       real(wp) :: value
 
       type(list_t) :: list
@@ -287,16 +286,16 @@ contains
       value = list%values(place)
    end function quantity_value
 
-   !> Texts that the numbers of a column stand for
+   !> Texts of a column
    pure function labels_of(quantity) result(labels)
       !> The column
       type(quantity_t), intent(in) :: quantity
-      !> The texts, the first one that of the number `quantity%first`
+      !> The texts; the first one has the number `quantity%first`
       character(len=label_length), allocatable :: labels(:)
 
       integer :: i
 
-      ! each has a blank before it
+      ! a blank precedes each text
       allocate (labels(count([(quantity%labels(i:i) == ' ', i=1, len_trim(quantity%labels))])))
       read (quantity%labels, *) labels
    end function labels_of
@@ -372,11 +371,11 @@ contains
       allocate (self%status(points), source=point_pending)
    end subroutine new_summary
 
-   !> Keep the outcome of a point
+   !> Store the outcome of a point
    pure subroutine put(self, place, values)
       class(summary_t), intent(inout) :: self
       integer, intent(in) :: place
-      !> The outcome as numbers, as `values_of` makes them
+      !> Values of the outcome from `values_of`
       real(wp), intent(in) :: values(:)
 
       integer :: i
@@ -391,7 +390,7 @@ contains
       self%status(place) = nint(values(size(values)))
    end subroutine put
 
-   !> Keep the outcomes of a part
+   !> Store the outcomes of a part
    pure subroutine put_part(self, part, outcomes)
       class(summary_t), intent(inout) :: self
       type(part_t), intent(in) :: part
