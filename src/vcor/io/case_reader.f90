@@ -1,7 +1,7 @@
-!> Case files and command line options into a case
+!> Reads case files and command line options into a case
 !>
-!> Reading, overriding and validating are steps of their own: an option can mend what the file has
-!> wrong.
+!> Reading, overriding and validating are separate steps, so an option can correct an error in the
+!> file.
 module vcor_io_case_reader
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_case_namelist, only : namelist_t, new_namelist, statement_t
@@ -17,18 +17,18 @@ module vcor_io_case_reader
 
    public :: read_case, read_case_text, add_materials, override
 
-   !> Most items of a repeated group
+   !> Largest number of items of a repeated group
    integer, parameter :: most_items = 1000
 
 contains
 
-   !> Read a case file; what it says is not validated
+   !> Read a case file, without validation
    subroutine read_case(case, filename, error)
-      !> The case, which starts anew
+      !> The case; its earlier contents are lost
       type(case_t), intent(inout) :: case
       character(len=*), intent(in) :: filename
-      !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
-      !> are wrong
+      !> Error of code `error_file` if the file cannot be read, `error_input` if its contents are
+      !> wrong
       type(error_t), allocatable, intent(out) :: error
       character(len=:), allocatable :: text
 
@@ -38,9 +38,9 @@ contains
       call read_case_text(case, text, filename, error)
    end subroutine read_case
 
-   !> Read the text of a case; what it says is not validated
+   !> Read the text of a case, without validation
    subroutine read_case_text(case, text, source, error)
-      !> The case, which starts anew
+      !> The case; its earlier contents are lost
       type(case_t), intent(inout) :: case
       character(len=*), intent(in) :: text
       !> Name of its source, for messages and for the default of `output.stem`
@@ -67,10 +67,10 @@ contains
             //": the file is empty, expected groups such as &impact velocity = 5.0 /")
    end subroutine read_case_text
 
-   !> Add the materials of another file to a case; their data files are in its folder
+   !> Add the materials of another file to a case; their data files are relative to its folder
    subroutine add_materials(case, materials)
       type(case_t), intent(inout) :: case
-      !> A case of nothing but materials
+      !> A case with materials only
       type(case_t), intent(in) :: materials
 
       character(len=*), parameter :: keys(2) = [character(len=10) :: 'file', 'shift_file']
@@ -133,12 +133,12 @@ contains
    !> Read one statement
    subroutine read_statement(case, namelist, statement, group, item, message)
       type(case_t), intent(inout) :: case
-      !> The namelists the statement is from
+      !> Namelists of the statement
       type(namelist_t), intent(in) :: namelist
       type(statement_t), intent(in) :: statement
       integer, intent(in) :: group
       integer, intent(in) :: item
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
       type(entry_t) :: entry, before
       type(address_t) :: address
@@ -169,11 +169,11 @@ contains
       end associate
    end subroutine read_statement
 
-   !> Whether a section is the whole of a list; f90nml can be told to write such ones
+   !> Whether a section is that of a whole list; f90nml can be told to write such sections
    pure function is_whole(section, n) result(yes)
-      !> What stands in parentheses
+      !> Text in the parentheses
       character(len=*), intent(in) :: section
-      !> Numbers of the list
+      !> Length of the list
       integer, intent(in) :: n
       logical :: yes
 
@@ -181,15 +181,15 @@ contains
          '1:'//integer_text(n)]) .or. (section == '1' .and. n == 1)
    end function is_whole
 
-   !> Set one value by `path=value`, as the option --set has it
+   !> Set a value by `path=value`, as for the option --set
    subroutine override(case, setting, error, option)
       type(case_t), intent(inout) :: case
-      !> `group.key=value` or `material_name.key=value`; a text may stand without quotes
+      !> `group.key=value` or `material_name.key=value`; a text needs no quotes
       character(len=*), intent(in) :: setting
-      !> Error of code `error_usage` when path or value cannot be read, `error_input` when the
-      !> value is out of range; unallocated on success
+      !> Error of code `error_usage` if path or value cannot be read, `error_input` if the value is
+      !> out of range; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> What messages about the value begin with, before its address; absent: nothing
+      !> Beginning of messages about the value, before its address; absent: none
       character(len=*), intent(in), optional :: option
 
       type(entry_t) :: entry
@@ -234,15 +234,16 @@ contains
          call raise(error, error_input, entry%origin//": "//message)
          return
       end if
-      ! two options for one thing are left to the check; a program that sets both means the last
+      ! the check refuses two options for one quantity; of two calls by a program the last one
+      ! counts
       call case%oust(address, always=.not. present(option))
       call case%set(address, entry)
    end subroutine override
 
-   !> Position of the equals sign between path and value; a name in quotes may have one, too
+   !> Position of the equals sign between path and value; a quoted name may contain one, too
    pure function end_of_path(setting) result(mark)
       character(len=*), intent(in) :: setting
-      !> Position, 0 when there is none
+      !> Position, 0 if there is none
       integer :: mark
       integer :: start
 

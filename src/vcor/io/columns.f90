@@ -1,9 +1,9 @@
 !> Columns of numbers in text files, as spreadsheets, other programs and people write them
 !>
-!> Between columns stands a comma, a semicolon, a tab or blanks; between words with tabs, which are
-!> names or units, tabs alone. Lines end as they do on any system, what follows a # does not count,
-!> and a byte-order mark is passed over. Numbers may have decimal commas where something else stands
-!> between the columns. A line `sep=;` counts as blank.
+!> Columns are separated by commas, semicolons, tabs or blanks; in lines with tabs that begin with a
+!> word, a name or unit, by tabs only. Any line ends are accepted, text after a # and a byte-order
+!> mark are ignored. Numbers may have decimal commas if columns are separated by something else. A
+!> line `sep=;` counts as blank.
 module vcor_io_columns
    use vcor_case_real, only : looks_numeric, read_real
    use vcor_kinds, only : wp
@@ -16,17 +16,17 @@ module vcor_io_columns
 
    character(len=*), parameter :: line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: byte_order_mark = char(239)//char(187)//char(191)
-   !> What is blank
+   !> Blank characters
    character(len=*), parameter :: tab = achar(9), blanks = " "//tab
 
-   !> What to say of a file with both ways to write numbers
+   !> Message about a file with decimal commas and points
    character(len=*), parameter :: mixed_decimals = "found both decimal commas and decimal points" &
          //", expected one of them in all lines"
-   !> What to say of a file that is none of text
+   !> Message about a file that is no text
    character(len=*), parameter :: not_a_text = "found a control character, expected a text file " &
          //"(in ASCII or UTF-8)"
 
-   !> How the numbers of a file are written
+   !> Form of the numbers of a file
    type :: decimals_t
       !> Whether some have decimal commas
       logical :: commas = .false.
@@ -34,24 +34,24 @@ module vcor_io_columns
       logical :: points = .false.
    end type decimals_t
 
-   !> Most columns of a file
+   !> Largest number of columns of a file
    integer, parameter :: most_columns = 64
 
-   !> A text line by line
+   !> A text, read line by line
    type :: row_t
       !> Number of the line, 0 before the first one is taken
       integer :: line = 0
-      !> False behind the last line, whose number is kept
+      !> False after the last line; `line` remains its number
       logical :: is_there = .true.
-      !> The line without its end and without what follows a #, its decimal commas made points
+      !> The line without its end and without text after a #, decimal commas replaced by points
       character(len=:), allocatable :: content
-      !> What follows the #
+      !> Text after the #
       character(len=:), allocatable :: comment
       !> Number of its columns, 0 in a blank line
       integer :: columns = 0
-      !> How the numbers of this line and of all lines that `check` has seen are written
+      !> Form of the numbers in this line, and in all lines checked so far
       type(decimals_t) :: here, so_far
-      !> Where the next line begins, and where the columns of this one do and end
+      !> Start of the next line; first and last character of each column of this one
       integer, private :: next = 0, from(most_columns) = 1, to(most_columns) = 0
    contains
       procedure :: cell, is_numeric
@@ -78,7 +78,7 @@ contains
    !> Check a line of numbers
    pure subroutine check_row(self, message)
       class(row_t), intent(inout) :: self
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       self%so_far%commas = self%so_far%commas .or. self%here%commas
@@ -93,7 +93,7 @@ contains
    !> A column
    pure function cell(self, i)
       class(row_t), intent(in) :: self
-      !> Its number, at most `columns` and `most_columns`
+      !> Index of the column, at most `columns` and `most_columns`
       integer, intent(in) :: i
       character(len=:), allocatable :: cell
 
@@ -103,14 +103,14 @@ contains
    !> Whether a column looks like a number
    elemental function is_numeric(self, i)
       class(row_t), intent(in) :: self
-      !> Its number
+      !> Index of the column
       integer, intent(in) :: i
       logical :: is_numeric
 
       is_numeric = looks_numeric(self%content(self%from(i):self%to(i)))
    end function is_numeric
 
-   !> Number of lines in a text, or a little more
+   !> Upper bound of the number of lines of a text
    pure function lines_in(text) result(n)
       character(len=*), intent(in) :: text
       integer :: n
@@ -122,14 +122,14 @@ contains
       end do
    end function lines_in
 
-   !> Take a line from a text; one that names the separator becomes blank
+   !> Read a line of a text; a line that names the separator becomes blank
    pure subroutine take_line(text, start, content, comment)
       character(len=*), intent(in) :: text
-      !> Where the line begins, on return where the next one does
+      !> Start of the line; on return start of the next one
       integer, intent(inout) :: start
-      !> The line without its end and without what follows a #
+      !> The line without its end and without text after a #
       character(len=:), allocatable, intent(out) :: content
-      !> What follows the #
+      !> Text after the #
       character(len=:), allocatable, intent(out) :: comment
       integer :: last, mark
 
@@ -144,8 +144,8 @@ contains
       if (text(start-1:start) == carriage_return//line_feed) start = start + 1
    end subroutine take_line
 
-   !> Whether a line names what stands between the columns, as `sep=;`, which Excel asks for: the
-   !> lines that follow show it
+   !> Whether a line is `sep=;`, by which Excel learns the separator; here it follows from the lines
+   !> of numbers
    pure function names_separator(content) result(yes)
       character(len=*), intent(in) :: content
       logical :: yes
@@ -154,10 +154,10 @@ contains
       if (yes) yes = lower(content(:4)) == "sep=" .and. scan(content(5:), ",; "//achar(9)) == 1
    end function names_separator
 
-   !> Make points of the decimal commas of a line
+   !> Replace the decimal commas of a line by points
    pure subroutine take_decimals(content, decimals)
       character(len=*), intent(inout) :: content
-      !> How its numbers are written, on return
+      !> Form of its numbers
       type(decimals_t), intent(out) :: decimals
       integer :: i
 
@@ -169,7 +169,7 @@ contains
       end do
    end subroutine take_decimals
 
-   !> Whether each comma of a line is between two digits, and something else between its columns
+   !> Whether each comma of a line is between two digits, and columns have another separator
    pure function has_decimal_commas(content) result(yes)
       character(len=*), intent(in) :: content
       logical :: yes
@@ -189,15 +189,15 @@ contains
       yes = .true.
    end function has_decimal_commas
 
-   !> Find the columns of a line: between commas or semicolons if there are any, else between tabs
-   !> in a line of words (a cell may be empty there), else between blanks
+   !> Find the columns of a line: separated by commas or semicolons if there are any, otherwise by
+   !> tabs in a line of words (cells may be empty then), otherwise by blanks
    pure subroutine split(content, columns, from, to)
       character(len=*), intent(in) :: content
-      !> Their number, 0 in a blank line
+      !> Number of columns, 0 in a blank line
       integer, intent(out) :: columns
-      !> Where each of them begins, as far as there is room, shape (n)
+      !> First character of each column, as far as there is room, shape (n)
       integer, intent(out) :: from(:)
-      !> Where it ends, blanks left out, shape (n)
+      !> Last character without blanks, shape (n)
       integer, intent(out) :: to(:)
       character(len=:), allocatable :: between
       integer :: start, last
@@ -233,15 +233,15 @@ contains
 
    !> Read a time, a frequency or a modulus
    subroutine read_value(cell, what, size_of_unit, value, message)
-      !> What stands in the file
+      !> Text of the column
       character(len=*), intent(in) :: cell
-      !> What it is, in words
+      !> Name of the quantity, for messages
       character(len=*), intent(in) :: what
-      !> Its unit in that of the SI
+      !> Size of its unit in SI units
       real(wp), intent(in) :: size_of_unit
-      !> The number, in its unit, > 0
+      !> The number in its unit, > 0
       real(wp), intent(out) :: value
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
       character(len=:), allocatable :: expected
 

@@ -1,5 +1,5 @@
-!> Tables as text: files of comma-separated values (RFC 4180, lines end with LF), and bare values
-!> for scripts
+!> Tables as text: files of comma-separated values (RFC 4180, but lines end with LF), and plain
+!> values for scripts
 !>
 !>     # vcor 1.0.0
 !>     # title: rubber ball on steel
@@ -12,10 +12,10 @@
 !>     cor,status
 !>     6.9313750012345678e-01,separated
 !>
-!> All lines that begin with `#` come first, then one line with the names, then the rows. Taking the
-!> first two characters of the lines after `# case:` away gives the case again. Numbers have 17
-!> digits (`vcor_io_number`); text stands between quotation marks only if it has to. The coordinates
-!> of a dimension are columns too, unless they are just numbers in a row.
+!> Lines that begin with `#` come first, then one line with the names, then the rows. The lines
+!> after `# case:` without their first two characters are the case. Numbers have 17 digits
+!> (`vcor_io_number`); texts are quoted only if necessary. Coordinates of a dimension are a column
+!> too, unless they are the numbers 1, 2, 3 ...
 module vcor_io_csv
    use, intrinsic :: iso_c_binding, only : c_carriage_return, c_new_line
    use vcor_error, only : error_t
@@ -30,10 +30,10 @@ module vcor_io_csv
 
    public :: write_csv, write_rows
 
-   !> What makes quotation marks necessary; `#` begins a comment for most readers
+   !> Characters for which a text must be quoted; `#` begins a comment for most readers
    character(len=*), parameter :: special = '",#'//c_new_line//c_carriage_return
 
-   !> Text on its way out
+   !> A block of text to be written
    type :: text_block_t
       !> Room for the text
       character(len=:), allocatable :: text
@@ -45,14 +45,14 @@ module vcor_io_csv
 
 contains
 
-   !> Write a table to a file; the file is there as a whole or, if that fails, as it was before
+   !> Write a table to a file, which appears complete or, on failure, stays as it was
    subroutine write_csv(filename, table, error, threads)
-      !> Name of the file; replaced if it is there
+      !> Name of the file; an existing one is replaced
       character(len=*), intent(in) :: filename
       type(table_t), intent(in) :: table
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Threads that turn numbers into text; one where this is absent
+      !> Threads that convert numbers to text; absent: 1
       integer, intent(in), optional :: threads
 
       type(output_file_t) :: file
@@ -66,11 +66,11 @@ contains
       if (.not. allocated(error)) call commit(file, error)
    end subroutine write_csv
 
-   !> Write some dimensions and columns of all rows to the standard output, a line per row with
-   !> blanks between the values
+   !> Write some dimensions and columns of all rows to standard output, a line per row, values
+   !> separated by blanks
    subroutine write_rows(table, places, error)
       type(table_t), intent(in) :: table
-      !> Places of dimensions and columns (`place_in_table`), in their order, shape (n), n > 0
+      !> Places of dimensions and columns (`place_in_table`) in order of output, shape (n), n > 0
       integer, intent(in) :: places(:)
       !> Set if they could not be written
       type(error_t), allocatable, intent(out) :: error
@@ -78,22 +78,21 @@ contains
       call put_rows(table, places, ' ', error)
    end subroutine write_rows
 
-   !> Write rows: threads turn some of them into text at a time, and write it in their order
+   !> Write rows: each thread converts a block of rows, and the blocks are written in order
    subroutine put_rows(table, places, separator, error, file, threads)
       type(table_t), intent(in) :: table
       !> Places of dimensions and columns, shape (n), n > 0
       integer, intent(in) :: places(:)
-      !> What stands between values; where it is a comma text stands between quotation marks if need
-      !> be
+      !> Separator of values; if it is a comma, texts are quoted if necessary
       character, intent(in) :: separator
       !> Set if they could not be written; the file is discarded then
       type(error_t), allocatable, intent(out) :: error
-      !> Open file; the standard output where this is absent
+      !> Open file; absent: standard output
       type(output_file_t), intent(inout), optional :: file
-      !> Threads that turn numbers into text; one where this is absent
+      !> Threads that convert numbers to text; absent: 1
       integer, intent(in), optional :: threads
 
-      ! a few milliseconds: long against what threads wait for each other
+      ! rows of a block: a few milliseconds, long against the time that threads wait
       integer, parameter :: some = 2048
       integer :: n, rows, team
 
@@ -120,7 +119,7 @@ contains
                         coordinate_row(table, places(i), row), separator)
                   end if
                end do
-               ! the line ends in place of the last separator
+               ! the end of the line replaces the last separator
                lines%text(lines%last:lines%last) = c_new_line
             end do
 !$omp ordered
@@ -135,12 +134,12 @@ contains
 !$omp end parallel
    end subroutine put_rows
 
-   !> Make room for a block of text
+   !> Allocate a block of text
    pure subroutine new_block(block, table, places, rows)
       type(text_block_t), intent(out) :: block
-      !> Table whose rows it is for
+      !> Table of the rows
       type(table_t), intent(in) :: table
-      !> Places of the values in a row
+      !> Places of the values of a row
       integer, intent(in) :: places(:)
       integer, intent(in) :: rows
 
@@ -148,12 +147,12 @@ contains
 
       width = max(0, maxval(table%dimensions%width), maxval(table%columns%width))
       call new_decimal(block%decimal)
-      ! each letter of a text may be a quotation mark, which is written twice
+      ! each character of a text may be a quotation mark, which is doubled
       allocate (character(len=rows*size(places)*max(longest_real + 1, longest_integer + 1, &
          2*width + 3)) :: block%text)
    end subroutine new_block
 
-   !> Add one value and what stands behind it
+   !> Add a value and a separator
    subroutine put_value(block, column, row, separator)
       !> Text with room for the value
       type(text_block_t), intent(inout) :: block
@@ -176,7 +175,7 @@ contains
       block%text(block%last:block%last) = separator
    end subroutine put_value
 
-   !> What describes a table, and the line of the names
+   !> The comments before a table, and the line of names
    function head_of(table) result(text)
       type(table_t), intent(in) :: table
       character(len=:), allocatable :: text
@@ -208,7 +207,7 @@ contains
 
    contains
 
-      !> Describe a column, and keep its name
+      !> Add the comment of a column, and its name
       subroutine add_column(column)
          type(column_t), intent(in) :: column
 
@@ -226,19 +225,19 @@ contains
       end subroutine add_column
    end function head_of
 
-   !> Add a text as comment, each of its lines after `# `
+   !> Add a text as a comment, each line after `# `
    subroutine add_comments(head, text)
       !> Text to add to
       type(buffer_t), intent(inout) :: head
-      !> Any number of lines; the end of the last one may be missing
+      !> Any number of lines; the last one needs no line end
       character(len=*), intent(in) :: text
 
       integer :: first, last
 
       first = 1
       do while (first <= len(text))
-         ! A carriage return ends a line for most readers, with or without a line feed: what comes
-         ! after it would be taken for data
+         ! For most readers a carriage return ends a line, with or without a line feed: they would
+         ! read the text after it as data
          last = scan(text(first:), c_new_line//c_carriage_return) + first - 2
          if (last < first - 1) last = len(text)
          call head%add('# '//text(first:last)//c_new_line)
@@ -250,9 +249,9 @@ contains
 
    !> Add a text as a field of a row
    subroutine put_field(text, quotes, buffer, last)
-      !> Any text; blanks at its end do not count
+      !> Any text; trailing blanks are ignored
       character(len=*), intent(in) :: text
-      !> Whether it stands between quotation marks if need be
+      !> Whether to quote the text if necessary
       logical, intent(in) :: quotes
       !> Buffer with room for it
       character(len=*), intent(inout) :: buffer
@@ -262,7 +261,7 @@ contains
       integer :: i, n
 
       n = len_trim(text)
-      ! An empty field might make an empty line, which readers skip
+      ! quote an empty field: it might make an empty line, which readers skip
       if (.not. quotes .or. (n > 0 .and. index(text, ' ') /= 1 &
                              .and. scan(text, special) == 0)) then
          buffer(last + 1:last + n) = text(:n)

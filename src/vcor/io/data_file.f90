@@ -1,12 +1,12 @@
-!> Data files of materials, in the form of `vcor_io_columns`
+!> Reads the data files of materials, in the form of `vcor_io_columns`
 !>
-!> Points of a relaxation modulus: a time and a modulus to a line. One line before the first number
-!> may say what the columns are. Units stand in the case; a header of other units, of shear moduli
-!> or of dynamic data is refused.
+!> Relaxation modulus: each line has a time and a modulus. One line before the first number may name
+!> the columns. The units are in the case; a header with other units, shear moduli or dynamic data
+!> is refused.
 !>
-!> Shift factors: a temperature and log10 a_T to a line. A line before the first number names them
-!> and tells the unit of the temperatures, K or C; it may stand behind a #, units may stand in a
-!> second line. Without it they are in K.
+!> Shift factors: each line has a temperature and log10 a_T. A line before the first number names
+!> them and states the unit of temperatures, K or C; it may follow a #, and units may be in a second
+!> line. Without it temperatures are in K.
 module vcor_io_data_file
    use vcor_error, only : error_input, error_t, raise
    use vcor_io_columns, only : lines_in, read_value, row_t
@@ -26,27 +26,27 @@ module vcor_io_data_file
 
    public :: read_data, data_file
 
-   !> What the columns hold
+   !> Names of the columns
    character(len=*), parameter :: names(2) = [character(len=7) :: "time", "modulus"]
-   !> The same as roles of a header
+   !> Roles of the columns
    integer, parameter :: expected_roles(2) = [role_time, role_relaxation]
 
    !> Zero of the Celsius scale [K]
    real(wp), parameter :: ice_point = 273.15_wp
-   !> Names of the units of a temperature
+   !> Names of the units of temperature
    character(len=*), parameter :: kelvin_names = 'k kelvin'
    character(len=*), parameter :: celsius_names = 'c degc deg_c celsius'
-   !> What a file should have
+   !> Expected file, for messages
    character(len=*), parameter :: shift_example = ', expected a temperature and log10 of the ' &
       //"shift factor under a header such as 'T [C], log10_aT'"
 
 contains
 
    !> Read the data files of a validated case: the points become `times` and `moduli` of their
-   !> material, which no user can give to it, those of a shift the list of `shift_file`
+   !> material, keys that users cannot set, and those of a shift become the list `shift_file`
    subroutine read_data(case, error)
       type(case_t), intent(inout) :: case
-      !> Error of code `error_file` when a file cannot be read, `error_input` when its contents are
+      !> Error of code `error_file` if a file cannot be read, `error_input` if its contents are
       !> wrong; unallocated on success
       type(error_t), allocatable, intent(out) :: error
       real(wp), allocatable :: times(:), moduli(:)
@@ -80,7 +80,7 @@ contains
 
    contains
 
-      !> Read a file that a key names
+      !> Read the file named by a key
       subroutine read_file(key, kind)
          character(len=*), intent(in) :: key, kind
 
@@ -90,13 +90,13 @@ contains
       end subroutine read_file
    end subroutine read_data
 
-   !> Path of a data file of a material, from the folder of the case file
+   !> Path of a data file of a material, relative to the folder of the case file
    pure function data_file(case, item, key) result(path)
       type(case_t), intent(in) :: case
       integer, intent(in) :: item
-      !> Key that names it; absent: file
+      !> Key of the file; absent: `file`
       character(len=*), intent(in), optional :: key
-      !> The path; empty when there is no such file
+      !> The path; empty if the case has no such file
       character(len=:), allocatable :: path
 
       if (present(key)) then
@@ -107,13 +107,13 @@ contains
       if (path /= "") path = join_path(folder_of(case%source), path)
    end function data_file
 
-   !> Read the points
+   !> Read the points of a relaxation modulus
    subroutine read_points(text, name, scale, is_shear, times, moduli, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: name
-      !> Units of times and moduli [s], [Pa]
+      !> Units of times [s] and moduli [Pa]
       real(wp), intent(in) :: scale(2)
-      !> Whether the case says that they are shear moduli
+      !> Whether they are shear moduli according to the case
       logical, intent(in) :: is_shear
       !> Times [s], shape (n), n >= 2
       real(wp), allocatable, intent(out) :: times(:)
@@ -175,16 +175,16 @@ contains
       moduli = points(2, :n)*scale(2)
    end subroutine read_points
 
-   !> Refuse a header that names something else than a time and a relaxation modulus, or other units
-   !> than those of the case. A line of other than two names is a title
+   !> Refuse a header of other quantities than time and relaxation modulus, or with units other than
+   !> those of the case. A line without exactly two names is a title
    subroutine check_header(header, name, scale, is_shear, error)
       type(header_t), intent(in) :: header
       character(len=*), intent(in) :: name
-      !> Units of times and moduli by the case [s], [Pa]
+      !> Units of times [s] and moduli [Pa] in the case
       real(wp), intent(in) :: scale(2)
-      !> Whether moduli are shear moduli by the case
+      !> Whether the case has shear moduli
       logical, intent(in) :: is_shear
-      !> Error of code `error_input`, unallocated where nothing is against them
+      !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
       character(len=longest_word) :: unit, key
       character(len=:), allocatable :: place, found
@@ -249,9 +249,9 @@ contains
    pure subroutine compare(before, point, line, message)
       real(wp), intent(in) :: before(2)
       real(wp), intent(in) :: point(2)
-      !> Line of the point before
+      !> Line of the previous point
       integer, intent(in) :: line
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       if (.not. point(1) > before(1)) then
@@ -264,13 +264,13 @@ contains
       end if
    end subroutine compare
 
-   !> Read a table
+   !> Read a table of shift factors
    subroutine read_shift_table(text, name, table, error)
       !> Contents of the file
       character(len=*), intent(in) :: text
-      !> Name of the file for messages
+      !> Name of the file, for messages
       character(len=*), intent(in) :: name
-      !> Temperature [K], rising, and log10 a_T, one after the other, shape (2 n), n >= 2
+      !> Temperatures [K], increasing, each followed by log10 a_T, shape (2 n), n >= 2
       real(wp), allocatable, intent(out) :: table(:)
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -323,14 +323,14 @@ contains
       table = reshape(points(:, :n), [2*n])
    end subroutine read_shift_table
 
-   !> Take a line before the numbers: the names, the units, or a comment that says neither
+   !> Read a line before the numbers: the names, the units, or a comment
    pure subroutine take_head(header, content, comment, line, message)
       type(header_t), intent(inout) :: header
       character(len=*), intent(in) :: content
-      !> What follows its #
+      !> Text after the #
       character(len=*), intent(in) :: comment
       integer, intent(in) :: line
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       type(header_t) :: names
@@ -348,12 +348,12 @@ contains
       end if
    end subroutine take_head
 
-   !> Find what is 0 in the unit of the temperatures
+   !> Zero of the temperature scale of a file
    pure subroutine find_zero(header, zero, message)
       type(header_t), intent(in) :: header
       !> Temperature [K]
       real(wp), intent(out) :: zero
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       character(len=:), allocatable :: unit
@@ -361,7 +361,7 @@ contains
       zero = 0.0_wp
       if (header%lines == 0) return
       unit = trim(lower(header%columns(1)%unit))
-      ! the sign of degrees, in whatever encoding
+      ! the degree sign in any encoding
       do while (len(unit) > 1)
          if (iachar(unit(1:1)) < 128) exit
          unit = unit(2:)
@@ -374,11 +374,11 @@ contains
       end if
    end subroutine find_zero
 
-   !> Compare the last shift factor of some with the one before it
+   !> Check that the last shift factor of a list may follow the one before
    pure subroutine compare_shifts(points, message)
       !> Temperature [K] and log10 a_T, shape (2, n), n >= 1
       real(wp), intent(in) :: points(:, :)
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: n

@@ -1,23 +1,23 @@
-!> Text files as one text, files that are there as a whole or not at all, and the standard output
+!> Reads text files as a whole, writes files that appear complete or not at all, and standard output
 !>
-!> A file is written in a private folder `.vcor-XXXXXX` in its own directory, so that renaming stays
-!> within one file system, under a name that nobody can foresee and for the user alone: what is made
-!> there meets no link, pipe or file of anybody else. Every status is checked; the file is closed
-!> and renamed only then, with the permissions that the user's umask leaves. If anything fails it is
-!> removed, and what was there under the real name is untouched.
+!> A file is written in a private directory `.vcor-XXXXXX` beside its final place, so that renaming
+!> stays within one file system. The random name and the permissions, for the user alone, keep
+!> links, pipes and files of others out. Every status is checked; only then the file is closed and
+!> renamed, with the permissions that the umask leaves. On failure it is removed, and a file that
+!> already had the final name is unchanged.
 !>
-!>  - An interrupted process leaves nothing under the real name. There is no `fsync`: it takes 2 to
-!>    10 ms per file, as long as an impact with all the rest, and only a power failure within
-!>    seconds makes a difference. A full disk is seen without it.
-!>  - The private folder is remembered, and removed by `remove_scratch` if a signal ends the
-!>    process. A folder that a killed process has left means nothing, and may be removed.
-!>  - A symbolic link under the real name is replaced by the file; what it points at stays as it is.
-!>  - A directory, a device or a pipe under the real name, or a link to one, is never replaced but
-!>    refused: `/dev/stdout` would else become a file.
-!>  - Blanks at the end of a path do not count, as in Fortran's `open`.
+!>  - An interrupted process leaves nothing under the final name. There is no `fsync`: it takes 2 to
+!>    10 ms per file, as long as a whole impact, and matters only if power fails within seconds. A
+!>    full disk is detected without it.
+!>  - The private directory is remembered, and `remove_scratch` removes it if a signal ends the
+!>    process. A directory left by a killed process may be removed.
+!>  - A symbolic link of the final name is replaced by the file; its target is unchanged.
+!>  - A directory, a device or a pipe of the final name, or a link to one, is refused: `/dev/stdout`
+!>    would otherwise become a file.
+!>  - Trailing blanks of a path are ignored, as by Fortran's `open`.
 !>
-!> Every error is an `error_file` with the path and the system's reason. Files are written by one
-!> thread at a time.
+!> Every error is an `error_file` with the path and the reason of the system. Only one thread writes
+!> files at a time.
 module vcor_io_file
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_int64_t, c_null_char, &
       c_null_ptr, c_ptr, c_size_t
@@ -36,38 +36,38 @@ module vcor_io_file
    public :: move_file, remove_file, remove_scratch
    public :: write_stdout, write_terminal, stderr_is_terminal
 
-   !> A file that is being written: `create_file`, any number of `put`, then `commit` or `discard`.
-   !> A procedure that fails discards the file
+   !> An output file: `create_file`, any number of `put`, then `commit` or `discard`. A procedure
+   !> that fails discards the file
    type :: output_file_t
-      !> Its path until `commit`, in a private folder
+      !> Path until `commit`, in a private directory
       character(len=:), allocatable :: temporary
-      !> The real name
+      !> Final path
       character(len=:), allocatable :: path
-      !> Stream of C, null unless the file is open
+      !> C stream, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
    end type output_file_t
 
-   !> Room for a path, more than the system takes (PATH_MAX of Linux)
+   !> Room for a path, more than the system allows (PATH_MAX of Linux)
    integer, parameter :: room = 4200
-   !> Name of a file in its private folder
+   !> Name of a file in its private directory
    character(len=*), parameter :: new_name = '/new'
-   !> The private folder that is in use, and the file in it, as C has their paths; empty where there
-   !> is none. One file is written at a time
+   !> Current private directory and the file in it, as C strings; empty if there is none. One file
+   !> is written at a time
    character(kind=c_char), volatile :: folder(room) = c_null_char, inside(room) = c_null_char
 
-   !> Largest file that is read [bytes]; a case has a few hundred, a long Prony series a few
+   !> Largest file that is read [bytes]; a case has a few hundred bytes, a long Prony series a few
    !> thousand, a table of 10,000 points half a million
    integer, parameter :: largest_file = 4*1024**2
 
 contains
 
-   !> Read a text file, or what has no size beforehand, such as a pipe, as it is
+   !> Read a text file, or a pipe, whose size is unknown, unchanged
    subroutine read_text_file(path, text, error, kind)
       character(len=*), intent(in) :: path
       character(len=:), allocatable, intent(out) :: text
-      !> Error of code `error_file` when it cannot be read, `error_input` when it is too large
+      !> Error of code `error_file` if it cannot be read, `error_input` if it is too large
       type(error_t), allocatable, intent(out) :: error
-      !> What the file is to be, for messages; absent: a case file
+      !> Kind of file expected, for messages; absent: a case file
       character(len=*), intent(in), optional :: kind
 
       type(buffer_t) :: buffer
@@ -96,16 +96,16 @@ contains
          call raise(error, error_input, printable(path)//': the file is larger than 4 MB, ' &
             //'expected '//expected)
       else if (.not. is_iostat_end(status)) then
-         ! the system's reason is what stands after the name of the file
+         ! the reason of the system follows the name of the file
          call raise(error, error_file, printable(path)//': cannot '//failed//' the file: ' &
             //shortened(trim(adjustl(message(index(message, ': ', back=.true.) + 1:)))))
       end if
    end subroutine read_text_file
 
-   !> Begin a file: nothing is seen under its real name before `commit`
+   !> Create a file; nothing has its final name before `commit`
    subroutine create_file(file, path, error)
       type(output_file_t), intent(out) :: file
-      !> Its real name; the directory must be there
+      !> Final path; its directory must exist
       character(len=*), intent(in) :: path
       !> Set if the file cannot be created
       type(error_t), allocatable, intent(out) :: error
@@ -118,7 +118,7 @@ contains
       if (allocated(error)) return
       file%path = trim(path)
       name = folder_of(file%path)
-      ! what is cut is too long for the system, too, which says so
+      ! a longer path is too long for the system, too, which reports it
       name = c_text(name(:min(len(name), room - 20))//'.vcor-XXXXXX')
       ! remembered while it is made: mkdtemp writes each name that it tries over the X
       call remember(name, folder)
@@ -140,9 +140,9 @@ contains
    subroutine put(file, text, error)
       !> Open file; discarded on failure
       type(output_file_t), intent(inout) :: file
-      !> What to write, byte by byte: nothing is added
+      !> Text, written unchanged
       character(len=*), intent(in) :: text
-      !> Set if the text could not be written as a whole
+      !> Set if the text could not be written completely
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
@@ -151,14 +151,14 @@ contains
       if (reason /= 0) call fail(file, reason, error)
    end subroutine put
 
-   !> Take room on the disk for somebody else who writes to the file by its temporary path, and may
-   !> leave it shorter
+   !> Allocate disk space for HDF5, which writes to the file by its temporary path and may leave it
+   !> shorter
    subroutine reserve(file, bytes, error)
       !> Open file; discarded on failure
       type(output_file_t), intent(inout) :: file
       !> Length of the file [bytes]
       integer(c_int64_t), intent(in) :: bytes
-      !> Set if there is not so much room
+      !> Set if there is not enough space
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
@@ -167,11 +167,11 @@ contains
       if (reason /= 0) call fail(file, reason, error)
    end subroutine reserve
 
-   !> Close a file that is complete; its real name is left to the caller, who discards it then
+   !> Close a complete file without giving it its final name; the caller discards it afterwards
    subroutine close_file(file, error)
-      !> Open file; closed afterwards
+      !> Open file; closed on return
       type(output_file_t), intent(inout) :: file
-      !> Set if the file is not complete; then it is discarded
+      !> Set if the file is not complete; it is discarded then
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason, status
@@ -182,11 +182,11 @@ contains
       if (status /= 0) call fail(file, reason, error)
    end subroutine close_file
 
-   !> End a file: close it and give it its real name
+   !> Close a file and give it its final name
    subroutine commit(file, error)
-      !> Open file; closed afterwards
+      !> Open file; closed on return
       type(output_file_t), intent(inout) :: file
-      !> Set if the file is not complete; then it is discarded
+      !> Set if the file is not complete; it is discarded then
       type(error_t), allocatable, intent(out) :: error
 
       call close_file(file, error)
@@ -194,10 +194,10 @@ contains
       call discard(file)
    end subroutine commit
 
-   !> Give a file up: what is in the private folder goes, what has the real name stays. Does nothing
-   !> to a file that is not open
+   !> Discard a file: remove its private directory, and leave the final path as it is. A file that
+   !> is not open is ignored
    subroutine discard(file)
-      !> Open file; closed afterwards
+      !> Open file; closed on return
       type(output_file_t), intent(inout) :: file
 
       integer(c_int) :: ignored
@@ -212,11 +212,11 @@ contains
       inside(1) = c_null_char
    end subroutine discard
 
-   !> Write a whole file at once
+   !> Write a file in one call
    subroutine write_file(path, text, error)
-      !> Name of the file; replaced if it is there
+      !> Name of the file; an existing one is replaced
       character(len=*), intent(in) :: path
-      !> What to write, byte by byte: nothing is added
+      !> Text, written unchanged
       character(len=*), intent(in) :: text
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
@@ -228,7 +228,7 @@ contains
       if (.not. allocated(error)) call commit(file, error)
    end subroutine write_file
 
-   !> Check that a file may have that name
+   !> Check that a path may be written to
    subroutine check_target(path, error)
       character(len=*), intent(in) :: path
       !> Set if it may not
@@ -257,9 +257,9 @@ contains
       end subroutine refuse
    end subroutine check_target
 
-   !> Discard a file for a reason of the system
+   !> Discard a file, with an error of the system
    subroutine fail(file, reason, error)
-      !> Open file; closed afterwards
+      !> Open file; closed on return
       type(output_file_t), intent(inout) :: file
       integer(c_int), intent(in) :: reason
       !> Set to the reason
@@ -269,12 +269,12 @@ contains
       call raise_system(error, 'cannot write '//quoted_path(file%path), reason)
    end subroutine fail
 
-   !> Give a file another name, in place of what has that name
+   !> Rename a file, replacing one of the new name
    subroutine move_file(from, to, error)
       character(len=*), intent(in) :: from
-      !> Its new name, in the same folder
+      !> New path, in the same directory
       character(len=*), intent(in) :: to
-      !> Set if that failed
+      !> Set on failure
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
@@ -284,7 +284,7 @@ contains
       call raise_system(error, 'cannot write '//quoted_path(to), reason)
    end subroutine move_file
 
-   !> Remove a file; none is fine
+   !> Remove a file if it exists
    subroutine remove_file(path)
       character(len=*), intent(in) :: path
 
@@ -293,10 +293,10 @@ contains
       ignored = c_unlink(c_text(path))
    end subroutine remove_file
 
-   !> Remember a path as C has it. The first letter comes last: a signal in between finds none
+   !> Store a path as a C string, first character last: a signal in between finds an empty one
    subroutine remember(path, place)
       character(len=*), intent(in) :: path
-      !> Where it is kept
+      !> Storage
       character(kind=c_char), volatile, intent(inout) :: place(room)
 
       integer :: i
@@ -306,8 +306,8 @@ contains
       end do
    end subroutine remember
 
-   !> Remove the private folder that is in use, with the file in it; does nothing that a handler of
-   !> signals may not do
+   !> Remove the current private directory and the file in it, with calls allowed in signal handlers
+   !> only
    subroutine remove_scratch()
       integer(c_int) :: ignored
 
@@ -315,11 +315,11 @@ contains
       if (folder(1) /= c_null_char) ignored = c_rmdir(folder)
    end subroutine remove_scratch
 
-   !> Write to the standard output at once, unbuffered: a full disk or a closed output is seen
+   !> Write to standard output, unbuffered, so that a full disk or a closed output is detected
    subroutine write_stdout(text, error)
-      !> What to write, byte by byte: nothing is added
+      !> Text, written unchanged
       character(len=*), intent(in) :: text
-      !> Set if the text could not be written as a whole
+      !> Set if the text could not be written completely
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
@@ -328,11 +328,11 @@ contains
       if (reason /= 0) call raise_system(error, 'cannot write the standard output', reason)
    end subroutine write_stdout
 
-   !> Write a text as a whole, however many calls that takes
+   !> Write a text completely, in as many calls as necessary
    subroutine write_all(descriptor, text, reason)
       integer(c_int), intent(in) :: descriptor
       character(len=*), intent(in) :: text
-      !> Why it could not be written; 0 on success
+      !> Value of `errno` on failure; 0 on success
       integer(c_int), intent(out) :: reason
 
       integer(c_size_t) :: first, length, written
@@ -352,16 +352,16 @@ contains
       end do
    end subroutine write_all
 
-   !> Whether the standard error is a terminal
+   !> Whether standard error is a terminal
    function stderr_is_terminal() result(is_one)
       logical :: is_one
 
       is_one = c_isatty(standard_error) == 1
    end function stderr_is_terminal
 
-   !> Write to the standard error at once; whether it works is nobody's business
+   !> Write to standard error, unbuffered; failures are ignored
    subroutine write_terminal(text)
-      !> What to write, byte by byte: nothing is added
+      !> Text, written unchanged
       character(len=*), intent(in) :: text
 
       integer(c_size_t) :: ignored

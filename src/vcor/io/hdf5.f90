@@ -5,17 +5,17 @@
 !>     /history           the same, if there is a history
 !>     /...               the same for each further table
 !>
-!> Numbers that hold for a table as a whole are attributes of its group, `NAME` and `NAME_units`.
-!> Every dataset has the attributes `units` (none for text) and `long_name`. A dimension is a
-!> dimension scale and attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump
-!> see named axes. A grid has datasets of more than one dimension, the first of the table first, as
-!> C and Python count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is
-!> UTF-8 of variable length, which Python reads as `str`. A slash in a name becomes `_`.
+!> Numbers that belong to a whole table are attributes of its group, `NAME` and `NAME_units`. Every
+!> dataset has the attributes `units` (not for text) and `long_name`. Dimensions are dimension
+!> scales attached to the columns, so that h5py, xarray (h5netcdf), netCDF-4 and h5dump see named
+!> axes. A grid has datasets of several dimensions, the first of the table first, as C and Python
+!> count them. Numbers are IEEE binary64 and 32-bit integers, little endian; text is UTF-8 of
+!> variable length, which Python reads as `str`. A slash in a name becomes `_`.
 !>
-!> HDF5 does not survive a full disk: release 1.10 crashes when it closes a file that it could not
-!> write. So the file takes its room on the disk before HDF5 writes to it, in the private folder of
-!> `vcor_io_file`. A seal (`vcor_io_seal`) ends it. Objects hold no times: the same tables give the
-!> same bytes.
+!> HDF5 1.10 crashes when it closes a file that it could not write, as on a full disk. So the disk
+!> space of the file is allocated before HDF5 writes to it, in the private directory of
+!> `vcor_io_file`. A seal (`vcor_io_seal`) follows at the end. Objects have no time stamps: equal
+!> tables give equal bytes.
 module vcor_io_hdf5
    use, intrinsic :: iso_c_binding, only : c_char, c_int64_t, c_loc, c_null_char, c_ptr
    use, intrinsic :: iso_fortran_env, only : int64
@@ -45,28 +45,27 @@ module vcor_io_hdf5
 
    public :: write_hdf5, fill_hdf5, begin_hdf5, end_hdf5, c_get_offset
 
-   !> An identifier that stands for nothing
+   !> An invalid identifier
    integer(hid_t), parameter :: nothing = -1_hid_t
 
-   !> A file that is being built. The first failure is kept; what comes after it does
-   !> nothing
+   !> A file that is being written. The first failure is stored; later calls do nothing
    type :: writer_t
       integer(hid_t) :: file = nothing
-      !> How to create groups and datasets
+      !> Property lists for creating groups and datasets
       integer(hid_t) :: group_creation = nothing, dataset_creation = nothing
       integer(hid_t) :: text_type = nothing
-      !> What the seal of the file leaves out, as in `seal_of`
+      !> Parts of the file that its seal leaves out, as in `seal_of`
       integer(int64), allocatable :: left_out(:, :)
-      !> What failed first; unallocated as long as nothing did
+      !> The first failure; unallocated if there is none
       character(len=:), allocatable :: fault
    end type writer_t
 
    interface
-      !> Where in the file the numbers of a dataset begin that is stored in one piece
+      !> Position in the file of the numbers of a contiguous dataset
       function c_get_offset(dataset) result(offset) bind(c, name='H5Dget_offset')
          import :: c_int64_t
          integer(c_int64_t), intent(in), value :: dataset
-         !> Bytes before it, all bits set if there is none
+         !> Number of bytes before it; all bits set if there is none
          integer(c_int64_t) :: offset
       end function c_get_offset
    end interface
@@ -81,30 +80,30 @@ contains
       integer :: status
       logical :: is_open
 
-      ! the types of HDF5 are there if the library was opened, by whomever; it is never closed here,
-      ! since that would close everything else the program has open in HDF5
+      ! the types of HDF5 are valid if anybody has opened the library; it is never closed here,
+      ! since that would close everything else that the program has open in HDF5
       call h5iis_valid_f(h5t_native_double, is_open, status)
       if (status < 0 .or. .not. is_open) call h5open_f(status)
       if (status >= 0) call h5eset_auto_f(0, status)
       if (status < 0) fault = 'open its library'
    end subroutine begin_hdf5
 
-   !> Let HDF5 print errors, as it does by itself
+   !> Let HDF5 print errors, its default
    subroutine end_hdf5()
       integer :: ignored
 
       call h5eset_auto_f(1, ignored)
    end subroutine end_hdf5
 
-   !> Write tables to a file. It is there as a whole or, if that fails, as it was before
+   !> Write tables to a file, which appears complete or, on failure, stays as it was
    subroutine write_hdf5(filename, tables, error, data)
-      !> Name of the file; replaced if it is there
+      !> Name of the file; an existing one is replaced
       character(len=*), intent(in) :: filename
-      !> Tables as those of `fill_hdf5`
+      !> Tables as for `fill_hdf5`
       type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Sum over the data that the case is made from; empty where there are none
+      !> Check sum of the data files of the case; empty if there are none
       character(len=*), intent(in), optional :: data
 
       type(output_file_t) :: file
@@ -119,14 +118,14 @@ contains
       !> Open file; discarded on failure
       type(output_file_t), intent(inout) :: file
       !> Tables, shape (n), n > 0; version, title and case of the first one describe the file.
-      !> Columns without values get their room in the file, where the caller puts them: they are no
-      !> part of the seal
+      !> Columns without values only get their space, which the caller fills later and the seal
+      !> leaves out
       type(table_t), intent(in) :: tables(:)
       !> Set if the file could not be written
       type(error_t), allocatable, intent(out) :: error
-      !> Sum over the data that the case is made from; of a whole sweep only if there are any
+      !> Check sum of the data files of the case; for a whole sweep written only if not empty
       character(len=*), intent(in), optional :: data
-      !> Part of a sweep that the rows are; absent: all of it
+      !> Part of a sweep in the rows; absent: all of it
       type(part_t), intent(in), optional :: part
 
       type(writer_t) :: writer
@@ -152,7 +151,7 @@ contains
             do i = 1, size(tables)
                call put_table(writer, tables(i))
             end do
-            ! what is still open in it after a failure goes with the file
+            ! objects left open after a failure are closed with the file
             call h5fclose_f(writer%file, i)
             call note(writer, i, 'close the file')
          end if
@@ -169,15 +168,15 @@ contains
       if (.not. allocated(error)) call put(file, seal_of(file%temporary, writer%left_out), error)
    end subroutine fill_hdf5
 
-   !> Begin a file, with the property lists and the type that all its objects share
+   !> Create a file, with the property lists and the type that all its objects share
    subroutine begin_file(writer, file, bytes, error)
-      !> Writer, nothing open yet
+      !> Writer without open objects
       type(writer_t), intent(inout) :: writer
       !> File to write to
       type(output_file_t), intent(inout) :: file
-      !> Room that it takes on the disk [bytes]
+      !> Disk space [bytes]
       integer(int64), intent(in) :: bytes
-      !> Set if there is not so much room
+      !> Set if there is not enough space
       type(error_t), allocatable, intent(out) :: error
 
       integer(hid_t) :: access, creation
@@ -194,7 +193,7 @@ contains
       call h5pcreate_f(h5p_dataset_create_f, writer%dataset_creation, status(7))
       call h5pset_obj_track_times_f(writer%dataset_creation, .false., status(8))
       call h5pcreate_f(h5p_file_access_f, access, status(9))
-      ! From 1.8 on HDF5 keeps check sums of what makes a file an HDF5 file
+      ! from 1.8 on HDF5 has check sums of its metadata
       call h5pset_libver_bounds_f(access, h5f_libver_v18_f, h5f_libver_v18_f, status(10))
       call h5pset_fclose_degree_f(access, h5f_close_strong_f, status(11))
       call h5tcopy_f(h5t_string, writer%text_type, status(12))
@@ -203,7 +202,7 @@ contains
       if (.not. allocated(error)) then
          call h5fcreate_f(file%temporary, h5f_acc_trunc_f, writer%file, status(1), creation, access)
          call h5fclose_f(writer%file, ignored)
-         ! HDF5 has given the room back
+         ! HDF5 has released the space
          call reserve(file, bytes, error)
       end if
       if (.not. allocated(error)) then
@@ -214,12 +213,12 @@ contains
       call h5pclose_f(access, ignored)
    end subroutine begin_file
 
-   !> Room that tables take in a file, somewhat more
+   !> Upper bound of the disk space of tables [bytes]
    pure function bytes_of(tables) result(bytes)
       type(table_t), intent(in) :: tables(:)
       integer(int64) :: bytes
 
-      ! what HDF5 needs at most for a dataset and for a text, beside its values
+      ! upper bounds of HDF5's own space for a dataset and for a text
       integer(int64), parameter :: per_dataset = 4096_int64, per_text = 44_int64
       integer :: i, j
 
@@ -238,7 +237,7 @@ contains
 
    contains
 
-      !> Room for one column
+      !> Space of one column
       pure function bytes_of_column(column) result(bytes)
          type(column_t), intent(in) :: column
          integer(int64) :: bytes
@@ -281,7 +280,7 @@ contains
          call put_column(writer, group, table%columns(j), table%dimensions%length, dataset)
          if (allocated(writer%fault)) return
          do i = 1, size(scales)
-            ! Numbers here count as in C but from 1: the slowest dimension first
+            ! numbered as in C, the slowest dimension first, but from 1
             call h5dsattach_scale_f(dataset, scales(i), i, status)
             call note(writer, status, "attach a dimension to '"//table%columns(j)%name//"'")
          end do
@@ -309,7 +308,7 @@ contains
 
       dataset = nothing
       if (allocated(writer%fault)) return
-      ! values that come later have their room in the file in one piece
+      ! values that the caller writes later need contiguous space
       is_room = .not. allocated(column%reals)
       if (column%kind /= real_column) is_room = size(column%integers) < column%length
       select case (column%kind)
@@ -335,7 +334,7 @@ contains
       call h5sclose_f(space, status)
       if (allocated(writer%fault)) return
 
-      ! An array without elements has no address
+      ! an array of size 0 has no address
       if (column%length > 0 .and. .not. (is_filled .or. is_room)) then
          select case (column%kind)
          case (real_column)
@@ -352,9 +351,9 @@ contains
       call put_text(writer, dataset, 'long_name', column%long_name)
    end subroutine put_column
 
-   !> Whether a long column is nothing but one text, as `status` is where all goes well: it is not
-   !> written then but the fill value of its dataset, and reads as if it were. HDF5 takes 50 bytes
-   !> and a microsecond to store a text
+   !> Whether all values of a long column are one text, usually `status`: it is then only the fill
+   !> value of its dataset, which reads the same. HDF5 takes 50 bytes and a microsecond to store a
+   !> text
    pure function is_uniform(column)
       type(column_t), intent(in) :: column
       logical :: is_uniform
@@ -365,12 +364,12 @@ contains
       if (is_uniform) is_uniform = all(column%integers == column%integers(1))
    end function is_uniform
 
-   !> Make the first text of a column the fill value
+   !> Set the first text of a column as the fill value
    subroutine set_fill_text(column, type_id, creation, status)
       !> Text column
       type(column_t), intent(in) :: column
       integer(hid_t), intent(in) :: type_id
-      !> How the dataset is created
+      !> Property list of the dataset
       integer(hid_t), intent(in) :: creation
       !> Negative on failure
       integer, intent(out) :: status
@@ -383,7 +382,7 @@ contains
       call h5pset_fill_value_f(creation, type_id, c_loc(place), status)
    end subroutine set_fill_text
 
-   !> Write the values of a text column: HDF5 wants an address for each
+   !> Write the values of a text column: HDF5 needs the address of each
    subroutine write_texts(column, dataset, type_id, status)
       !> Text column
       type(column_t), intent(in) :: column
@@ -406,11 +405,11 @@ contains
       call h5dwrite_f(dataset, type_id, c_loc(places), status)
    end subroutine write_texts
 
-   !> Keep where a dataset of numbers is, as no part of the seal
+   !> Leave the numbers of a dataset out of the seal
    subroutine leave_out(writer, column, dataset)
       type(writer_t), intent(inout) :: writer
       type(column_t), intent(in) :: column
-      !> The dataset, in one piece
+      !> Contiguous dataset
       integer(hid_t), intent(in) :: dataset
 
       integer(int64) :: bytes, offset
@@ -419,7 +418,7 @@ contains
       offset = c_get_offset(int(dataset, int64))
       call note(writer, merge(0, -1, offset >= 0), "find '"//column%name//"'")
       bytes = int(merge(8, 4, column%kind == real_column), int64)*column%length
-      ! in ascending order: HDF5 may have them in another one
+      ! in ascending order, which may differ from that of HDF5
       below = count(writer%left_out(1, :) < offset)
       writer%left_out = reshape([writer%left_out(:, :below), offset, bytes, &
          writer%left_out(:, below + 1:)], [2, size(writer%left_out, 2) + 1])
@@ -428,7 +427,7 @@ contains
    !> Write a text attribute
    subroutine put_text(writer, object, name, text)
       type(writer_t), intent(inout) :: writer
-      !> What the attribute belongs to
+      !> Object of the attribute
       integer(hid_t), intent(in) :: object
       !> Name and value of the attribute
       character(len=*), intent(in) :: name, text
@@ -444,7 +443,7 @@ contains
    !> Write an attribute
    subroutine put_attribute(writer, object, name, file_type, memory_type, value)
       type(writer_t), intent(inout) :: writer
-      !> What the attribute belongs to
+      !> Object of the attribute
       integer(hid_t), intent(in) :: object
       character(len=*), intent(in) :: name
       !> Type of the value in the file and in memory
@@ -464,20 +463,20 @@ contains
       call note(writer, minval(status), "write the attribute '"//name//"'")
    end subroutine put_attribute
 
-   !> Keep the first failure
+   !> Store the first failure
    pure subroutine note(writer, status, what)
       type(writer_t), intent(inout) :: writer
       integer, intent(in) :: status
-      !> What was asked of HDF5
+      !> What HDF5 was asked to do
       character(len=*), intent(in) :: what
 
       if (status < 0 .and. .not. allocated(writer%fault)) writer%fault = what
    end subroutine note
 
-   !> A name as HDF5 may take it
+   !> A name that HDF5 accepts
    pure function link_name(name) result(link)
       character(len=*), intent(in) :: name
-      !> The name without slashes, which would name groups
+      !> The name with `_` for slashes, which would denote groups
       character(len=len(name)) :: link
 
       integer :: i

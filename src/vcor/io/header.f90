@@ -1,8 +1,8 @@
-!> What the columns of a data file hold: their names, and the units that stand beside or below them
+!> Names and units of the columns of a data file
 !>
-!> A name may bring its unit: `E [MPa]`, `E (MPa)`, `E/MPa`. A second line of units, as other
-!> fitting tools write it, and lines `# name [unit] ...` before the header, as vcor writes them, do
-!> as well.
+!> A name may include its unit: `E [MPa]`, `E (MPa)`, `E/MPa`. Units may also be in a second line,
+!> as other fitting programs write them, or in comments `# name [unit] ...` before the header, as
+!> vcor writes them.
 module vcor_io_header
    use vcor_constants, only : pi
    use vcor_error, only : error_input, error_t, raise
@@ -23,16 +23,16 @@ module vcor_io_header
    character(len=*), parameter :: time_units = "ns us ms s min h"
    !> Units of angular frequency
    character(len=*), parameter :: angular_units = "rad/s krad/s"
-   !> Units of frequency, angular or not
+   !> Units of frequency and of angular frequency
    character(len=*), parameter :: frequency_units = "mHz Hz kHz MHz GHz "//angular_units
    character(len=*), parameter :: modulus_units = "Pa kPa MPa GPa N/m2 N/mm2"
-   !> Names of a temperature
+   !> Names of a column of temperatures
    character(len=*), parameter :: temperature_names = "T temp temp. temperature"
-   !> Letters of the longest name or unit
+   !> Length of the longest name or unit
    integer, parameter :: longest_word = 40
    !> Unit of a pure number
    character(len=*), parameter :: pure_number = "1"
-   !> What a column holds: something else
+   !> Role of a column: none of the following
    integer, parameter :: role_none = 0
    !> Times
    integer, parameter :: role_time = 1
@@ -44,27 +44,27 @@ module vcor_io_header
    integer, parameter :: role_storage = 4
    !> Loss moduli
    integer, parameter :: role_loss = 5
-   !> Loss tangents, which give the loss moduli where there are none
+   !> Loss tangents, which give the loss moduli if there are none
    integer, parameter :: role_tangent = 6
-   !> Magnitudes of complex moduli, which give the storage moduli where there are none
+   !> Magnitudes of complex moduli, which give the storage moduli if there are none
    integer, parameter :: role_complex = 7
 
-   !> What a column may hold
+   !> Properties of a role
    type :: role_t
       character(len=18) :: words = ""
-      !> Unit where nothing tells it
+      !> Unit if none is stated
       character(len=5) :: unit = ""
       !> Known units, separated by blanks
       character(len=len(frequency_units)) :: units = ""
-      !> Names of such a column, separated by blanks; moduli that begin with g are shear moduli
+      !> Names of such a column, separated by blanks; moduli with initial g are shear moduli
       character(len=132) :: names = ""
-      !> Some of them, for messages
+      !> Examples of names, for messages
       character(len=26) :: example = ""
    end type role_t
 
    character(len=*), parameter :: cycle_names = "f freq"
    character(len=*), parameter :: angular_names = "omega w angular_frequency "//char(207)//char(137)
-   !> By the `role_*` constants
+   !> The roles, in the order of the `role_*` constants
    type(role_t), parameter :: roles(7) = [ &
       role_t("time", "s", time_units, "t time times step_time", "t or time"), &
       role_t("frequency", "rad/s", frequency_units, &
@@ -83,33 +83,33 @@ module vcor_io_header
       role_t("complex modulus", "Pa", modulus_units, &
       "e* g* |e*| |g*| |e| |g| e_star g_star complex_modulus complex_shear_modulus", "|E*|")]
 
-   !> One column
+   !> Name and unit of a column
    type :: column_name_t
-      !> Its name, lower case but for T, `_` for blanks
+      !> Name in lower case, except for T, with `_` for blanks
       character(len=longest_word) :: name = ""
-      !> Its unit; blank where it is not told
+      !> Unit; blank if it is not stated
       character(len=longest_word) :: unit = ""
-      !> Line that tells the unit, or else the name
+      !> Line of the unit, otherwise of the name
       integer :: line = 0
    end type column_name_t
 
-   !> What is known of the columns before the first number
+   !> Names and units of all columns
    type :: header_t
-      !> Lines of the header that were read, 0 to 2
+      !> Number of lines of the header that were read, 0 .. 2
       integer :: lines = 0
       !> Line of the names
       integer :: line = 0
-      !> Number of the columns
+      !> Number of columns
       integer :: count = 0
       type(column_name_t) :: columns(most_columns)
-      !> Units from comments, by name
+      !> Names and units from comments
       type(column_name_t) :: hints(most_columns)
       integer :: hint_count = 0
    end type header_t
 
 contains
 
-   !> Keep what a comment says about the unit of a column: `name [unit] ...`
+   !> Store the unit of a column from a comment `name [unit] ...`
    pure subroutine note_comment(header, comment)
       type(header_t), intent(inout) :: header
       character(len=*), intent(in) :: comment
@@ -127,7 +127,7 @@ contains
          column_name_t(lower(text(:left - 1)), text(left + 2:right - 1))
    end subroutine note_comment
 
-   !> Read the line of the names
+   !> Read the line of names
    pure subroutine read_names(header, content, line)
       type(header_t), intent(inout) :: header
       character(len=*), intent(in) :: content
@@ -142,10 +142,10 @@ contains
       header%count = 0
       do i = 1, min(columns, most_columns)
          cell = unquoted(content(from(i):to(i)))
-         ! more than one tab between two names
+         ! two tabs between names
          if (scan(content, ",;") == 0 .and. cell == "") cycle
          if (scan(content, ",;") == 0 .and. scan(cell, "[(") == 1 .and. header%count > 0) then
-            ! a unit after a blank
+            ! a unit separated from its name by a blank
             header%columns(header%count)%unit = without_brackets(cell)
             cycle
          end if
@@ -161,7 +161,7 @@ contains
       end do
    end subroutine read_names
 
-   !> Whether a line tells the names of columns: one of several at least is a known one
+   !> Whether a line names columns: it has at least two, and one name is known
    pure function names_columns(content) result(yes)
       character(len=*), intent(in) :: content
       logical :: yes
@@ -174,7 +174,7 @@ contains
       call read_names(header, content, 0)
       known = 0
       do i = 1, header%count
-         ! a line of units names nothing
+         ! a line of units has no names
          header%columns(i)%unit = ""
          call role_of(header%columns(i), role, shear, unit)
          if (role /= role_none) known = known + 1
@@ -182,7 +182,7 @@ contains
       yes = known > 0 .and. header%count > 1
    end function names_columns
 
-   !> Read the line of the units
+   !> Read the line of units
    pure subroutine read_units(header, content, line)
       type(header_t), intent(inout) :: header
       character(len=*), intent(in) :: content
@@ -204,7 +204,7 @@ contains
    !> A cell without quotation marks around it
    pure function unquoted(cell) result(text)
       character(len=*), intent(in) :: cell
-      !> What is in it
+      !> Its content
       character(len=:), allocatable :: text
 
       text = cell
@@ -213,10 +213,10 @@ contains
          text = trim(adjustl(cell(2:len(cell) - 1)))
    end function unquoted
 
-   !> A unit without brackets around it
+   !> A unit without enclosing brackets
    pure function without_brackets(cell) result(text)
       character(len=*), intent(in) :: cell
-      !> The same without brackets
+      !> The unit
       character(len=:), allocatable :: text
 
       text = trim(adjustl(cell))
@@ -225,7 +225,7 @@ contains
          text = trim(adjustl(text(2:len(text) - 1)))
    end function without_brackets
 
-   !> Take name and unit apart
+   !> Separate name and unit
    pure subroutine take_apart(cell, column)
       character(len=*), intent(in) :: cell
       type(column_name_t), intent(out) :: column
@@ -239,13 +239,13 @@ contains
          column%unit = pure_number
          return
       end if
-      ! t in s
+      ! the unit follows `in`, as in `t in s`
       mark = index(name, " in ")
       if (mark > 1) then
          column%unit = without_brackets(cell(mark + 4:))
          name = name(:mark - 1)
       end if
-      ! E(t) is a name, E(Pa) is a name and a unit
+      ! in E(t) the parentheses belong to the name, in E(Pa) they enclose a unit
       mark = index(name, "(t)") + index(name, "(w)") + index(name, "(f)") + index(name, "(omega)")
       if (mark > 1) then
          i = mark + index(name(mark:), ")")
@@ -271,7 +271,7 @@ contains
       column%name = name
    end subroutine take_apart
 
-   !> Whether a name is that of the loss tangent: tan_delta, tan d, tan(delta), tand ...
+   !> Whether a name is one of the loss tangent: tan_delta, tan d, tan(delta), tand ...
    pure function is_tangent(name) result(yes)
       !> The name, lower case
       character(len=*), intent(in) :: name
@@ -290,11 +290,11 @@ contains
       yes = contains_word(angles, angle)
    end function is_tangent
 
-   !> A unit by its usual name
+   !> Standard spelling of a unit
    pure function usual_unit(unit) result(usual)
-      !> A unit as somebody wrote it
+      !> A unit in any spelling
       character(len=*), intent(in) :: unit
-      !> The unit as `unit_size` has it, where it is one of these
+      !> Standard spelling if it is known, otherwise unchanged
       character(len=longest_word) :: usual
 
       character(len=*), parameter :: micro = char(181), mu = char(206)//char(188)
@@ -302,7 +302,7 @@ contains
       integer :: mark
 
       usual = unit
-      ! the signs of Latin-1 are the same in UTF-8, behind this byte
+      ! in UTF-8 this byte precedes the characters of Latin-1
       mark = index(usual, latin)
       if (mark > 0) usual = usual(:mark - 1)//usual(mark + 1:)
       if (usual(:1) == micro) usual = "u"//usual(2:)
@@ -314,14 +314,14 @@ contains
       if (usual == "sec") usual = "s"
    end function usual_unit
 
-   !> What a column holds, by its name and else by its unit; what it is in, where that is understood
+   !> Role of a column by its name, otherwise by its unit, and its unit as far as it is known
    pure subroutine role_of(column, role, shear, unit)
       type(column_name_t), intent(in) :: column
       !> One of the `role_*` constants
       integer, intent(out) :: role
-      !> Whether it holds shear moduli
+      !> Whether its values are shear moduli
       logical, intent(out) :: shear
-      !> Its unit; blank where nothing tells it
+      !> Unit in its standard spelling; blank if unknown
       character(len=longest_word), intent(out) :: unit
 
       integer :: i
@@ -340,9 +340,9 @@ contains
       if (contains_word(frequency_units, unit)) role = role_frequency
    end subroutine role_of
 
-   !> What a column holds, in words
+   !> Role of a column in words
    pure function name_of(role, unit) result(name)
-      !> One of the `role_*` constants but `role_none`
+      !> One of the `role_*` constants except `role_none`
       integer, intent(in) :: role
       character(len=*), intent(in) :: unit
       character(len=:), allocatable :: name
@@ -351,7 +351,7 @@ contains
       if (role == role_frequency .and. index(unit, "rad") > 0) name = "angular frequency"
    end function name_of
 
-   !> Whether a name speaks of shear: G, Gt, G0, G', |G*|, or a word that begins with shear (Schub)
+   !> Whether a name denotes a shear modulus: G, Gt, G0, G', |G*|, or shear (Schub) in a word
    pure function names_shear(name) result(yes)
       !> The name, lower case, `_` for blanks
       character(len=*), intent(in) :: name
@@ -360,7 +360,7 @@ contains
       yes = index(name, "shear") > 0 .or. index(name, "schub") > 0 .or. has_symbol(name, "g")
    end function names_shear
 
-   !> Whether a name speaks of tension: E, Et, E0, E', |E*|, or a word of Young's modulus
+   !> Whether a name denotes a tensile modulus: E, Et, E0, E', |E*|, or Young or tensile in a word
    pure function names_tensile(name) result(yes)
       !> The name, lower case, `_` for blanks
       character(len=*), intent(in) :: name
@@ -369,8 +369,8 @@ contains
       yes = index(name, "young") > 0 .or. index(name, "tensile") > 0 .or. has_symbol(name, "e")
    end function names_tensile
 
-   !> Whether a name has a symbol in it: a letter by itself or with an index, of which t is one, not
-   !> the beginning of a word
+   !> Whether a name contains a symbol: a letter alone or with an index, such as t, that does not
+   !> begin a word
    pure function has_symbol(name, letter) result(yes)
       !> The name, lower case, `_` for blanks
       character(len=*), intent(in) :: name
@@ -395,10 +395,10 @@ contains
       end do
    end function has_symbol
 
-   !> A unit in that of the SI: s, rad/s or Pa
+   !> Size of a unit in SI units
    pure function unit_size(unit) result(scale)
       character(len=*), intent(in) :: unit
-      !> In seconds, rad/s or Pa
+      !> In s, rad/s or Pa
       real(wp) :: scale
 
       character(len=*), parameter :: names(*) = [character(len=6) :: "ns", "us", "ms", "min", "h", &
@@ -413,12 +413,12 @@ contains
       if (i > 0) scale = sizes(i)
    end function unit_size
 
-   !> Check that a unit is one of what a column holds
+   !> Check that a unit suits the role of a column
    subroutine check_unit(unit, role, place, error)
       character(len=*), intent(in) :: unit
-      !> What the column holds
+      !> Role of the column
       integer, intent(in) :: role
-      !> Where the unit stands, for messages
+      !> File and line of the unit, for messages
       character(len=*), intent(in) :: place
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -435,12 +435,12 @@ contains
          //"the "//what//", expected one of "//join_words(known)//near)
    end subroutine check_unit
 
-   !> The unit that somebody may have meant
+   !> Suggestion for an unknown unit
    pure function nearest_unit(unit, known) result(near)
       character(len=*), intent(in) :: unit
       !> Known ones, separated by blanks
       character(len=*), intent(in) :: known
-      !> The nearest one; empty when none is near, or the unit is one of something else
+      !> The nearest one; empty if none is near, or if the unit is that of another quantity
       character(len=:), allocatable :: near
 
       near = ""

@@ -1,14 +1,14 @@
-!> Real numbers as text: 17 significant digits, from which every reader gets the same bits back
+!> Real numbers as text with 17 significant digits, which any reader converts back to the same bits
 !>
-!> The form is that of C's `%.16e`: `-1.2345678901234567e-05`, with three digits of the exponent
-!> where two are not enough; `nan`, `inf` and `-inf`. The digits are correctly rounded.
+!> The form is that of C's `%.16e`: `-1.2345678901234567e-05`, with a three-digit exponent if two
+!> digits are not enough; `nan`, `inf` and `-inf`. The digits are correctly rounded.
 !>
-!> A formatted write of gfortran takes 1.4 us per number, more than all else in writing a large
-!> table. Here a number M 2^e is multiplied by a power of ten, 5^k 2^k, in integers of 128 bits, so
-!> that the 17 digits are the integer part of a shifted product. 5^k is cut off after 74 bits, which
-!> is good for 1e-5 of the last digit: only if the rest is that close to one half, where rounding
-!> turns, the compiler's formatted write decides, as it does for numbers of 1e17 and more and for
-!> subnormal ones, which results hardly have.
+!> A formatted write of gfortran takes 1.4 us per number, more than everything else in writing a
+!> large table. So a number M 2^e is multiplied by a power of ten, 5^k 2^k, in 128-bit integers; the
+!> 17 digits are the integer part of a shifted product. 5^k is truncated to 74 bits, an error of
+!> 1e-5 of the last digit. Only if the fractional part is that close to one half, where rounding
+!> changes, the formatted write decides, as for numbers of 1e17 and above and for subnormal numbers,
+!> which are rare.
 module vcor_io_number
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_kinds, only : wp
@@ -23,9 +23,9 @@ module vcor_io_number
    !> Longest text of an integer [characters]
    integer, parameter :: longest_integer = 11
 
-   !> Largest power of ten that brings a number to 17 digits before the point
+   !> Largest power of ten that makes 17 digits the integer part of a number
    integer, parameter :: last_power = 16 + 309
-   !> 10^17: one digit too many
+   !> 10^17, which has one digit too many
    integer(int64), parameter :: too_large = 10_int64**17
    !> Bits of the fraction and bias of the exponent, IEEE 754 binary64
    integer, parameter :: fraction_bits = 52, bias = 1023
@@ -33,29 +33,29 @@ module vcor_io_number
    integer(int64), parameter :: special_exponent = 2047_int64
    !> Integers of 128 bits
    integer, parameter :: long = selected_int_kind(38)
-   !> Bits of a power of five: its product with a fraction and the bit before it has 127
+   !> Bits of a power of five; its product with a mantissa of 53 bits has 127
    integer, parameter :: power_bits = 74
    !> log10(2)
    real(wp), parameter :: log10_of_2 = 0.30102999566398119521_wp
 
-   !> Powers of ten for the conversion; made by `new_decimal`
+   !> Powers of ten for the conversion, from `new_decimal`
    type :: decimal_t
       private
-      !> 5^k = five(k) 2^exponent(k), the highest bit set; k up to `last_power`
+      !> 5^k = five(k) 2^exponent(k), the highest bit set, k = 0 .. `last_power`
       integer(long) :: five(0:last_power)
       !> Power of two
       integer :: exponent(0:last_power)
-      !> Two digits of the numbers 0 to 99
+      !> The numbers 0 to 99 as two digits
       character(len=2) :: pairs(0:99)
    end type decimal_t
 
 contains
 
-   !> Make the powers of ten: some 20 us, once for a table
+   !> Compute the powers of ten: about 20 us, once per table
    pure subroutine new_decimal(decimal)
-      !> Ready for `put_real`
+      !> Powers of ten for `put_real`
       type(decimal_t), intent(out) :: decimal
-      ! more bits than are kept, for the errors of some 300 products
+      ! additional bits for the errors of about 300 products
       integer, parameter :: bits = 124
       integer(long) :: five
       integer :: exponent, k
@@ -81,18 +81,18 @@ contains
    pure subroutine put_real(decimal, x, buffer, last)
       !> Powers of ten
       type(decimal_t), intent(in) :: decimal
-      !> Any number, NaN and infinity included
+      !> Any number, including NaN and infinity
       real(wp), intent(in) :: x
       !> Buffer with room for `longest_real` characters after `last`
       character(len=*), intent(inout) :: buffer
       !> Last character in use, before and after
       integer, intent(inout) :: last
-      ! Exponent of 2^56 = 7.2e16: powers of ten below one would be needed beyond
+      ! exponent of 2^56 = 7.2e16, above which negative powers of ten would be needed
       integer, parameter :: largest_exponent = 55
       integer(int64) :: bits, digits, field, fraction
       integer :: exponent, power
 
-      ! All from the bits: an ordered comparison with NaN traps in a debug build
+      ! compare bits only: an ordered comparison with NaN traps in a debug build
       bits = transfer(x, 0_int64)
       field = ibits(bits, fraction_bits, 11)
       fraction = ibits(bits, 0, fraction_bits)
@@ -128,7 +128,7 @@ contains
       character(len=longest_integer) :: text
       integer :: first, rest
 
-      ! The remainders of a negative number are negative: its absolute value may not exist
+      ! remainders of a negative number are negative; its absolute value may not exist
       rest = number
       first = longest_integer + 1
       do
@@ -141,9 +141,9 @@ contains
       call put_text(text(first:), buffer, last)
    end subroutine put_integer
 
-   !> A real number as text, for a few of them
+   !> A real number as text; slower than `put_real`, for a few numbers
    function decimal_text(x) result(text)
-      !> Any number, NaN and infinity included
+      !> Any number, including NaN and infinity
       real(wp), intent(in) :: x
       !> Its text, 17 digits
       character(len=:), allocatable :: text
@@ -157,7 +157,7 @@ contains
       text = buffer(:last)
    end function decimal_text
 
-   !> The 17 digits of a number
+   !> Find the 17 digits of a number
    pure subroutine find_digits(decimal, mantissa, exponent, digits, power)
       !> Powers of ten
       type(decimal_t), intent(in) :: decimal
@@ -169,13 +169,13 @@ contains
       integer(int64), intent(out) :: digits
       !> Power of ten of the first digit
       integer, intent(out) :: power
-      ! of the rest: an error of one in the last bit of 5^k is below half of it
+      ! of the rest: half of it bounds the effect of an error of one in the last bit of 5^k
       integer(long), parameter :: undecided = 2_long**(fraction_bits + 2)
       real(wp), parameter :: unit = 2.0_wp**(-fraction_bits)
       integer(long) :: product, rest
       integer :: k, shift
 
-      ! log2(m) >= m - 1 for m from 1 to 2: the power is right or one too small
+      ! log2(m) >= m - 1 for m from 1 to 2, so the power is correct or one too small
       power = floor((real(exponent - 1, wp) + real(mantissa, wp)*unit)*log10_of_2)
       do
          k = 16 - power
@@ -191,7 +191,7 @@ contains
       if (abs(rest) < undecided) digits = -1_int64
    end subroutine find_digits
 
-   !> The 17 digits of a number as the compiler rounds them
+   !> Find the 17 digits of a number by a formatted write
    pure subroutine ask_compiler(x, digits, power)
       !> A finite number
       real(wp), intent(in) :: x
@@ -220,7 +220,7 @@ contains
       character(len=*), intent(inout) :: buffer
       !> Last character in use, before and after
       integer, intent(inout) :: last
-      ! Each half has four pairs: two chains of quotients that do not wait for each other
+      ! two halves of four pairs: the processor can work on two independent chains of quotients
       integer(int64), parameter :: half = 10_int64**8
       integer :: high, low, pair, place
 

@@ -1,7 +1,7 @@
-!> What there is at a path, directories, and how a path stands in a message
+!> Paths: what exists at a path, directories, and paths in messages
 !>
-!> Blanks at the end of a path do not count, as in Fortran's `open`. Every error is an `error_file`
-!> with the path and the system's reason.
+!> Trailing blanks of a path are ignored, as by Fortran's `open`. Every error is an `error_file`
+!> with the path and the reason of the system.
 module vcor_io_path
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_int, c_null_char
    use vcor_error, only : error_file, error_t, raise
@@ -17,8 +17,7 @@ module vcor_io_path
 
 contains
 
-   !> Whether there is a file, a device or a pipe of that name, a directory excepted; a link counts
-   !> as what it points at
+   !> Whether a file, a device or a pipe of that name exists, but no directory; links are followed
    function file_exists(path) result(exists)
       character(len=*), intent(in) :: path
       logical :: exists
@@ -26,8 +25,8 @@ contains
       exists = all(kind_of(path, follows=.true.) /= [nothing_there, folder])
    end function file_exists
 
-   !> Whether there is a file of that name that can be looked into without consequences; a link
-   !> counts as what it points at
+   !> Whether a regular file of that name exists, which can be read without side effects; links are
+   !> followed
    function plain_file_exists(path) result(exists)
       character(len=*), intent(in) :: path
       logical :: exists
@@ -35,16 +34,16 @@ contains
       exists = kind_of(path, follows=.true.) == plain_file
    end function plain_file_exists
 
-   !> Whether there is a directory of that name
+   !> Whether a directory of that name exists
    function directory_exists(path) result(exists)
-      !> Path to look at; empty is the current directory
+      !> Path; empty for the current directory
       character(len=*), intent(in) :: path
       logical :: exists
 
       exists = path == '' .or. kind_of(path, follows=.true.) == folder
    end function directory_exists
 
-   !> Whether there is anything of that name, be it a link that leads nowhere
+   !> Whether anything of that name exists, even a broken link
    function anything_at(path) result(exists)
       character(len=*), intent(in) :: path
       logical :: exists
@@ -52,10 +51,10 @@ contains
       exists = kind_of(path, follows=.false.) /= nothing_there
    end function anything_at
 
-   !> Check that what has a name is a file itself, or nothing
+   !> Check that a path is a regular file or does not exist
    subroutine check_plain(path, error)
       character(len=*), intent(in) :: path
-      !> Set if it is a link, whatever that leads to, a pipe, a folder or a device
+      !> Set if it is a link of any kind, a pipe, a directory or a device
       type(error_t), allocatable, intent(out) :: error
 
       if (all(kind_of(path, follows=.false.) /= [nothing_there, plain_file])) call raise(error, &
@@ -63,12 +62,12 @@ contains
          //'file or nothing')
    end subroutine check_plain
 
-   !> Check that there is something of that name that may be read
+   !> Check that something readable of that name exists
    subroutine check_readable(path, expected, error)
       character(len=*), intent(in) :: path
-      !> What it is to be, for messages
+      !> Expected file, for messages
       character(len=*), intent(in) :: expected
-      !> Set if there is nothing, or a directory
+      !> Set if it does not exist or is a directory
       type(error_t), allocatable, intent(out) :: error
 
       if (path == '') then
@@ -80,10 +79,10 @@ contains
       end if
    end subroutine check_readable
 
-   !> What there is at a path
+   !> What exists at a path
    function kind_of(path, follows) result(kind)
       character(len=*), intent(in) :: path
-      !> Whether a link counts as what it points at
+      !> Whether to follow links
       logical, intent(in) :: follows
       !> `nothing_there`, `plain_file`, `folder` or `something_else`
       integer :: kind
@@ -94,11 +93,11 @@ contains
       kind = id%kind
    end function kind_of
 
-   !> Make a directory, and those above it; one that is there is fine
+   !> Make a directory, with its parents, unless it exists
    subroutine make_directory(path, error)
-      !> Path of the directory; empty is the current directory
+      !> Path of the directory; empty for the current one
       character(len=*), intent(in) :: path
-      !> Set if there is no such directory afterwards
+      !> Set if the directory does not exist afterwards
       type(error_t), allocatable, intent(out) :: error
       integer(c_int) :: reason, status
       integer :: last
@@ -108,7 +107,7 @@ contains
       if (directory_exists(path)) return
 
       do last = 1, len_trim(path)
-         ! Each part that ends here or before a slash, top down
+         ! each directory of the path, from the top
          if (path(last:last) == '/') cycle
          if (last < len_trim(path)) then
             if (path(last+1:last+1) /= '/') cycle
@@ -116,8 +115,8 @@ contains
          status = c_mkdir(c_text(path(:last)), all_permissions)
          reason = last_errno()
          if (status == 0) cycle
-         ! Whatever the reason: what counts is that there is a directory, perhaps made by another
-         ! process at the same time, or one that may be entered but not written
+         ! The reason is irrelevant if the directory exists: another process may have made it, or it
+         ! may be accessible but not writable
          if (directory_exists(path(:last))) cycle
          if (file_exists(path(:last))) then
             call raise(error, error_file, 'cannot make the directory '//quoted_path(path)//': '// &
@@ -129,22 +128,22 @@ contains
       end do
    end subroutine make_directory
 
-   !> Folder of a file, with the slash at its end
+   !> Directory of a file, with a trailing slash
    pure function folder_of(path) result(directory)
       character(len=*), intent(in) :: path
-      !> Empty for the current folder
+      !> Empty for the current directory
       character(len=:), allocatable :: directory
 
       directory = path(:index(path, '/', back=.true.))
    end function folder_of
 
-   !> Path of a member of a directory
+   !> Path of a file in a directory
    pure function join_path(directory, name) result(path)
-      !> Directory, with or without a slash at the end; empty is the current directory
+      !> Directory, with or without a trailing slash; empty for the current one
       character(len=*), intent(in) :: directory
-      !> Path from there; one that begins with a slash stands for itself
+      !> Path from there; an absolute path is returned as it is
       character(len=*), intent(in) :: name
-      !> The path, without blanks at the end
+      !> The path, without trailing blanks
       character(len=:), allocatable :: path
 
       path = trim(name)
@@ -154,13 +153,13 @@ contains
       path = path//trim(name)
    end function join_path
 
-   !> Path of a member of a folder as another folder sees it
+   !> Path of a file in a directory, relative to another directory
    function path_from(viewer, directory, name) result(path)
-      !> The other folder, empty for the current one
+      !> The other directory, empty for the current one
       character(len=*), intent(in) :: viewer
-      !> Folder of the member, empty for the current one
+      !> Directory of the file, empty for the current one
       character(len=*), intent(in) :: directory
-      !> Path from there; one that begins with a slash stands for itself
+      !> Path from there; an absolute path is returned as it is
       character(len=*), intent(in) :: name
       character(len=:), allocatable :: path
 
@@ -179,7 +178,7 @@ contains
       path = join_path(path, name)
    end function path_from
 
-   !> Whether two paths lead to one file, which need not be there: by its name and its folder
+   !> Whether two paths are one file, by name and directory; the file need not exist
    function same_file(one, other) result(same)
       character(len=*), intent(in) :: one
       character(len=*), intent(in) :: other
@@ -195,10 +194,10 @@ contains
          file_at(other(:b)//'.', follows=.true.))
    end function same_file
 
-   !> A path as it stands in a message: between quotes, on one line
+   !> A path for messages: quoted, on one line
    pure function quoted_path(path) result(quoted)
       character(len=*), intent(in) :: path
-      !> The path between quotes, `?` for every control character
+      !> The path in quotes, with `?` for every control character
       character(len=:), allocatable :: quoted
 
       integer :: i
@@ -210,7 +209,7 @@ contains
       quoted = printable(quoted)
    end function quoted_path
 
-   !> Check that something of that name may be written
+   !> Check that a name may be written to
    subroutine check_name(path, error)
       character(len=*), intent(in) :: path
       !> Set if it may not, see `name_flaw`
@@ -222,7 +221,7 @@ contains
          //': the name '//flaw//', expected another name')
    end subroutine check_name
 
-   !> Set an error with the reason of the system
+   !> Raise an error with the reason of the system
    subroutine raise_system(error, what, reason)
       !> The error, allocated on return
       type(error_t), allocatable, intent(inout) :: error

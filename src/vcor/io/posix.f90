@@ -1,10 +1,10 @@
-!> The system calls behind files: interfaces to C and POSIX, used by `vcor_io` alone
+!> System calls for files: interfaces to C and POSIX, for `vcor_io` only
 !>
-!> Fortran's own units hide what matters here: gfortran writes its buffer when a unit is closed and
-!> reports no error if the disk is full then; it has no rename, no directories, no exclusive
-!> creation and no locks. All functions are called as C declares them, none is variadic. A path ends
-!> with NUL (`c_text`); a `status` is 0 on success. Two functions are Linux's own:
-!> `__errno_location` (its name is `__error` on macOS) and `statx`.
+!> Fortran's own units are not sufficient: gfortran writes its buffer when a unit is closed and does
+!> not report a full disk then; it has no rename, directories, exclusive creation or locks. All
+!> functions have their C prototypes, none is variadic. A path ends with NUL (`c_text`); a `status`
+!> is 0 on success. Two functions exist on Linux only: `__errno_location` (`__error` on macOS) and
+!> `statx`.
 module vcor_io_posix
    use, intrinsic :: iso_c_binding, only : c_associated, c_char, c_f_pointer, c_int, c_int16_t, &
       c_int64_t, c_null_char, c_ptr, c_size_t
@@ -22,82 +22,82 @@ module vcor_io_posix
 
    !> File descriptors
    integer(c_int), parameter :: standard_output = 1, standard_error = 2
-   !> Values of `errno`: interrupted by a signal (EINTR), another process has the lock (EAGAIN),
-   !> there is something of that name (EEXIST)
+   !> Values of `errno`: interrupted by a signal (EINTR), locked by another process (EAGAIN), name
+   !> exists (EEXIST)
    integer(c_int), parameter :: errno_interrupted = 4, errno_locked = 11, errno_exists = 17
-   !> Permissions rwxrwxrwx, of which the user's umask takes its part away
+   !> Permissions rwxrwxrwx, reduced by the umask of the user
    integer(c_int), parameter :: all_permissions = int(o'777', c_int)
-   !> Operation of `c_lockf`: for this process alone, without waiting (F_TLOCK)
+   !> Operation of `c_lockf`: exclusive lock without waiting (F_TLOCK)
    integer(c_int), parameter :: lock_alone = 2
 
-   !> Bytes of the longest path, with its NUL (PATH_MAX)
+   !> Size of the longest path with its NUL (PATH_MAX) [bytes]
    integer, parameter :: longest_path = 4096
 
-   !> What there is at a path; something else is a link that is not followed, a pipe or a device
+   !> What exists at a path; something else is an unfollowed link, a pipe or a device
    integer, parameter :: nothing_there = 0, plain_file = 1, folder = 2, something_else = 3
 
-   !> A file whatever its names: what there is, its device and its number on it
+   !> Identity of a file, independent of its names
    type :: file_id_t
       !> `nothing_there`, `plain_file`, `folder` or `something_else`
       integer :: kind = nothing_there
-      !> Device and number, as the system keeps them
+      !> Device and inode number, as the system stores them
       integer(c_int16_t) :: bits(8) = 0_c_int16_t
    end type file_id_t
 
    interface
-      !> Open a stream, to write files; null if that fails. The mode ends with NUL: `abx` creates a
-      !> file, with the permissions that the umask leaves, fails where there is anything of that
-      !> name, and writes to the end of the file, wherever others have moved that
+      !> Open a stream to write a file; null on failure. The mode ends with NUL: `abx` creates a
+      !> file with the permissions that the umask leaves, fails if the name exists, and always
+      !> writes at the end of the file, which others may have moved
       function c_fopen(path, mode) result(stream) bind(c, name='fopen')
          import :: c_char, c_ptr
          character(kind=c_char), intent(in) :: path(*), mode(*)
          type(c_ptr) :: stream
       end function c_fopen
 
-      !> Close a stream, whatever the status
+      !> Close a stream, even if the status is not 0
       function c_fclose(stream) result(status) bind(c, name='fclose')
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: stream
          integer(c_int) :: status
       end function c_fclose
 
-      !> File descriptor of a stream, for the calls that take one
+      !> File descriptor of a stream
       function c_fileno(stream) result(descriptor) bind(c, name='fileno')
          import :: c_int, c_ptr
          type(c_ptr), intent(in), value :: stream
          integer(c_int) :: descriptor
       end function c_fileno
 
-      !> Give a file another name, in place of what has that name: complete files get theirs so
+      !> Rename a file, replacing one of the new name: complete files get their names this way
       function c_rename(old, new) result(status) bind(c, name='rename')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: old(*), new(*)
          integer(c_int) :: status
       end function c_rename
 
-      !> Remove a file, not a folder; a handler of signals may call it
+      !> Remove a file, not a directory; allowed in a signal handler
       function c_unlink(path) result(status) bind(c, name='unlink')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_unlink
 
-      !> Make a folder of a name that nothing has, for the user alone; null if that fails. The
-      !> template ends with XXXXXX and NUL and holds the name on return
+      !> Make a directory with a new unique name, for the user alone; null on failure. The template
+      !> ends with XXXXXX and NUL and returns the name
       function c_mkdtemp(template) result(place) bind(c, name='mkdtemp')
          import :: c_char, c_ptr
          character(kind=c_char), intent(inout) :: template(*)
          type(c_ptr) :: place
       end function c_mkdtemp
 
-      !> Remove an empty folder; a handler of signals may call it
+      !> Remove an empty directory; allowed in a signal handler
       function c_rmdir(path) result(status) bind(c, name='rmdir')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int) :: status
       end function c_rmdir
 
-      !> Path from the root, without links and points; null if there is nothing
+      !> Absolute path without links and dots; null if it does not exist
       function c_realpath(path, resolved) result(place) bind(c, name='realpath')
          import :: c_char, c_ptr
          character(kind=c_char), intent(in) :: path(*)
@@ -106,7 +106,7 @@ module vcor_io_posix
          type(c_ptr) :: place
       end function c_realpath
 
-      !> Make a folder for results, with the permissions that the umask leaves
+      !> Make a directory for results, with the permissions that the umask leaves
       function c_mkdir(path, mode) result(status) bind(c, name='mkdir')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: path(*)
@@ -114,8 +114,8 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_mkdir
 
-      !> Write `count` bytes to a file descriptor: how many were written, maybe fewer, or -1 if it
-      !> failed
+      !> Write `count` bytes to a file descriptor; returns the number of bytes written, which may be
+      !> smaller, or -1 on failure
       function c_write(descriptor, bytes, count) result(written) bind(c, name='write')
          import :: c_char, c_int, c_size_t
          integer(c_int), intent(in), value :: descriptor
@@ -124,15 +124,15 @@ module vcor_io_posix
          integer(c_size_t) :: written
       end function c_write
 
-      !> 1 if a file descriptor is a terminal, which is shown the progress of a sweep
+      !> 1 if a file descriptor is a terminal, which shows the progress of a sweep
       function c_isatty(descriptor) result(is_one) bind(c, name='isatty')
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: is_one
       end function c_isatty
 
-      !> Take room on the disk for `length` bytes of a file from `offset` on; the status is a value
-      !> of `errno`
+      !> Allocate disk space for `length` bytes of a file from `offset` on; the status is a value of
+      !> `errno`
       function c_fallocate(descriptor, offset, length) result(status) &
          bind(c, name='posix_fallocate')
          import :: c_int, c_int64_t
@@ -141,8 +141,7 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_fallocate
 
-      !> As `c_write`, to the place behind the first `offset` bytes of a file: a checkpoint keeps
-      !> outcomes so
+      !> Like `c_write`, at byte `offset` of a file: a checkpoint stores outcomes with it
       function c_pwrite(descriptor, bytes, count, offset) result(written) bind(c, name='pwrite')
          import :: c_int, c_int64_t, c_ptr, c_size_t
          integer(c_int), intent(in), value :: descriptor
@@ -152,15 +151,15 @@ module vcor_io_posix
          integer(c_size_t) :: written
       end function c_pwrite
 
-      !> Hand what was written to a file to the disk, before a checkpoint is closed
+      !> Write a file through to the disk, before a checkpoint is closed
       function c_fsync(descriptor) result(status) bind(c, name='fsync')
          import :: c_int
          integer(c_int), intent(in), value :: descriptor
          integer(c_int) :: status
       end function c_fsync
 
-      !> Lock `length` bytes of a file, 0 for all, from where it is read or written next, as long as
-      !> the process has it open: a checkpoint belongs to one process
+      !> Lock `length` bytes of a file from the current position, 0 for all, while the process has
+      !> it open: a checkpoint belongs to one process
       function c_lockf(descriptor, operation, length) result(status) bind(c, name='lockf')
          import :: c_int, c_int64_t
          integer(c_int), intent(in), value :: descriptor, operation
@@ -168,14 +167,14 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_lockf
 
-      !> Give a file one more name; fails where there is anything of that name
+      !> Give a file another name in addition; fails if the name exists
       function c_link(old, new) result(status) bind(c, name='link')
          import :: c_char, c_int
          character(kind=c_char), intent(in) :: old(*), new(*)
          integer(c_int) :: status
       end function c_link
 
-      !> Ask for the properties of a file: unlike that of `stat`, the structure of 256 bytes is the
+      !> Get the properties of a file: unlike that of `stat`, this structure of 256 bytes is the
       !> same on all processors
       function c_statx(directory, path, flags, mask, properties) result(status) &
          bind(c, name='statx')
@@ -186,20 +185,20 @@ module vcor_io_posix
          integer(c_int) :: status
       end function c_statx
 
-      !> Address of `errno` of this thread, a C int
+      !> Address of `errno`, a C int, of this thread
       function c_errno_place() result(place) bind(c, name='__errno_location')
          import :: c_ptr
          type(c_ptr) :: place
       end function c_errno_place
 
-      !> Address of a text that says what an `errno` means and ends with NUL
+      !> Address of a text, ending with NUL, that explains a value of `errno`
       function c_strerror(number) result(text) bind(c, name='strerror')
          import :: c_int, c_ptr
          integer(c_int), intent(in), value :: number
          type(c_ptr) :: text
       end function c_strerror
 
-      !> Bytes of a text of C before its NUL
+      !> Length of a C string before its NUL [bytes]
       pure function c_strlen(text) result(length) bind(c, name='strlen')
          import :: c_ptr, c_size_t
          type(c_ptr), intent(in), value :: text
@@ -209,7 +208,7 @@ module vcor_io_posix
 
 contains
 
-   !> A text as C wants it
+   !> A text as a C string
    pure function c_text(text) result(terminated)
       character(len=*), intent(in) :: text
       !> The text and a NUL
@@ -218,11 +217,11 @@ contains
       terminated = text//c_null_char
    end function c_text
 
-   !> A text of C
+   !> Text of a C string
    function fortran_text(place) result(text)
-      !> Where it begins, or null
+      !> Its address, or null
       type(c_ptr), intent(in) :: place
-      !> The same; of null an empty one
+      !> The text; empty for null
       character(len=:), allocatable :: text
 
       character(kind=c_char), pointer :: letters(:)
@@ -238,10 +237,10 @@ contains
       end do
    end function fortran_text
 
-   !> What there is at a path
+   !> What exists at a path
    function file_at(path, follows) result(id)
       character(len=*), intent(in) :: path
-      !> Whether a link counts as what it points at
+      !> Whether to follow links
       logical, intent(in) :: follows
       type(file_id_t) :: id
 
@@ -251,7 +250,7 @@ contains
       id = file_of(current_directory, path, merge(0_c_int, no_follow, follows))
    end function file_at
 
-   !> The file behind a descriptor
+   !> Identity of an open file
    function open_file(descriptor) result(id)
       integer(c_int), intent(in) :: descriptor
       type(file_id_t) :: id
@@ -262,16 +261,16 @@ contains
       id = file_of(descriptor, '', empty_path)
    end function open_file
 
-   !> Ask the system for a file
+   !> Ask the system about a file
    function file_of(directory, path, flags) result(id)
-      !> Where a relative path begins
+      !> Directory where a relative path begins
       integer(c_int), intent(in) :: directory
       character(len=*), intent(in) :: path
       integer(c_int), intent(in) :: flags
       type(file_id_t) :: id
 
-      ! STATX_TYPE and STATX_INO; S_IFMT, S_IFREG and S_IFDIR of C. The type is two bytes from byte
-      ! 28 on, the number 8 bytes from byte 32 on, the device 8 bytes from byte 136 on
+      ! STATX_TYPE and STATX_INO; S_IFMT, S_IFREG and S_IFDIR of C. The type is at byte 28 (2
+      ! bytes), the inode number at byte 32 (8 bytes), the device at byte 136 (8 bytes)
       integer(c_int), parameter :: type_and_number = int(z'101', c_int)
       integer, parameter :: type_bits = int(o'170000'), regular = int(o'100000'), &
          directory_bits = int(o'040000')
@@ -290,7 +289,7 @@ contains
       id%bits = [properties(17:20), properties(69:72)]
    end function file_of
 
-   !> Whether two files are one, and there is one
+   !> Whether two files exist and are the same
    pure function same_file_id(one, other) result(same)
       type(file_id_t), intent(in) :: one
       type(file_id_t), intent(in) :: other
@@ -299,7 +298,7 @@ contains
       same = one%kind /= nothing_there .and. all(one%bits == other%bits)
    end function same_file_id
 
-   !> Value of `errno`: to be asked for right after the call that failed
+   !> Value of `errno`, valid immediately after the failed call
    function last_errno() result(number)
       integer(c_int) :: number
 
@@ -309,7 +308,7 @@ contains
       number = place
    end function last_errno
 
-   !> What the system says about a failure
+   !> Explanation of the system for a failure
    function system_reason(number) result(reason)
       integer(c_int), intent(in) :: number
       !> Text such as `No space left on device`

@@ -1,15 +1,15 @@
 !> Outcomes, trajectories and moduli of materials as tables
 !>
-!>     summary       a row per impact; of materials a row for each: glassy and rubbery modulus, the
-!>                   values at t0 and omega_min
+!>     summary       a row per impact; for materials a row for each: glassy and rubbery modulus, and
+!>                   the values at t0 and omega_min
 !>     history       a row per time
 !>     relaxation    E(t), a row per material and time
 !>     dynamic       E', E'' and tan(delta), a row per material and angular frequency
 !>
-!> In HDF5 the last two are arrays with the dimensions material and time, or frequency. What does
-!> not deform is in the summary only. The window of the case's own impact, t <= t0 and
-!> omega >= omega_min, is told twice: by the facts contact_time and min_frequency of each table,
-!> which are missing where the impact has no result, and by the column in_window.
+!> In HDF5 the last two are arrays with the dimensions material and time, or frequency. Rigid
+!> materials are in the summary only. The window of the case's own impact, t <= t0 and
+!> omega >= omega_min, is given by contact_time and min_frequency of each table, which are missing
+!> if the impact has no result, and by the column in_window.
 module vcor_io_results
    use vcor_impact_trajectory, only : col_time, history_steps, trajectory_t
    use vcor_io_table, only : add_column, add_dimension, column_of, column_t, integer_column, &
@@ -25,22 +25,22 @@ module vcor_io_results
 
    public :: summary_table, history_table, moduli_tables, axis_column, quantity_column
 
-   !> Value of in_window where there is no window
+   !> Value of in_window if there is no window
    integer, parameter :: unknown = -1
-   !> What in_window says
+   !> Meaning of in_window
    character(len=*), parameter :: window_meaning = 'whether the impact of the case depends on ' &
       //'it: 1 yes, 0 no, -1 not known'
 
 contains
 
-   !> Summary: a row per impact. Its dimensions are what is swept, each by its path; a single impact
-   !> has the dimension `impact` of length one
+   !> Summary: a row per impact. Its dimensions are the parameters that vary, with their paths as
+   !> names; a single impact has the dimension `impact` of length one
    subroutine summary_table(table, title, case_text, grid, summary)
       type(table_t), intent(out) :: table
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: case_text
       type(grid_t), intent(in) :: grid
-      !> Their outcomes; they move to the table, so that there are not two of a million
+      !> Outcomes; they are moved to the table, not copied, as there may be a million
       type(summary_t), intent(inout) :: summary
 
       integer :: i
@@ -66,7 +66,7 @@ contains
       end do
    end subroutine summary_table
 
-   !> A column of what is swept
+   !> Column of a parameter that varies
    pure function axis_column(axis, values) result(column)
       type(axis_t), intent(in) :: axis
       !> Its values, in the unit of the parameter
@@ -77,12 +77,12 @@ contains
       if (axis%unit == '') column%unit = '1'
    end function axis_column
 
-   !> A column of a summary, without values
+   !> Column of a summary, without values
    function quantity_column(quantity, length, as_numbers) result(column)
       type(quantity_t), intent(in) :: quantity
       !> Number of its values
       integer, intent(in) :: length
-      !> Whether texts stay the numbers that stand for them; absent: false
+      !> Whether to keep the numbers that stand for texts; absent: no
       logical, intent(in), optional :: as_numbers
       type(column_t) :: column
 
@@ -138,7 +138,7 @@ contains
       type(moduli_t), intent(in) :: moduli
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: case_text
-      !> A row per material; per material and time; per material and frequency
+      !> Tables with a row per material; per material and time; per material and frequency
       type(table_t), intent(out) :: tables(3)
 
       integer, allocatable :: all(:), soft(:)
@@ -180,7 +180,7 @@ contains
       subroutine begin(table, name, items)
          type(table_t), intent(out) :: table
          character(len=*), intent(in) :: name
-         !> Numbers of the materials
+         !> Indices of the materials
          integer, intent(in) :: items(:)
 
          character(len=longest) :: names(size(items))
@@ -199,9 +199,9 @@ contains
          call add_dimension(table, column_of('material', names, '', 'name of the material'))
       end subroutine begin
 
-      !> Whether points are in the window, for each of the materials
+      !> Values of in_window, repeated for each material
       pure function spread_out(inside) result(column)
-         !> Whether a point is, shape (points)
+         !> Whether a point is in the window, shape (points)
          logical, intent(in) :: inside(:)
          !> 1, 0 or -1, shape (points*materials)
          integer :: column(size(inside)*size(soft))
@@ -213,7 +213,7 @@ contains
       end function spread_out
    end subroutine moduli_tables
 
-   !> Columns of the summary
+   !> Add the columns of the summary of materials
    pure subroutine add_summary(table, materials)
       type(table_t), intent(inout) :: table
       !> The materials, shape (n)

@@ -1,20 +1,20 @@
-!> Data files that materials are identified from: relaxation moduli over time, or storage and loss
-!> moduli (or the storage or complex modulus and the loss tangent) over frequency
+!> Reads data files from which materials are identified: relaxation moduli over time, or storage and
+!> loss moduli (or storage or complex modulus and loss tangent) over frequency
 !>
-!> Before the first line of numbers stands a head. It may be
+!> The head of a file is everything before the first line of numbers. It may be
 !>
-!>  - nothing: two columns are time and relaxation modulus, three are angular frequency, storage and
-!>    loss modulus, in units of the SI;
-!>  - a line of names, with units or without: `t [s], E [MPa]`;
+!>  - empty: two columns are time and relaxation modulus, three are angular frequency, storage and
+!>    loss modulus, in SI units;
+!>  - a line of names, with or without units: `t [s], E [MPa]`;
 !>  - a line of names and one of units: `t;E`, `s;MPa`;
-!>  - remarks that tell the units, as vcor writes them, and a line of names: `# time [s] ...`,
+!>  - comments with the units, as vcor writes them, and a line of names: `# time [s] ...`,
 !>    `# E [Pa] ...`, `time,E`;
-!>  - names behind `##`, as NETZSCH writes them: `##Temp./C;f/Hz;E'/MPa;E"/MPa`;
+!>  - names after `##`, as NETZSCH writes them: `##Temp./C;f/Hz;E'/MPa;E"/MPa`;
 !>  - other lines, and then names and units, as TRIOS writes them: `[step]`, `Frequency sweep`,
 !>    `Angular frequency<tab>Storage modulus<tab>Loss modulus`, `rad/s<tab>Pa<tab>Pa`.
 !>
-!> What the user says comes before what the head says. What is read becomes tensile moduli in SI
-!> units, in rising order.
+!> What the user specifies overrides the head. The samples are tensile moduli in SI units, in
+!> increasing order of time or frequency.
 module vcor_io_sample_file
    use vcor_error, only : error_input, error_t, error_usage, raise
    use vcor_io_columns, only : decimals_t, lines_in, most_columns, not_a_text, read_value, &
@@ -33,31 +33,31 @@ module vcor_io_sample_file
 
    public :: read_samples, read_samples_text, reading_t, standard_input
 
-   !> Name that means the standard input
+   !> Name of the standard input
    character(len=*), parameter :: standard_input = "-"
 
-   !> What the user says about the columns
+   !> What the user specifies about the columns
    type :: reading_t
-      !> Units by the option, one word per column, blank for one that the file tells; shape (0), (2)
-      !> or (3)
+      !> Units of the columns, one word each, blank for one that the file states; shape (0), (2) or
+      !> (3)
       character(len=longest_word), allocatable :: units(:)
       logical :: shear = .false.
-      !> Poisson's ratio [-]; beyond 0.5: not given
+      !> Poisson's ratio [-]; above 0.5: unknown
       real(wp) :: poisson_ratio = 1.0_wp
    end type reading_t
 
-   !> Columns that are read
+   !> Columns to read
    type :: plan_t
-      !> Number of columns in each line
+      !> Number of columns of each line
       integer :: columns = 0
-      !> Places of time or frequency and one or two moduli, shape (2) or (3)
+      !> Columns of time or frequency and of one or two moduli, shape (2) or (3)
       integer, allocatable :: places(:)
-      !> What these hold
+      !> Their roles
       integer, allocatable :: roles(:)
       !> Their units
       character(len=longest_word), allocatable :: units(:)
       logical :: shear = .false.
-      !> How the numbers are written
+      !> Decimal points or commas
       type(decimals_t) :: decimals
    end type plan_t
 
@@ -69,14 +69,14 @@ contains
       type(samples_t), intent(out) :: samples
       !> Name of the file; `-` is the standard input
       character(len=*), intent(in) :: filename
-      !> What the user says about it
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
-      !> How it was understood, in words
+      !> How the file was read, in words
       character(len=:), allocatable, intent(out) :: note
       !> File and lines of the numbers, `data.csv:3-42`, for messages about all of them
       character(len=:), allocatable, intent(out) :: place
-      !> Error of code `error_file` when the file cannot be read, `error_input` when its contents
-      !> are wrong, `error_usage` when something has to be said about it; unallocated on success
+      !> Error of code `error_file` if the file cannot be read, `error_input` if its contents are
+      !> wrong, `error_usage` if the user must specify more; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: expected = "a file of moduli over time or frequency"
@@ -100,13 +100,13 @@ contains
       character(len=*), intent(in) :: text
       !> Name of the file, for messages
       character(len=*), intent(in) :: source
-      !> What the user says about it
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
-      !> How it was understood, in words
+      !> How the file was read, in words
       character(len=:), allocatable, intent(out) :: note
       !> File and lines of the numbers
       character(len=:), allocatable, intent(out) :: place
-      !> Error of code `error_input` or `error_usage` as that of `read_samples`
+      !> Error of code `error_input` or `error_usage` as from `read_samples`
       type(error_t), allocatable, intent(out) :: error
 
       type(plan_t) :: plan
@@ -141,10 +141,10 @@ contains
       samples%keys = keys_in(text)
    end subroutine read_samples_text
 
-   !> Keys of a &material group that remarks of a file give, `# &material shift = 'wlf', ...`
+   !> Keys for the &material group in comments of a file, `# &material shift = 'wlf', ...`
    function keys_in(text) result(keys)
       character(len=*), intent(in) :: text
-      !> A line for each of these remarks
+      !> A line for each of these comments
       character(len=:), allocatable :: keys
 
       character(len=*), parameter :: mark = "&material "
@@ -161,7 +161,7 @@ contains
       end do
    end function keys_in
 
-   !> How a file was understood
+   !> How a file was read, in words
    pure function described(plan, n) result(text)
       type(plan_t), intent(in) :: plan
       integer, intent(in) :: n
@@ -182,14 +182,14 @@ contains
    subroutine read_points(text, name, reading, plan, points, n, lines, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: name
-      !> What the user says about it
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
       type(plan_t), intent(out) :: plan
       !> Points, shape (2 or 3, >= n)
       real(wp), allocatable, intent(out) :: points(:, :)
-      !> Their number, >= 2
+      !> Number of points, >= 2
       integer, intent(out) :: n
-      !> Lines of the first and the last of them
+      !> Their first and last line
       integer, intent(out) :: lines(2)
       type(error_t), allocatable, intent(out) :: error
 
@@ -209,11 +209,11 @@ contains
          //"modulus")
    end subroutine read_points
 
-   !> Read the head, all that stands before the first line of numbers
+   !> Read the head, everything before the first line of numbers
    subroutine read_head(text, name, row, header, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: name
-      !> The first line of numbers, if there is one
+      !> The first line of numbers, if any
       type(row_t), intent(out) :: row
       type(header_t), intent(out) :: header
       !> Error of code `error_input`, unallocated on success
@@ -236,7 +236,7 @@ contains
          if (header%lines == 2 .or. row%columns > most_columns) return
          if (any(row%is_numeric([(i, i=1, row%columns)]))) return
          if (header%lines == 0) then
-            ! no name is a known one
+            ! no name is known
             call read_names(header, row%content, row%line)
          else
             call read_units(header, row%content, row%line)
@@ -244,30 +244,30 @@ contains
       end do
    end subroutine read_head
 
-   !> Read the numbers, in rising order
+   !> Read the numbers, in increasing order of time or frequency
    subroutine read_numbers(text, name, header, reading, row, plan, points, n, lines, error)
       character(len=*), intent(in) :: text
       character(len=*), intent(in) :: name
-      !> What stands before them
+      !> The head
       type(header_t), intent(in) :: header
-      !> What the user says about it
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
-      !> The first line of numbers; on return the end of the text
+      !> First line of numbers; on return the end of the text
       type(row_t), intent(inout) :: row
       type(plan_t), intent(out) :: plan
       !> Points, shape (2 or 3, >= n)
       real(wp), allocatable, intent(out) :: points(:, :)
-      !> Their number
+      !> Number of points
       integer, intent(out) :: n
-      !> Lines of the first and the last of them
+      !> Their first and last line
       integer, intent(out) :: lines(2)
       !> Error of code `error_input` or `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: message, temperature
-      !> Column of the temperature, 0: none
+      !> Column of the temperature; 0: none
       integer :: temperature_column
-      !> Whether the frequencies fall
+      !> Whether frequencies decrease
       logical :: is_descending
       integer :: i
 
@@ -290,7 +290,7 @@ contains
             end if
             if (.not. allocated(message)) call read_point(row, plan, points(:, n + 1), message)
             if (.not. allocated(message) .and. n > 0) then
-               ! instruments sweep frequencies in either direction
+               ! instruments sweep frequencies up or down
                if (n == 1) is_descending = plan%roles(1) == role_frequency &
                   .and. points(1, 2) < points(1, 1)
                call check_order(plan, points(1, n:n + 1), lines(2), is_descending, message)
@@ -318,9 +318,9 @@ contains
    subroutine read_point(row, plan, point, message)
       type(row_t), intent(in) :: row
       type(plan_t), intent(in) :: plan
-      !> The numbers, 0 behind them, shape (3)
+      !> The numbers, followed by 0, shape (3)
       real(wp), intent(out) :: point(:)
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: i
@@ -338,16 +338,16 @@ contains
       end do
    end subroutine read_point
 
-   !> Check that times rise, and frequencies rise or fall
+   !> Check that times increase, and that frequencies increase or decrease
    subroutine check_order(plan, pair, line, is_descending, message)
       type(plan_t), intent(in) :: plan
       !> Times or frequencies of a line and of the next one
       real(wp), intent(in) :: pair(2)
-      !> The former of them
+      !> Number of the first of these lines
       integer, intent(in) :: line
-      !> Whether they are to fall
+      !> Whether they must decrease
       logical, intent(in) :: is_descending
-      !> What is wrong, unallocated where they do
+      !> Message if they do not, otherwise unallocated
       character(len=:), allocatable, intent(out) :: message
 
       if (merge(pair(2) < pair(1), pair(2) > pair(1), is_descending)) return
@@ -356,7 +356,7 @@ contains
          //trim(merge("decrease as before", "increase          ", is_descending))
    end subroutine check_order
 
-   !> Line that names the columns: the last one before the numbers that has a known name
+   !> Line of the names of columns: the last one with a known name before the numbers
    function line_of_names(text) result(found)
       character(len=*), intent(in) :: text
       !> Number of the line; 0 if there is none
@@ -375,7 +375,7 @@ contains
       end do
    end function line_of_names
 
-   !> What a line may name columns by: its content, or what stands behind ##
+   !> Part of a line that may name columns: its content, or the text after ##
    pure function names_in(content, comment) result(text)
       !> The line without its comment
       character(len=*), intent(in) :: content
@@ -388,13 +388,13 @@ contains
       if (content == "" .and. index(comment, "#") == 1) text = comment(2:)
    end function names_in
 
-   !> Which columns are read, as what and in which units
+   !> Choose the columns to read, their roles and units
    subroutine make_plan(header, columns, reading, name, line, plan, error)
-      !> What stands before the first number
+      !> The head
       type(header_t), intent(in) :: header
       !> Number of columns of the first line of numbers
       integer, intent(in) :: columns
-      !> What the user says
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
       character(len=*), intent(in) :: name
       !> First line of numbers
@@ -456,7 +456,7 @@ contains
 
       plan%shear = reading%shear .or. any(shear(plan%places))
       allocate (plan%units(size(plan%places)))
-      ! a header that tells one unit tells all: what it leaves out is not that of the SI
+      ! if a header states one unit, units that it omits are not assumed to be SI
       told = header%lines > 1 .or. any(header%columns(plan%places)%unit /= "" &
          .and. plan%roles /= role_tangent)
       do i = 1, size(plan%places)
@@ -497,14 +497,14 @@ contains
       end do
    end subroutine make_plan
 
-   !> Of a frequency and an angular frequency side by side, which say the same, keep one: the one in
-   !> the unit that the user gives, else the angular one
+   !> If both frequency and angular frequency are there, which are equivalent, keep one: that in the
+   !> unit of the user, otherwise the angular one
    pure subroutine choose_frequency(reading, units, roles)
-      !> What the user says
+      !> What the user specifies
       type(reading_t), intent(in) :: reading
       !> Units of the columns, shape (n)
       character(len=*), intent(in) :: units(:)
-      !> What they hold, shape (n)
+      !> Roles of the columns, shape (n)
       integer, intent(inout) :: roles(:)
 
       logical :: kept(size(roles))
@@ -517,20 +517,20 @@ contains
       if (any(kept)) where (roles == role_frequency .and. .not. kept) roles = role_none
    end subroutine choose_frequency
 
-   !> Refuse a header that does not say which columns to read
+   !> Refuse a header that does not identify the columns to read
    subroutine check_names(header, roles, units, told, plan, head, error)
       type(header_t), intent(in) :: header
-      !> What each column holds, as far as the header says it, shape (n)
+      !> Role of each column, as far as the header states it, shape (n)
       integer, intent(in) :: roles(:)
       !> Their units, shape (>= n)
       character(len=*), intent(in) :: units(:)
-      !> Whether the user tells the units
+      !> Whether the user specifies the units
       logical, intent(in) :: told
-      !> The columns to be read
+      !> Columns to read
       type(plan_t), intent(in) :: plan
       !> File and line of the header, for messages
       character(len=*), intent(in) :: head
-      !> Error of code `error_input`, unallocated where it does
+      !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       integer :: i
@@ -542,12 +542,12 @@ contains
                   == plan%roles(i)))//" of "//name_of(plan%roles(i), "")//", expected one")
             else if (roles(place) == role_none &
                .and. index(header%columns(place)%name, "*") > 0) then
-               ! some other spelling of a complex modulus, or of a complex viscosity
+               ! another name of a complex modulus or a complex viscosity
                call raise(error, error_input, head//": found '" &
                   //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
                   //"expected one such as "//trim(known_roles(plan%roles(i))%example))
             else if (roles(place) == role_none .and. units(place) == "" .and. .not. told) then
-               ! its place alone says nothing, the logarithm of a modulus may stand there
+               ! the place is not enough: the column may be the logarithm of a modulus
                call raise(error, error_input, head//": found '" &
                   //shortened(trim(header%columns(place)%name))//"' as name of a column, " &
                   //"expected one such as "//trim(known_roles(plan%roles(i))%example) &
@@ -558,12 +558,11 @@ contains
       end do
    end subroutine check_names
 
-   !> Choose the columns to be read: by what they hold, or by their places where there are two or
-   !> three
+   !> Choose the columns to read: by their roles or, of two or three columns, by their places
    pure subroutine choose_columns(roles, plan)
-      !> What each column holds, as far as that is known
+      !> Role of each column, as far as it is known
       integer, intent(in) :: roles(:)
-      !> The plan; its places are not allocated where there is no choice
+      !> The plan; its places are unallocated if there is no choice
       type(plan_t), intent(inout) :: plan
 
       logical :: dynamic
@@ -587,11 +586,11 @@ contains
       end if
    end subroutine choose_columns
 
-   !> What is missing of storage and loss modulus where one of them is there
+   !> Message about a storage or loss modulus that is missing beside the other
    pure function lacking(roles) result(text)
-      !> What each column holds
+      !> Role of each column
       integer, intent(in) :: roles(:)
-      !> In words, or nothing
+      !> In words; may be empty
       character(len=:), allocatable :: text
 
       logical :: loss
@@ -604,7 +603,7 @@ contains
          = "; a complex modulus needs the loss tangent beside it"
    end function lacking
 
-   !> A number of columns in words
+   !> Number of columns in words
    pure function columns_text(columns) result(text)
       integer, intent(in) :: columns
       !> `2 columns`
@@ -614,12 +613,12 @@ contains
       if (columns /= 1) text = text//"s"
    end function columns_text
 
-   !> What a header says against the number of columns
+   !> Message about a header with another number of columns
    pure function expected_of(header, columns) result(text)
       type(header_t), intent(in) :: header
       !> Number of columns of the first line of numbers
       integer, intent(in) :: columns
-      !> In words, or nothing
+      !> In words; may be empty
       character(len=:), allocatable :: text
 
       text = ""

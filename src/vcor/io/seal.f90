@@ -1,18 +1,18 @@
-!> The seal of a file: a check sum over all its bytes, behind its end
+!> The seal of a file: a check sum over all its bytes, appended to it
 !>
-!> HDF5 trusts what it reads: texts of variable length that are damaged end in its crash, or in a
-!> loop. So nothing of a damaged file may come to it. A file of this program ends with a seal, which
-!> HDF5 does not see, as a file may be longer than HDF5 knows:
+!> HDF5 trusts what it reads: a damaged text of variable length makes it crash or loop forever. So
+!> HDF5 must not read a damaged file. Files of this program end with a seal, which HDF5 ignores, as
+!> a file may be longer than HDF5 records:
 !>
 !>     first byte (from 0) and number of bytes of each part of the file that is left out, ascending
 !>     number of these parts
 !>     CRC-32 of all bytes before it but those
 !>     `vcorseal`
 !>
-!> Numbers are 64-bit integers, little endian. What is left out are the outcomes in the file of a
-!> sweep under way or a shard: each row of them has a check sum of its own. A program that changes
-!> the file through HDF5 cuts the seal off. Such a file, which ends where HDF5 says, is as good as
-!> one that another program has made.
+!> Numbers are 64-bit integers, little endian. Left out are the outcomes in the file of an
+!> unfinished sweep or a shard, whose rows have check sums of their own. A program that changes the
+!> file through HDF5 cuts the seal off. Such a file ends where HDF5 records its end, and is accepted
+!> like one that another program has made.
 module vcor_io_seal
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
@@ -23,9 +23,9 @@ module vcor_io_seal
 
    public :: seal_of, check_seal, is_altered
 
-   !> How a seal ends
+   !> End of a seal
    character(len=8), parameter :: mark = 'vcorseal'
-   !> Bytes of a number, and of the part of a seal that is always there
+   !> Bytes of a number, and of the fixed part of a seal
    integer, parameter :: word = 8, fixed = 3*word
    !> One byte
    integer(int8), parameter :: byte(1) = 0_int8
@@ -34,11 +34,11 @@ contains
 
    !> Seal of a file
    function seal_of(path, left_out) result(seal)
-      !> Path of the file, which has none yet
+      !> Path of the file, without a seal yet
       character(len=*), intent(in) :: path
-      !> First byte, from 0, and number of bytes of what is left out, ascending, shape (2, n)
+      !> First byte, from 0, and number of bytes of each part to leave out, ascending, shape (2, n)
       integer(int64), intent(in) :: left_out(:, :)
-      !> What comes behind it; nothing if it cannot be read
+      !> Seal to append; empty if the file cannot be read
       character(len=:), allocatable :: seal
 
       integer(int64) :: bytes, numbers(size(left_out) + 2)
@@ -60,10 +60,10 @@ contains
       seal = transfer([transfer(numbers, byte), transfer(mark, byte)], seal)
    end function seal_of
 
-   !> See whether a file is as this program has left it; one without a seal passes if it ends where
-   !> HDF5 says
+   !> Check that a file is as this program wrote it; one without a seal passes if it ends where HDF5
+   !> records its end
    subroutine check_seal(path, error)
-      !> Path of the file, which is there
+      !> Path of an existing file
       character(len=*), intent(in) :: path
       !> Error of code `error_file` if the file is damaged, unallocated otherwise
       type(error_t), allocatable, intent(out) :: error
@@ -72,13 +72,13 @@ contains
          //'is damaged: its check sum is wrong; remove it, and run what has made it once more')
    end subroutine check_seal
 
-   !> Whether a file has a seal that is not its own
+   !> Whether a file has changed since it was sealed
    function is_altered(path, cut_counts) result(yes)
       !> Path of the file
       character(len=*), intent(in) :: path
-      !> Whether one without a seal counts, too, that does not end where HDF5 says
+      !> Whether a file without a seal counts as altered if it does not end where HDF5 records
       logical, intent(in) :: cut_counts
-      !> False of a file that cannot be opened: HDF5 says why
+      !> False if the file cannot be opened: HDF5 reports the reason
       logical :: yes
 
       character(len=len(mark)) :: found
@@ -100,10 +100,10 @@ contains
       close (unit)
    end function is_altered
 
-   !> Whether a seal is that of the file
+   !> Whether the seal matches the file
    function is_sealed(unit, bytes) result(is_sound)
       integer, intent(in) :: unit
-      !> Its length
+      !> Length of the file [bytes]
       integer(int64), intent(in) :: bytes
       logical :: is_sound
 
@@ -123,12 +123,12 @@ contains
       is_sound = expected == sum_of_file(unit, length, left_out)
    end function is_sealed
 
-   !> Check sum of a file and of where its parts are that are left out
+   !> Check sum of a file and of the positions of the parts left out
    function sum_of_file(unit, length, left_out) result(number)
       integer, intent(in) :: unit
       !> Number of bytes before the seal
       integer(int64), intent(in) :: length
-      !> What is left out of the file, ascending, shape (2, n)
+      !> Parts to leave out, ascending, shape (2, n)
       integer(int64), intent(in) :: left_out(:, :)
       !> The sum; negative if the file cannot be read
       integer(int64) :: number
@@ -153,14 +153,14 @@ contains
       number = ibits(int(sum, int64), 0, 32)
    end function sum_of_file
 
-   !> Check sum of what is not left out of a part of a file
+   !> Check sum of a block of a file without the parts left out
    pure function sum_of(bytes, start, left_out, before) result(sum)
       integer(int8), intent(in), contiguous :: bytes(:)
       !> Number of bytes before it in the file
       integer(int64), intent(in) :: start
-      !> What is left out of the file, ascending, shape (2, n)
+      !> Parts to leave out, ascending, shape (2, n)
       integer(int64), intent(in) :: left_out(:, :)
-      !> Sum of what is before it
+      !> Check sum of what precedes it
       integer(int32), intent(in) :: before
       integer(int32) :: sum
 
@@ -177,15 +177,15 @@ contains
       if (first <= size(bytes, kind=int64)) sum = crc32(bytes(first:), sum)
    end function sum_of
 
-   !> Whether a file ends where HDF5 says, or does not say where it ends in the way of this program
+   !> Whether a file ends where HDF5 records its end, or has no record in this program's format
    function ends_well(unit, bytes) result(is_sound)
       integer, intent(in) :: unit
-      !> Its length
+      !> Length of the file [bytes]
       integer(int64), intent(in) :: bytes
       logical :: is_sound
 
-      ! superblock of HDF5 1.8: 8 bytes that every file begins with, version, sizes of places and
-      ! lengths, flags, then places: where the file begins, of an extension, where it ends
+      ! superblock of HDF5 1.8: 8 bytes of signature, version, sizes of offsets and lengths, flags,
+      ! then offsets: base address, extension, end of file
       integer, parameter :: versions(2) = [2, 3], at_version = 9, at_end = 29
       integer(int8) :: version
       integer(int64) :: end_of_file

@@ -4,11 +4,11 @@
 !>     call add_dimension(summary, 'impact', rows)
 !>     call add_column(summary, column_of('cor', cor, '1', 'coefficient of restitution'))
 !>
-!> All dimensions come before the first column. The rows of a column run through the dimensions with
-!> the last one the fastest, as in nested loops; its length is the product of their lengths.
+!> All dimensions are added before the first column. The last dimension varies fastest along a
+!> column, as in nested loops; the length of a column is the product of their lengths.
 !>
-!> A unit is `1` for numbers without dimension, such as ratios and counts, the SI unit otherwise, as
-!> in `m/s` and `N s`, and empty for text.
+!> The unit is `1` for dimensionless numbers, such as ratios and counts, empty for text, and
+!> otherwise the SI unit, as in `m/s` and `N s`.
 !>
 !> All components are public for the writers; only the procedures below set them.
 module vcor_io_table
@@ -21,38 +21,37 @@ module vcor_io_table
    public :: new_table, add_dimension, add_column, column_of
    public :: row_count, coordinate_row, place_in_table, text_value
 
-   !> What the values of a column are
+   !> Kinds of values of a column
    integer, parameter :: real_column = 1, integer_column = 2, text_column = 3
 
-   !> Named values of one kind: a column, the coordinates of a dimension, or one number that holds
-   !> for a table as a whole. A column whose length is told gets its values later
+   !> Named values of one kind: a column, the coordinates of a dimension, or one number of a whole
+   !> table. A column without values, but with a length, gets its values later
    type :: column_t
       !> One line
       character(len=:), allocatable :: name
-      !> `1` without dimension, empty for text
+      !> `1` if dimensionless, empty for text
       character(len=:), allocatable :: unit
-      !> What it is, one line
+      !> Meaning, one line
       character(len=:), allocatable :: long_name
       !> `real_column`, `integer_column` or `text_column`
       integer :: kind = real_column
       !> Numbers, allocated in a real column only, shape (length)
       real(wp), allocatable :: reals(:)
-      !> Whole numbers, or the number of the text of each row, from 1, shape (length)
+      !> Whole numbers, or for each row the index of its text, from 1, shape (length)
       integer, allocatable :: integers(:)
-      !> Texts of the rows, those that differ: one after the other, each `width` characters, padded
-      !> with blanks
+      !> The different texts one after the other, each `width` characters, padded with blanks
       character(len=:), allocatable :: texts
       !> Characters per text
       integer :: width = 0
       !> Number of values
       integer :: length = 0
-      !> True for the coordinates 1, 2, 3 ... that say nothing by themselves
+      !> Whether they are the coordinates 1, 2, 3 ..., which have no meaning of their own
       logical :: is_index = .false.
    end type column_t
 
    !> A table
    type :: table_t
-      !> What its group in an HDF5 file is called
+      !> Name of its group in an HDF5 file
       character(len=:), allocatable :: name
       !> Version of the program that made it
       character(len=:), allocatable :: version
@@ -63,7 +62,7 @@ module vcor_io_table
       type(column_t), allocatable :: dimensions(:)
       !> Columns
       type(column_t), allocatable :: columns(:)
-      !> Numbers that hold for all of it
+      !> Numbers of the whole table
       type(column_t), allocatable :: facts(:)
    end type table_t
 
@@ -86,7 +85,7 @@ contains
    pure subroutine new_table(table, name, title, case_text)
       !> Table without dimensions and columns
       type(table_t), intent(out) :: table
-      !> What its group in an HDF5 file is called
+      !> Name of its group in an HDF5 file
       character(len=*), intent(in) :: name
       character(len=*), intent(in) :: title
       !> Full case, any number of lines
@@ -108,12 +107,12 @@ contains
       rows = product(table%dimensions%length)
    end function row_count
 
-   !> Which coordinate of a dimension a row has
+   !> Index of the coordinate of a row in a dimension
    pure function coordinate_row(table, number, row) result(place)
       type(table_t), intent(in) :: table
       integer, intent(in) :: number
       integer, intent(in) :: row
-      !> Number of the coordinate, from 1
+      !> Index of the coordinate, from 1
       integer :: place
 
       place = mod((row - 1)/product(table%dimensions(number + 1:)%length), &
@@ -124,7 +123,8 @@ contains
    pure function place_in_table(table, name) result(place)
       type(table_t), intent(in) :: table
       character(len=*), intent(in) :: name
-      !> Number of the dimension, or of the column after all dimensions; 0 if there is neither
+      !> Index of the dimension, or of the column plus the number of dimensions; 0 if there is
+      !> neither
       integer :: place
 
       do place = 1, size(table%dimensions)
@@ -141,7 +141,7 @@ contains
       !> Text column
       type(column_t), intent(in) :: column
       integer, intent(in) :: row
-      !> The value, without blanks at its end
+      !> The value, without trailing blanks
       character(len=:), allocatable :: text
 
       associate (last => column%integers(row)*column%width)
@@ -181,7 +181,7 @@ contains
    pure function column_of_texts(name, values, unit, long_name) result(column)
       !> Name, unit (empty) and meaning
       character(len=*), intent(in) :: name, unit, long_name
-      !> Values, shape (length); blanks at their ends do not count
+      !> Values, shape (length); trailing blanks are ignored
       character(len=*), intent(in) :: values(:)
       type(column_t) :: column
 
@@ -198,7 +198,7 @@ contains
       end do
    end function column_of_texts
 
-   !> Say what a column is
+   !> Set name, unit and meaning of a column
    pure subroutine describe(column, name, unit, long_name)
       type(column_t), intent(inout) :: column
       !> Name, unit and meaning
@@ -213,7 +213,7 @@ contains
    pure subroutine add_index_dimension(table, name, length)
       type(table_t), intent(inout) :: table
       character(len=*), intent(in) :: name
-      !> Its length, not negative
+      !> Length, >= 0
       integer, intent(in) :: length
 
       type(column_t) :: coordinates
@@ -232,7 +232,7 @@ contains
       table%dimensions = [table%dimensions, coordinates]
    end subroutine add_coordinates
 
-   !> Add a column. Columns are copied: values of a million rows move to theirs when all are there
+   !> Add a column, copied; large columns are added empty, and their values moved in afterwards
    pure subroutine add_column(table, column)
       type(table_t), intent(inout) :: table
       type(column_t), intent(in) :: column
