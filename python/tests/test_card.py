@@ -507,6 +507,16 @@ SHOWN = [
 ]
 
 
+def test_the_only_material_may_have_any_name_and_stand_after_a_remark(tmp_path, capsys):
+    text = (
+        "! as name = 'old' was\n&material\n name = 'jo''s', model = 'sls', poisson_ratio = 0.4,\n"
+    )
+    text += " density = 1100, glassy_modulus = 1e7, alpha = 300, beta = 1200\n/\n"
+    (tmp_path / "m.nml").write_text(text)
+    card = command(capsys, tmp_path / "m.nml", "--for", "abaqus").out
+    assert '*MATERIAL, NAME="jo\'s"' in card
+
+
 @pytest.mark.parametrize(("words", "text"), SHOWN, ids=lambda text: text.split("\n")[0][-60:])
 def test_the_pages_show_what_the_command_prints(words, text, capsys):
     assert command(capsys, *[ROOT / w if "/" in w else w for w in words.split()]).out == text

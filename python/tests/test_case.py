@@ -214,6 +214,19 @@ def test_a_data_file_is_found_from_elsewhere(tmp_path, monkeypatch):
         assert one.solve()["cor"] == wanted
 
 
+def test_points_give_what_the_case_lacks(sls):
+    """As a &sweep group of the program may."""
+    case = vcor.Case({**GROUPS, "impact": {}})
+    whole = vcor.Case(GROUPS).run().cor
+    assert case.points({"impact.velocity": [10.0, 1.0]}, ["cor"]).cor[0] == whole
+    assert case.sweep({"impact.velocity": [10.0]}, ["cor"]).cor[0] == whole
+    with pytest.raises(vcor.InputError, match="key 'velocity' is missing"):
+        case.points({"sphere.radius": [0.01]})
+    expected = sls.solve()["cor"]
+    sls["rubber.beta"] = 100.0
+    assert sls.points({"rubber.beta": [1200.0]}, ["cor"]).cor[0] == expected
+
+
 def test_files_of_materials_complete_a_case(tmp_path):
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "points.csv").write_text("1e-6 2e6\n1e-3 1e6\n")

@@ -383,6 +383,21 @@ def test_data_that_the_model_does_not_describe_are_noted():
     assert found.follows and "does not describe" not in str(found)
 
 
+def test_another_model_for_a_material_with_an_apostrophe_in_its_name():
+    plain, named = guess("sls"), vcor.Case(guess("sls").text().replace("'rubber'", "'jo''s'"))
+    found = [
+        vcor.identify(
+            case,
+            columns(),
+            [f"{name}.beta"],
+            model="power_law",
+            errors={"cor": 0.1, "contact_time": 0.1},
+        )
+        for case, name in ((plain, "rubber"), (named, "jo's"))
+    ]
+    assert found[1]["jo's.exponent"] == found[0]["rubber.exponent"]
+
+
 def test_models_are_compared():
     free = [f"rubber.{key}" for key in TRUTH["sls"]]
     data = columns()

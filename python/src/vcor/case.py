@@ -10,7 +10,7 @@ import sys
 import time
 import types
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from ctypes import byref, c_char_p, c_double, c_int, c_void_p
 from pathlib import Path
 from typing import Any
@@ -370,7 +370,7 @@ class Case:
             for column, row in zip(columns, values, strict=True)
         }
         time_axis = variables.pop("time")
-        return xr.Dataset(variables, coords={"time": time_axis}, attrs=self._attrs())
+        return xr.Dataset(variables, coords={"time": time_axis}, attrs=self._attrs({}))
 
     def verify(self) -> xr.Dataset:
         """Solve the case by all methods and compare them, as `vcor verify CASE` does.
@@ -397,7 +397,7 @@ class Case:
                 "quantity": list(columns),
                 "units": ("quantity", [column.unit for column in columns.values()]),
             },
-            attrs=self._attrs(),
+            attrs=self._attrs({}),
         )
 
     def _describe(self, address: str) -> _library.Column:
@@ -480,15 +480,23 @@ class Case:
             address: (dim, axis, self._describe(address).attrs)
             for address, (dim, axis) in coords.items()
         }
-        return xr.Dataset(variables, coords=described, attrs=self._attrs())
+        return xr.Dataset(variables, coords=described, attrs=self._attrs(coords))
 
-    def _attrs(self) -> dict[str, str]:
+    def _attrs(self, coords: Mapping[str, tuple[str, Floats]]) -> dict[str, str]:
         """What the program writes at the root of a file."""
+        try:
+            text = self.text(complete=True)
+        except InputError:
+            # the points may give what the case lacks
+            first = self.copy()
+            for address, (_, axis) in coords.items():
+                first[address] = float(axis[0])
+            text = first.text(complete=True)
         return {
             "program": "vcor",
             "version": _library.__version__,
             "title": str(self["case.title"]),
-            "case": self.text(complete=True),
+            "case": text,
         }
 
     def _without_result(self, names: list[str]) -> xr.Dataset | None:
@@ -544,6 +552,18 @@ def _restored(text: str, path: str, name: str, settings: Mapping[str, str]) -> C
     for address, value in settings.items():
         case[address] = value
     return case
+
+
+def as_case(case: Case | str | os.PathLike[str]) -> Case:
+    """A case, or that of a file."""
+    return case if isinstance(case, Case) else read(case)
+
+
+def with_material(case: Case, name: str, change: Callable[[re.Match[str]], str]) -> Case:
+    """A copy of a case with a changed &material group in the place of that of this name."""
+    title = re.escape(_written(case[f"{name}.name"], name))
+    text = re.sub(rf"(?ms)^&material\n   name = {title}\n.*?^/$", change, case.text())
+    return _restored(text, case._path, case.name, {})
 
 
 def _namelists(groups: Groups) -> str:

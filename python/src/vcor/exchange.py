@@ -35,7 +35,7 @@ from ._library import (
     numbers,
     whole,
 )
-from .case import Case, read
+from .case import Case, as_case
 from .contact_laws import LAWS, Twin
 
 TEMPLATES = Path(__file__).with_name("templates")
@@ -211,7 +211,7 @@ def export(
     NumericalError
         An impact has no result.
     """
-    case = case if isinstance(case, Case) else read(case)
+    case = as_case(case)
     given = numbers(velocities, "velocities")
     if target not in list(TARGETS):
         raise UsageError(f"unknown program '{target}', known: {', '.join(TARGETS)}")

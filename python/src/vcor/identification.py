@@ -23,7 +23,7 @@ from scipy.special import chdtri, ndtri, stdtrit
 from . import _command, _library
 from ._command import number
 from ._library import MOST_SEED, Error, Floats, InputError, NumericalError, UsageError, whole
-from .case import Case, listed, progress_bar, read, scalars
+from .case import Case, as_case, listed, progress_bar, read, scalars, with_material
 from .fit import fit
 from .observations import (
     COEFFICIENTS,
@@ -458,7 +458,7 @@ def identify(
         The data do not determine the parameters; the message names the combinations that they do
         determine, and what would help.
     """
-    case = (case if isinstance(case, Case) else read(case)).copy()
+    case = as_case(case).copy()
     free = free.split(",") if isinstance(free, str) else listed(free)
     for address in free:
         if b"solver." in _library.encoded(address).lower():
@@ -761,9 +761,7 @@ def _with_model(
         rows = [f"   {key} = {', '.join(repr(float(x)) for x in row)}" for key, row in keys.items()]
         return "\n".join(["&material", f"   model = '{kind}'", *kept, *rows, "/"])
 
-    title = re.escape(f"name = '{case[f'{name}.name']}'")
-    group = re.compile(rf"^&material\n   {title}\n.*?^/$", re.MULTILINE | re.DOTALL)
-    changed = Case(group.sub(other, case.text()), name=case.name)
+    changed = with_material(case, name, other)
     addresses = [
         f"{name}.{key}({i + 1})" if key in ("moduli", "times") else f"{name}.{key}"
         for key, row in keys.items()

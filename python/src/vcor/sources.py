@@ -99,11 +99,13 @@ def material_case(
 ) -> tuple[Case, list[str], bool]:
     """A case, or &material groups with an impact on one of them; names, whether it has its own."""
     text = read_text(path)
-    names = re.findall(r"\bname\s*=\s*['\"]([^'\"]+)", text, re.IGNORECASE)
+    given = re.sub(r"(?m)^\s*!.*", "", text)
+    names = [one[1:-1].replace(one[0] * 2, one[0]) for one in re.findall(
+        r"(?i)\bname\s*=\s*('(?:[^']|'')+'|\"(?:[^\"]|\"\")+\")", given)]  # fmt: skip
     if not names:
         raise InputError(f"{os.fspath(path)}: there is no material with a name in this file")
     has_impact = re.search(r"(?im)^\s*&impact\b", text) is not None
-    text += "" if has_impact else _IMPACT.format(material or names[0])
+    text += "" if has_impact else _IMPACT.format((material or names[0]).replace("'", "''"))
     return Case(text, name=os.fspath(path)), names, has_impact
 
 

@@ -20,7 +20,7 @@ from scipy.special import ndtri
 
 from . import _command, _library
 from ._library import MOST_SEED, Floats, InputError, NumericalError, UsageError, whole, within
-from .case import MOST_POINTS, Case, listed, read, with_folder
+from .case import MOST_POINTS, Case, as_case, listed, read, with_folder, with_material
 from .observations import sharpen
 
 #: Accuracy of the solutions whose differences are sensitivities
@@ -310,7 +310,7 @@ def propagate(
     whole(seed, "seed", 0, MOST_SEED)
     if vary is not None and not hasattr(vary, "items"):
         raise UsageError("vary: expected a distribution by each address")
-    case = (case if isinstance(case, Case) else read(case)).copy()
+    case = as_case(case).copy()
     joint = []
     if covariance is not None:
         case, found_together = Spread.joint(case, covariance)
@@ -397,11 +397,10 @@ def _checked(quantities: Sequence[str]) -> list[str]:
 
 def _with_group(case: Case, name: str, group: str) -> Case:
     """The case with a &material group in the place of its own of this name, whose density stays."""
-    given, density = case[f"{name}.name"], case[f"{name}.density"]
+    density = case[f"{name}.density"]
     if density is not None and not re.search(r"(?m)^\s*density\s*=", group):
         group = group.replace("\n", f"\n   density = {density}\n", 1)
-    old = rf"(?ms)^&material\n   name = '{re.escape(str(given))}'\n.*?^/$"
-    return Case(re.sub(old, lambda _: group, case.text()), name=case.name)
+    return with_material(case, name, lambda _: group)
 
 
 def _swing(
@@ -466,7 +465,7 @@ def _values(case: Case, quantities: list[str]) -> Floats:
 
 def _accurate(case: Case | str | os.PathLike[str]) -> Case:
     """A copy of the case that is solved to ACCURACY."""
-    case = (case if isinstance(case, Case) else read(case)).copy()
+    case = as_case(case).copy()
     sharpen(case, ACCURACY)
     return case
 
