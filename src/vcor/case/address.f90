@@ -1,5 +1,4 @@
-!> Addresses by their paths, `group.key` and `material_name.key`, and what to say about names that
-!> are not known
+!> Addresses from their paths, `group.key` and `material_name.key`, and messages about unknown names
 module vcor_case_address
    use vcor_case_case, only : address_t, case_t, entry_t
    use vcor_case_catalogue, only : catalogue, find_group, find_key, group_names, groups, keys_of, &
@@ -13,15 +12,15 @@ module vcor_case_address
 
 contains
 
-   !> Address that a path leads to: `group.key`, or `name.key` for the material of this name; of a
-   !> list also `name.key(2)`
+   !> Address of a path: `group.key`, or `name.key` for the material of this name; for an element of
+   !> a list also `name.key(2)`
    pure subroutine resolve(case, path, address, message)
       type(case_t), intent(in) :: case
-      !> The path; the name of a material may be in quotes, its blanks may be underscores
+      !> The path; the name of a material may be quoted and have underscores for blanks
       character(len=*), intent(in) :: path
-      !> The address, nowhere on failure
+      !> The address; nowhere on failure
       type(address_t), intent(out) :: address
-      !> What is wrong with the path, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       character(len=:), allocatable :: owner, key, element
@@ -48,7 +47,7 @@ contains
       group = find_group(owner)
       item = case%find_material(owner)
       if (in_quotes) group = 0
-      ! a material may be called like a group: the key decides
+      ! a material may have the name of a group: the key decides
       if (group > 0 .and. item > 0) then
          if (find_key(owner, key) == 0) group = 0
       end if
@@ -78,14 +77,14 @@ contains
       end if
    end subroutine resolve
 
-   !> Go from the address of a list to one of its numbers
+   !> Change the address of a list to that of one of its numbers
    pure subroutine find_element(case, element, address, message)
       type(case_t), intent(in) :: case
-      !> Number of the element in parentheses
+      !> Index of the element in parentheses
       character(len=*), intent(in) :: element
       !> Address of the list; nowhere on failure
       type(address_t), intent(inout) :: address
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       type(entry_t) :: entry
@@ -105,10 +104,10 @@ contains
       if (allocated(message)) address = address_t()
    end subroutine find_element
 
-   !> Addresses of what the &sweep groups vary, as far as their paths lead somewhere
+   !> Addresses of the parameters of the &sweep groups, as far as their paths are valid
    pure function swept_addresses(case) result(addresses)
       type(case_t), intent(in) :: case
-      !> Addresses, nowhere if a path leads nowhere, shape (number of &sweep groups)
+      !> Addresses; nowhere for an invalid path, shape (number of &sweep groups)
       type(address_t), allocatable :: addresses(:)
 
       character(len=:), allocatable :: parameter, message
@@ -121,10 +120,10 @@ contains
       end do
    end function swept_addresses
 
-   !> What to say about a key that is not in the catalogue
+   !> Message about a key that is not in the catalogue
    pure function unknown_key(key, group) result(message)
       character(len=*), intent(in) :: key
-      !> Index of the group it was found in
+      !> Index of its group
       integer, intent(in) :: group
       character(len=:), allocatable :: message
 
@@ -139,7 +138,7 @@ contains
       message = message//suggestion(key, keys_of(group))
    end function unknown_key
 
-   !> What to say about a group that is not in the catalogue
+   !> Message about a group that is not in the catalogue
    pure function unknown_group(group) result(message)
       character(len=*), intent(in) :: group
       character(len=:), allocatable :: message
@@ -147,7 +146,7 @@ contains
       message = "unknown group '&"//shortened(group)//"'; "//suggestion(group, group_names())
    end function unknown_group
 
-   !> Names of the materials as they are in paths
+   !> Names of the materials as in paths
    pure function material_names(case) result(names)
       type(case_t), intent(in) :: case
       !> The names, separated by blanks

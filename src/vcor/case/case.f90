@@ -1,13 +1,13 @@
-!> A case: the description of an impact, of how it is solved and of what is written, as a user
-!> gives it
+!> A case: the user's description of an impact, of its solution and of the output
 !>
-!> A case has an entry for each key of the catalogue, given or by default: a group that may be there
-!> once has its entries from the start, a repeated group has them for each time it is there. An
-!> address is group, item, key and, in a list, element. A sweep sets the number at an address, and
+!> A case has an entry for each key of the catalogue, given or by default: a group that may occur
+!> once has its entries from the start, a repeated group has them for each occurrence. An address is
+!> group, item, key and, in a list, element. A sweep sets the number at an address, and
 !> `vcor_case_problem` reads it there.
 !>
-!> The changes of a case are numbered, and an entry knows which one gave it its value. So whoever
-!> makes something from entries sees by `latest_change` of them whether it has to be made anew.
+!> The changes of a case are numbered, and an entry stores the number of the change that set its
+!> value. So `latest_change` of some entries shows whether anything derived from them is out of
+!> date.
 module vcor_case_case
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan, ieee_quiet_nan, &
       ieee_value
@@ -21,27 +21,27 @@ module vcor_case_case
 
    public :: case_t, address_t, entry_t, operator(==)
 
-   !> Where a value stands in a case
+   !> Place of a value in a case
    type :: address_t
-      !> Index of the group in `groups`, 0: nowhere
+      !> Index of the group in `groups`; 0: nowhere
       integer :: group = 0
-      !> Number of the item, 1 for a group that is there once
+      !> Index of the item, 1 for a group that occurs once
       integer :: item = 0
       !> First row of the key in `catalogue`
       integer :: row = 0
-      !> Which number of a list, 0: the value as a whole
+      !> Index of the number in a list; 0: the whole value
       integer :: element = 0
    end type address_t
 
-   !> A value and what is known of it; only what the kind of its key asks for has a meaning
+   !> A value and its origin; which component has the value depends on the kind of the key
    type :: entry_t
-      !> Whether it was given by the user
+      !> Whether the user gave it
       logical :: given = .false.
-      !> Whether there is a value at all, given or by default
+      !> Whether there is a value, given or by default
       logical :: present = .false.
-      !> Line of the case file, 0 where it does not stand there
+      !> Line of the case file; 0 if it is not there
       integer :: line = 0
-      !> Where it comes from when that is not the case file
+      !> Origin if it is not the case file
       character(len=:), allocatable :: origin
       !> A real number in the unit of the key, an integer, or 1 for true and 0 for false
       real(wp) :: number = 0.0_wp
@@ -49,19 +49,19 @@ module vcor_case_case
       character(len=:), allocatable :: text
       !> A list of numbers in the unit of the key, shape (n)
       real(wp), allocatable :: list(:)
-      !> Number of the change of the case that gave it its value, 0: it has had its default always
+      !> Number of the change of the case that set the value; 0: still the initial default
       integer :: changed = 0
    end type entry_t
 
    !> One item of a group
    type :: item_t
-      !> Whether the group is in the case, and not only its defaults
+      !> Whether the group is in the case, not only its defaults
       logical :: present = .false.
-      !> Line of the case file it begins in, 0 where there is none
+      !> First line of the group in the case file; 0 if it is not there
       integer :: line = 0
-      !> File that it comes from when that is not the case file
+      !> Its file, if that is not the case file
       character(len=:), allocatable :: source
-      !> Entries, from the first row of the group to its last
+      !> Entries, from the first to the last row of the group
       type(entry_t), allocatable :: entry(:)
    end type item_t
 
@@ -79,7 +79,7 @@ module vcor_case_case
       character(len=:), allocatable :: source
       !> Items by group
       type(items_t), allocatable, private :: group(:)
-      !> Number of its changes so far
+      !> Number of changes so far
       integer, private :: changes = 0
    contains
       procedure :: start, add, adopt, is_materials, source_of, latest_change, model, find_material
@@ -110,10 +110,10 @@ contains
       same = a%row == b%row .and. a%item == b%item .and. a%element == b%element
    end function same_address
 
-   !> Begin anew: no group is there, every key has its default
+   !> Reset the case: no groups, and defaults for all keys
    pure subroutine start(self, source)
       class(case_t), intent(inout) :: self
-      !> Name of the case file; the default of `output.stem` is made from it
+      !> Name of the case file, from which `output.stem` gets its default
       character(len=*), intent(in) :: source
 
       character(len=*), parameter :: extension = '.nml'
@@ -136,10 +136,10 @@ contains
       call self%set(self%address('output', 'stem'), stem, given=.false.)
    end subroutine start
 
-   !> An item with nothing but defaults
+   !> An item with defaults only
    pure subroutine default_item(item, group)
       type(item_t), intent(out) :: item
-      !> Index of its group
+      !> Index of the group
       integer, intent(in) :: group
 
       integer :: row
@@ -150,7 +150,7 @@ contains
       end do
    end subroutine default_item
 
-   !> Give a key its default
+   !> Set the default of a key
    pure subroutine set_default(entry, row)
       type(entry_t), intent(out) :: entry
       !> Row of the key
@@ -173,14 +173,14 @@ contains
       end select
    end subroutine set_default
 
-   !> Add a group: a new item where it may be repeated, else the group is marked as being there
+   !> Add a group: a new item if it may be repeated, otherwise mark it as present
    pure subroutine add(self, group, line, item)
       class(case_t), intent(inout) :: self
       !> Index of the group
       integer, intent(in) :: group
-      !> Line of the case file it begins in, 0 where there is none
+      !> First line of the group in the case file; 0 if it is not there
       integer, intent(in) :: line
-      !> Number of the item
+      !> Index of the item
       integer, intent(out) :: item
 
       type(item_t), allocatable :: larger(:)
@@ -201,11 +201,11 @@ contains
       end associate
    end subroutine add
 
-   !> Add a material of another case, which keeps its file and its lines
+   !> Add a material of another case; it keeps its file and its lines
    pure subroutine adopt(self, other, item)
       class(case_t), intent(inout) :: self
       class(case_t), intent(in) :: other
-      !> Number of the material there
+      !> Index of the material in the other case
       integer, intent(in) :: item
 
       integer :: group, own
@@ -217,7 +217,7 @@ contains
       self%changes = max(self%changes, other%changes)
    end subroutine adopt
 
-   !> Whether there is nothing but materials
+   !> Whether the case has materials only
    pure function is_materials(self) result(yes)
       class(case_t), intent(in) :: self
       logical :: yes
@@ -228,10 +228,10 @@ contains
          .or. groups(i)%name == 'material', i=1, size(groups))])
    end function is_materials
 
-   !> File that a material comes from
+   !> File of a material
    pure function source_of(self, item) result(source)
       class(case_t), intent(in) :: self
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       character(len=:), allocatable :: source
 
@@ -241,7 +241,7 @@ contains
       end associate
    end function source_of
 
-   !> Number of times a group is in the case
+   !> Number of occurrences of a group in the case
    pure function count_items(self, group) result(n)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group
@@ -255,25 +255,25 @@ contains
       n = count(self%group(g)%item(:self%group(g)%n)%present)
    end function count_items
 
-   !> Line of the case file a group begins in
+   !> First line of a group in the case file
    pure function line_of_item(self, group, item) result(line)
       class(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
-      !> Number of the item
+      !> Index of the item
       integer, intent(in) :: item
-      !> The line, 0 where there is none
+      !> The line; 0 if there is none
       integer :: line
 
       line = self%group(group)%item(item)%line
    end function line_of_item
 
-   !> Number of the latest change of some values: as long as it stays the same, so do they
+   !> Number of the latest change of some values; as long as it is the same, so are they
    pure function latest_change(self, addresses) result(number)
       class(case_t), intent(in) :: self
-      !> Where they stand; nowhere does not count
+      !> Their addresses; nowhere is ignored
       type(address_t), intent(in) :: addresses(:)
-      !> Number of the change, 0: there was none
+      !> Number of the change; 0: none
       integer :: number
 
       integer :: i
@@ -292,9 +292,9 @@ contains
       class(case_t), intent(in) :: self
       !> Index of the group
       integer, intent(in) :: group
-      !> Number of the item
+      !> Index of the item
       integer, intent(in) :: item
-      !> The value, lower case; blank where the group has no selector
+      !> The value in lower case; empty if the group has no selector
       character(len=:), allocatable :: word
 
       word = ''
@@ -303,11 +303,11 @@ contains
          find_key(groups(group)%name, groups(group)%selector))%text)
    end function model
 
-   !> Item of the material of a name; case, and blanks against underscores, make no difference
+   !> Item of the material with a given name; case is ignored, and blanks are equal to underscores
    pure function find_material(self, name) result(item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: name
-      !> Number of the first item of this name, 0 when there is none
+      !> Index of the first item of this name; 0 if there is none
       integer :: item
 
       character(len=:), allocatable :: other
@@ -324,7 +324,7 @@ contains
       class(case_t), intent(in) :: self
       !> sphere or plate
       character(len=*), intent(in) :: body
-      !> Number of the material, 0 when there is none of this name
+      !> Index of the material; 0 if there is none of this name
       integer :: item
 
       character(len=:), allocatable :: name
@@ -337,7 +337,7 @@ contains
    pure function address(self, group, key, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
       !> The address, nowhere if there is no such key or item
       type(address_t) :: address
@@ -391,7 +391,7 @@ contains
    pure function entry_at(self, address) result(entry)
       class(case_t), intent(in) :: self
       type(address_t), intent(in) :: address
-      !> The entry, with text and list, and without a value for nowhere
+      !> The entry, its text and list allocated; without a value for nowhere
       type(entry_t) :: entry
 
       if (address%group > 0) &
@@ -401,15 +401,15 @@ contains
       if (address%element > 0) entry%number = entry%list(address%element)
    end function entry_at
 
-   !> Number at an address: of a real, integer or logical key, or in a list; a quiet NaN where there
-   !> is none
+   !> Number at an address, of a real, integer or logical key, or in a list; a quiet NaN if there is
+   !> none
    pure function number(self, address)
       class(case_t), intent(in) :: self
       type(address_t), intent(in) :: address
       !> The number, in the unit of the key
       real(wp) :: number
 
-      ! whoever calculates with what is not there shall notice
+      ! NaN reveals calculations with a missing number
       number = ieee_value(number, ieee_quiet_nan)
       if (address%group == 0) return
       associate (entry => self%group(address%group)%item(address%item)%entry(address%row))
@@ -421,24 +421,24 @@ contains
       end associate
    end function number
 
-   !> Value of a real key; a quiet NaN where there is none
+   !> Value of a real key; a quiet NaN if there is none
    pure subroutine get_real(self, group, key, value, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
       !> In the unit of the key
       real(wp), intent(out) :: value
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
 
       value = self%number(self%address(group, key, item))
    end subroutine get_real
 
-   !> Value of an integer key; `-huge(1)` where there is none
+   !> Value of an integer key; `-huge(1)` if there is none
    pure subroutine get_integer(self, group, key, value, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
       integer, intent(out) :: value
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
 
       value = -huge(value)
@@ -446,12 +446,12 @@ contains
          value = nint(self%number(self%address(group, key, item)))
    end subroutine get_integer
 
-   !> Value of a logical key; false where there is none
+   !> Value of a logical key; false if there is none
    pure subroutine get_logical(self, group, key, value, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
       logical, intent(out) :: value
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
 
       type(entry_t) :: entry
@@ -460,13 +460,13 @@ contains
       value = entry%number > 0.5_wp
    end subroutine get_logical
 
-   !> Value of a text key; empty where there is none
+   !> Value of a text key; empty if there is none
    pure subroutine get_text(self, group, key, value, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
-      !> Choices as the catalogue has them
+      !> A choice as the catalogue spells it
       character(len=:), allocatable, intent(out) :: value
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
 
       type(entry_t) :: entry
@@ -475,13 +475,13 @@ contains
       call move_alloc(entry%text, value)
    end subroutine get_text
 
-   !> Value of a list key; without elements where there is none
+   !> Value of a list key; shape (0) if there is none
    pure subroutine get_list(self, group, key, value, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
       !> In the unit of the key, shape (n)
       real(wp), allocatable, intent(out) :: value(:)
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
 
       type(entry_t) :: entry
@@ -490,11 +490,11 @@ contains
       call move_alloc(entry%list, value)
    end subroutine get_list
 
-   !> Whether a key was given
+   !> Whether the user gave a key
    pure function given(self, group, key, item)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
       logical :: given
 
@@ -504,7 +504,7 @@ contains
       given = entry%given
    end function given
 
-   !> Set an entry as it is; of a number in a list only that number
+   !> Set an entry without checks; for a number in a list, only that number
    pure subroutine set_entry(self, address, entry)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
@@ -524,7 +524,7 @@ contains
       if (address == self%address('contact', 'mechanics')) call choose_mechanics(self, entry%text)
    end subroutine set_entry
 
-   !> Give keys of the mechanics that the user has not given what goes with `mechanics`
+   !> Set the keys of the mechanics that the user has not given, according to `mechanics`
    pure subroutine choose_mechanics(self, mechanics)
       type(case_t), intent(inout) :: self
       !> `paper`, the defaults of the keys, or `exact`
@@ -544,7 +544,7 @@ contains
       end do
    end subroutine choose_mechanics
 
-   !> Set a number as it is: cheap, for a sweep. The same number as before is no change
+   !> Set a number without checks: cheap, for a sweep. An equal number is not a change
    pure subroutine set_number(self, address, number)
       class(case_t), intent(inout) :: self
       !> Address of a real, integer or logical key, or of a number in a list
@@ -571,7 +571,7 @@ contains
       call note_change(self, address, .true.)
    end subroutine set_number
 
-   !> Set a text as it is
+   !> Set a text without checks
    pure subroutine set_text(self, address, text, given)
       class(case_t), intent(inout) :: self
       !> Address of a text key
@@ -584,7 +584,7 @@ contains
       call note_change(self, address, given)
    end subroutine set_text
 
-   !> Set a list as it is
+   !> Set a list without checks
    pure subroutine set_list(self, address, list, given)
       class(case_t), intent(inout) :: self
       !> Address of a list key
@@ -598,18 +598,18 @@ contains
       call note_change(self, address, given)
    end subroutine set_list
 
-   !> Note that an entry has a new value
+   !> Record that an entry has a new value
    pure subroutine note_change(self, address, given)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
-      !> Whether the value was given by the user
+      !> Whether the user gave the value
       logical, intent(in) :: given
 
       call mark(self, address, given)
       call number_change(self, address)
    end subroutine note_change
 
-   !> Give the entry at an address the number of a new change
+   !> Give the entry at an address a new change number
    pure subroutine number_change(self, address)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
@@ -618,11 +618,11 @@ contains
       self%group(address%group)%item(address%item)%entry(address%row)%changed = self%changes
    end subroutine number_change
 
-   !> Note that an entry has a value; if it is given, the group counts as being in the case
+   !> Record that an entry has a value; if it is given, its group counts as present
    pure subroutine mark(self, address, given)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
-      !> Whether the value was given by the user
+      !> Whether the user gave the value
       logical, intent(in) :: given
 
       associate (item => self%group(address%group)%item(address%item))
@@ -632,7 +632,7 @@ contains
       end associate
    end subroutine mark
 
-   !> Take a value back: the key has its default
+   !> Reset a key to its default
    pure subroutine unset(self, address)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
@@ -642,11 +642,11 @@ contains
       call number_change(self, address)
    end subroutine unset
 
-   !> Take back what is given in place of a key, as drop_height for velocity or the other way round
+   !> Reset the key that excludes a given one, as drop_height does velocity, and vice versa
    pure subroutine oust(self, address, always)
       class(case_t), intent(inout) :: self
       type(address_t), intent(in) :: address
-      !> Whether that is taken back, too, which was set and does not stand in the case file
+      !> Whether to reset it also if it was set, instead of read from the case file
       logical, intent(in) :: always
 
       type(entry_t) :: entry
@@ -667,33 +667,33 @@ contains
    pure subroutine refuse(self, group, key, item, message, error)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
-      !> Number of the item
+      !> Index of the item
       integer, intent(in) :: item
-      !> Found and expected
+      !> Text with found and expected values
       character(len=*), intent(in) :: message
       type(error_t), allocatable, intent(inout) :: error
 
       call raise(error, error_input, self%location(group, key, item)//': '//message)
    end subroutine refuse
 
-   !> Where a key was given, for messages
+   !> Place where a key was given, for messages
    pure function location_of_key(self, group, key, item) result(text)
       class(case_t), intent(in) :: self
       character(len=*), intent(in) :: group, key
-      !> Number of the item; absent: 1
+      !> Index of the item; absent: 1
       integer, intent(in), optional :: item
-      !> The place, for the beginning of a message
+      !> The place, with which a message begins
       character(len=:), allocatable :: text
 
       text = self%location(self%address(group, key, item))
    end function location_of_key
 
-   !> Where the value at an address was given, `case.nml:12`; the line of its group where it was
-   !> not, or the file alone
+   !> Place where the value at an address was given, `case.nml:12`; the line of its group if it was
+   !> not given, or only the file
    pure function location_of_address(self, address) result(text)
       class(case_t), intent(in) :: self
       type(address_t), intent(in) :: address
-      !> The place, for the beginning of a message
+      !> The place, with which a message begins
       character(len=:), allocatable :: text
 
       integer :: line

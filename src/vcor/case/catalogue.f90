@@ -1,10 +1,10 @@
-!> The catalogue: every group and every key a case may hold, in one table
+!> The catalogue: a single table of all groups and keys of a case
 !>
-!> Reading, checking, printing, sweeping and help are all made from it: a new key is a new row here,
-!> the place that uses its value, and a line in `vcor_case_unread` that says when it is read. The
-!> keys of `&material` come from the parameters of the models, a row for each key of each model;
-!> rows of one key share their kind and their default. Texts have a fixed length, as arrays of
-!> constants must: a unit test says when one is full.
+!> Reading, checking, printing, sweeps and help follow from it. A new key needs a new row here, code
+!> that uses its value, and a line in `vcor_case_unread` that states when it is read. The keys of
+!> `&material` come from the parameters of the models, a row for each key of each model; rows of one
+!> key have the same kind and default. Texts have fixed lengths, as arrays of constants require; a
+!> unit test fails if one is full.
 module vcor_case_catalogue
    use vcor_kinds, only : coarsest_accuracy, finest_accuracy, wp
    use vcor_material, only : identifiable_models, model_parameters, models, relaxing_models
@@ -33,28 +33,28 @@ module vcor_case_catalogue
 
    !> One key
    type :: key_t
-      !> Group it stands in, lower case
+      !> Its group, lower case
       character(len=16) :: group = ""
       !> Name, lower case
       character(len=26) :: name = ""
-      !> One of the `*_key` constants; `kind` alone would be taken for the inquiry of this name
+      !> One of the `*_key` constants; the name `kind` would be mistaken for the intrinsic function
       integer :: value_kind = 0
-      !> What it means, one line
+      !> Meaning, one line
       character(len=96) :: meaning = ""
-      !> Unit, blank for none
+      !> Unit; blank if there is none
       character(len=16) :: unit = ""
       !> Range of a number, or of every number of a list
       type(interval_t) :: range = interval_t()
-      !> Words a text may be, separated by blanks; blank: any text
+      !> Possible words of a text, separated by blanks; blank: any text
       character(len=128) :: choices = ""
-      !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the
-      !> empty text
+      !> Default as in a namelist, but texts without quotes; blank: none, '' (two quotes): the empty
+      !> text
       character(len=32) :: default = ""
-      !> Models of the group's selector this row is for, separated by blanks; blank: all
+      !> Values of the group's selector for which the row holds, separated by blanks; blank: all
       character(len=128) :: models = ""
       !> Whether the key must be given
       logical :: required = .false.
-      !> Key that may be given in its place, and not beside it; blank: none
+      !> Alternative key, which excludes this one; blank: none
       character(len=26) :: instead = ""
    end type key_t
 
@@ -64,13 +64,13 @@ module vcor_case_catalogue
       character(len=16) :: name = ""
       !> What it describes, one line
       character(len=96) :: meaning = ""
-      !> Whether it must be there
+      !> Whether a case must have it
       logical :: required = .false.
-      !> Whether it may be there more than once
+      !> Whether a case may have more than one
       logical :: repeated = .false.
-      !> Key whose value names an item of a repeated group; blank: none
+      !> Key that names an item of a repeated group; blank: none
       character(len=32) :: label = ""
-      !> Key whose value selects the rows of `models`; blank: none
+      !> Key whose value is looked up in `models`; blank: none
       character(len=32) :: selector = ""
    end type group_t
 
@@ -80,7 +80,7 @@ module vcor_case_catalogue
    type(interval_t), parameter :: at_least_one = interval_t(lower=1.0_wp)
    type(interval_t), parameter :: order_range = interval_t(lower=1.0_wp, upper=2.0_wp)
 
-   !> The groups, in the order they are printed in
+   !> The groups, in the order in which they are printed
    type(group_t), parameter :: groups(*) = [ &
       group_t("case", "Title of the case"), &
       group_t("impact", "How the sphere strikes the plate", required=.true.), &
@@ -95,7 +95,7 @@ module vcor_case_catalogue
       group_t("output", "Files to write, and their folder")]
 
    integer :: i
-   !> The keys, group by group in the order of `groups`
+   !> The keys, group by group, in the order of `groups`
    type(key_t), parameter :: catalogue(*) = [ &
       key_t("case", "title", text_key, "Title, copied to the results", default="''"), &
       !
@@ -254,7 +254,7 @@ contains
    pure function find_group(name) result(group)
       !> Name in any case
       character(len=*), intent(in) :: name
-      !> Index, 0 when there is no such group
+      !> Index; 0 if there is no such group
       integer :: group
 
       character(len=len(name)) :: small
@@ -272,7 +272,7 @@ contains
       character(len=*), intent(in) :: group
       !> Name of the key in any case
       character(len=*), intent(in) :: name
-      !> Row of `catalogue`, 0 when there is no such key
+      !> Row of `catalogue`; 0 if there is no such key
       integer :: row
 
       character(len=len(name)) :: small
@@ -288,13 +288,13 @@ contains
       row = 0
    end function find_key
 
-   !> Row of a key that is for a model
+   !> Row of a key for a model
    pure function row_for_model(row, model) result(found)
       !> First row of the key
       integer, intent(in) :: row
-      !> Value of the group's selector, lower case; blank where the group has none
+      !> Value of the group's selector, lower case; blank if the group has none
       character(len=*), intent(in) :: model
-      !> Row, 0 when the key does not belong to the model
+      !> Row; 0 if the key does not belong to the model
       integer :: found
 
       do found = row, size(catalogue)
@@ -305,7 +305,7 @@ contains
       found = 0
    end function row_for_model
 
-   !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty for any
+   !> Range of a key as text: `> 0`, `in (-1, 0.5]`, `one of none, constant`; empty if unlimited
    pure function range_text(key) result(text)
       type(key_t), intent(in) :: key
       !> Its range
@@ -319,9 +319,9 @@ contains
       end if
    end function range_text
 
-   !> The keys as a page describes them: rows that say the same for several models are one
+   !> The keys as pages describe them: equal rows for several models are merged
    pure function described_keys() result(keys)
-      !> Rows, those of one text with the models of all of them
+      !> Rows, merged ones with the models of all
       type(key_t), allocatable :: keys(:)
       type(key_t) :: key
       logical :: is_first(size(catalogue))
@@ -341,7 +341,7 @@ contains
       keys = pack(keys, is_first)
    end function described_keys
 
-   !> What a key takes, in words: `a number > 0 [m]`
+   !> Description of the values of a key: `a number > 0 [m]`
    pure function wanted(key) result(text)
       type(key_t), intent(in) :: key
       !> Kind, range and unit
@@ -370,7 +370,7 @@ contains
    pure function keys_of(group, model) result(words)
       !> Index of the group
       integer, intent(in) :: group
-      !> Only the keys of this model; absent: all
+      !> Only keys of this model; absent: all
       character(len=*), intent(in), optional :: model
       character(len=:), allocatable :: words
       integer :: row

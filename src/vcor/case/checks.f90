@@ -1,5 +1,5 @@
-!> What can be told to be wrong from a case alone: what is missing, what is out of range, what
-!> leads nowhere. What numbers may go together is checked by who is built from them
+!> Errors that a case alone reveals: missing keys and groups, values out of range, references to
+!> nothing. Constructors check numbers that depend on each other
 module vcor_case_checks
    use vcor_error, only : error_input, error_t, raise
    use vcor_case_address, only : material_names, swept_addresses
@@ -22,9 +22,9 @@ module vcor_case_checks
 
 contains
 
-   !> Check a case; the first thing that is wrong becomes the error. What a sweep varies need not be
-   !> given, and its values are not checked here: a point that makes no sense is a point without
-   !> result, not a case that is wrong
+   !> Check a case; the first error found is returned. Swept keys need not be given, and their
+   !> values are not checked: an impossible point is a point without result, not an error of the
+   !> case
    subroutine validate(self, error)
       type(case_t), intent(in) :: self
       !> Error of code `error_input`, unallocated on success
@@ -59,12 +59,12 @@ contains
       if (.not. allocated(error)) call new_grid(self, grid, error)
    end subroutine validate
 
-   !> Check a material: its name, the bands of its data, its shift, and that it can be built
+   !> Check a material: name, bands of its data, shift, and whether it can be built
    subroutine check_material(self, swept, item, error)
       type(case_t), intent(in) :: self
-      !> Addresses of what a sweep varies
+      !> Addresses of the swept keys
       type(address_t), intent(in) :: swept(:)
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       type(error_t), allocatable, intent(out) :: error
 
@@ -87,23 +87,23 @@ contains
       if (.not. allocated(error)) call check_shift(self, swept, item, error)
       call self%get('material', 'shift', shift, item)
       group = find_group('material')
-      ! the points of a table are not there yet, and a sweep gives numbers of its own
+      ! the points of a table have not been read yet, and a sweep sets numbers of its own
       if (allocated(error) .or. self%model(group, item) == 'table' .or. shift == 'table' &
           .or. any(swept%group == group .and. swept%item == item)) return
       case = self
-      ! who is in no body need not bear the temperature, nor does one that is swept count
+      ! the impact's temperature does not matter to a material that no body uses, or if it is swept
       if (all(item /= [self%material_of('sphere'), self%material_of('plate')]) &
           .or. any(swept == self%address('impact', 'temperature'))) &
          call case%unset(case%address('impact', 'temperature'))
       call material_of_case(case, item, material, error)
    end subroutine check_material
 
-   !> Check that a band does not end before it begins
+   !> Check that the start of a band is below its end
    subroutine check_band(self, from, to, item, error)
       type(case_t), intent(in) :: self
-      !> Keys of both ends
+      !> Keys of start and end
       character(len=*), intent(in) :: from, to
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       type(error_t), allocatable, intent(inout) :: error
 
@@ -117,12 +117,12 @@ contains
          error)
    end subroutine check_band
 
-   !> Check that a shift has what its law needs, and nothing else
+   !> Check that a shift has the keys that its law needs, and no others
    subroutine check_shift(self, swept, item, error)
       type(case_t), intent(in) :: self
-      !> Addresses of what a sweep varies
+      !> Addresses of the swept keys
       type(address_t), intent(in) :: swept(:)
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       type(error_t), allocatable, intent(inout) :: error
 
@@ -147,7 +147,7 @@ contains
       end do
    end subroutine check_shift
 
-   !> Check that there is a material that the temperature shifts
+   !> Check that the temperature shifts at least one material
    subroutine check_temperature(self, error)
       !> A case whose bodies have materials
       type(case_t), intent(in) :: self
@@ -161,7 +161,7 @@ contains
          //'it: '//reason, error)
    end subroutine check_temperature
 
-   !> Check that there is the material of a body
+   !> Check that the material of a body exists
    subroutine check_body(self, body, error)
       type(case_t), intent(in) :: self
       !> Group of the body
@@ -176,7 +176,7 @@ contains
          //suggestion(canonical_name(name), material_names(self)), error)
    end subroutine check_body
 
-   !> Check that the name of the files is no path
+   !> Check that the stem of file names is not a path
    subroutine check_stem(self, error)
       type(case_t), intent(in) :: self
       type(error_t), allocatable, intent(out) :: error
@@ -189,7 +189,7 @@ contains
          //"', expected a name without a folder (that is output.directory)", error)
    end subroutine check_stem
 
-   !> A group and the keys it needs, in words
+   !> A group and its required keys in words
    pure function described(group) result(text)
       !> Index of the group
       integer, intent(in) :: group
@@ -210,20 +210,20 @@ contains
       text = 'one with '//join_words(trim(adjustl(text)))
    end function described
 
-   !> Check each entry of a group by itself
+   !> Check the entries of a group, each by itself
    subroutine check_item(self, swept, group, item, error)
       type(case_t), intent(in) :: self
-      !> Addresses of what a sweep varies
+      !> Addresses of the swept keys
       type(address_t), intent(in) :: swept(:)
       !> Index of the group
       integer, intent(in) :: group
-      !> Number of the item
+      !> Index of the item
       integer, intent(in) :: item
       type(error_t), allocatable, intent(out) :: error
 
       integer :: row
 
-      ! what the meaning of other keys depends on comes first
+      ! the selector comes first, as the other keys depend on it
       if (groups(group)%selector /= '') then
          row = find_key(groups(group)%name, groups(group)%selector)
          call check_entry(self, swept, address_t(group, item, row), error)
@@ -235,10 +235,10 @@ contains
       end do
    end subroutine check_item
 
-   !> Check one entry by itself: whether it belongs there, is there, and is within its range
+   !> Check one entry: whether it belongs to the group, is present, and is within its range
    subroutine check_entry(self, swept, address, error)
       type(case_t), intent(in) :: self
-      !> Addresses of what a sweep varies
+      !> Addresses of the swept keys
       type(address_t), intent(in) :: swept(:)
       type(address_t), intent(in) :: address
       type(error_t), allocatable, intent(out) :: error
@@ -280,7 +280,7 @@ contains
 
    contains
 
-      !> Whether a key of the item is given, or varied by a sweep
+      !> Whether a key of the item is given or swept
       pure function is_there(name) result(yes)
          character(len=*), intent(in) :: name
          logical :: yes
@@ -289,7 +289,7 @@ contains
             .and. any(swept == self%address(groups(address%group)%name, name, address%item))
       end function is_there
 
-      !> Whether a sweep varies one of both keys, and the case file alone gives the other
+      !> Whether one of the two keys is swept, and the other one comes from the case file
       pure function is_ousted() result(yes)
          logical :: yes
 

@@ -1,8 +1,8 @@
 !> Grids of parameters: the points of a sweep
 !>
-!> Points are numbered from 1, in the order of nested loops with the first axis outside: row-major,
-!> as C and Python count. A grid without axes has one point. A list of points is a grid in which all
-!> axes go on together.
+!> Points are numbered from 1, in the order of nested loops with the first axis outermost:
+!> row-major, as in C and Python. A grid without axes has one point. A list of points is a grid
+!> whose axes vary together.
 module vcor_case_grid
    use vcor_error, only : error_file, error_t, raise
    use vcor_material_parameter, only : log_spacing, spaced
@@ -19,18 +19,18 @@ module vcor_case_grid
 
    public :: axis_t, grid_t, new_grid
 
-   !> Most points of a grid
+   !> Largest number of points of a grid
    integer, parameter :: most_points = 100000000
-   !> Most parameters of a grid: each is a dimension in the HDF5 file, which has 32 at most
+   !> Largest number of parameters: each is a dimension in the HDF5 file, which has at most 32
    integer, parameter :: most_axes = 32
 
-   !> One parameter and its values
+   !> A parameter and its values
    type :: axis_t
       !> Path of the parameter, `group.key` or `material_name.key`
       character(len=:), allocatable :: name
       !> Unit; blank for a pure number
       character(len=:), allocatable :: unit
-      !> What it is
+      !> Meaning
       character(len=:), allocatable :: meaning
       !> Its address in the case
       type(address_t) :: address
@@ -38,7 +38,7 @@ module vcor_case_grid
       real(wp), allocatable :: values(:)
    end type axis_t
 
-   !> All parameters that are varied
+   !> All parameters that vary
    type :: grid_t
       !> Parameters, the slowest first, shape (axes)
       type(axis_t), allocatable :: axes(:)
@@ -53,7 +53,7 @@ contains
 
    !> Number of points
    pure function count_points(self) result(n)
-      !> The grid; the product of its lengths is a default integer
+      !> The grid; its number of points must not exceed the largest integer
       class(grid_t), intent(in) :: self
       !> Number, at least 1
       integer :: n
@@ -66,12 +66,12 @@ contains
       end do
    end function count_points
 
-   !> Which value of each parameter a point has
+   !> Indices of the values of a point
    pure function places(self, point)
       class(grid_t), intent(in) :: self
-      !> Number of the point, from 1
+      !> Index of the point, from 1
       integer, intent(in) :: point
-      !> Numbers of the values, from 1, shape (axes)
+      !> Indices of the values, from 1, shape (axes)
       integer :: places(size(self%axes))
 
       integer :: i, rest
@@ -87,12 +87,12 @@ contains
       end do
    end function places
 
-   !> A case with the values of a point
+   !> The case of a point
    pure function case_at(self, case, point) result(other)
       class(grid_t), intent(in) :: self
-      !> The case that the grid is of
+      !> The case of the grid
       type(case_t), intent(in) :: case
-      !> Number of the point, from 1
+      !> Index of the point, from 1
       integer, intent(in) :: point
       type(case_t) :: other
 
@@ -106,11 +106,11 @@ contains
       end do
    end function case_at
 
-   !> Build the grid of a case; the values are not held against the ranges of their keys
+   !> Build the grid of a case; the ranges of the keys are not checked
    subroutine new_grid(case, grid, error)
-      !> A case, each entry of which is within its range
+      !> A case whose entries are within their ranges
       type(case_t), intent(in) :: case
-      !> The grid; without axes where the case has no &sweep group
+      !> The grid; without axes if the case has no &sweep group
       type(grid_t), intent(out) :: grid
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -135,12 +135,12 @@ contains
       end do
    end subroutine new_grid
 
-   !> What a &sweep group varies
+   !> Find the parameter of a &sweep group
    subroutine find_parameter(case, item, before, axis, error)
       type(case_t), intent(in) :: case
-      !> Number of the group
+      !> Index of the group
       integer, intent(in) :: item
-      !> Parameters of the groups before, shape (item - 1)
+      !> Parameters of the previous groups, shape (item - 1)
       type(axis_t), intent(in) :: before(:)
       !> Parameter without its values
       type(axis_t), intent(out) :: axis
@@ -204,9 +204,9 @@ contains
    !> Values of a &sweep group
    subroutine find_values(case, item, points, values, error)
       type(case_t), intent(in) :: case
-      !> Number of the group
+      !> Index of the group
       integer, intent(in) :: item
-      !> Points of the groups before
+      !> Number of points of the previous groups
       real(wp), intent(in) :: points
       !> Values, shape (n), n >= 1
       real(wp), allocatable, intent(out) :: values(:)
@@ -261,7 +261,7 @@ contains
          return
       end if
       if (.not. allocated(values)) then
-         ! they are copied and sorted, too
+         ! room for copies and sorting, too
          allocate (room(4*n), stat=status)
          if (status /= 0) then
             call raise(error, error_file, case%location('sweep', 'count', item)//': there is ' &
@@ -275,15 +275,15 @@ contains
       call refuse_repeated(case, item, values, error)
    end subroutine find_values
 
-   !> Refuse a value that stands twice: its points would be solved twice, and no file could tell
-   !> them apart
+   !> Refuse a repeated value: its points would be solved twice, and files could not distinguish
+   !> them
    subroutine refuse_repeated(case, item, values, error)
       type(case_t), intent(in) :: case
-      !> Number of the &sweep group
+      !> Index of the &sweep group
       integer, intent(in) :: item
       !> Its values, shape (n)
       real(wp), intent(in) :: values(:)
-      !> Error, unallocated if no two are the same
+      !> Error; unallocated if no two values are equal
       type(error_t), allocatable, intent(inout) :: error
 
       real(wp), allocatable :: sorted(:)
@@ -304,9 +304,9 @@ contains
       end do
    end subroutine refuse_repeated
 
-   !> Sort numbers, in a time below n^1.5 whatever their order: Shell's sort with Knuth's gaps
+   !> Sort numbers in at most order n^1.5 operations: Shell's sort with Knuth's gaps
    pure subroutine sort(values)
-      !> Finite numbers, increasing afterwards, shape (n)
+      !> Finite numbers; on return increasing, shape (n)
       real(wp), intent(inout) :: values(:)
 
       real(wp) :: value

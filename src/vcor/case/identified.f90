@@ -1,11 +1,11 @@
-!> A material that was found by a fit: as a group of a case, in the place of another, and how much
-!> an impact leans on what it is beyond the data that it was fitted to
+!> Materials found by a fit: as a group of a case, as a replacement in a case, and the reliance of
+!> an impact on such a material beyond the data of the fit
 !>
-!> The keys valid_from and valid_to of a material tell the band of these data. The measure is the
-!> change of the coefficient of restitution when the modulus is held constant outside of the band,
-!> E(t) = E(valid_from) before it and E(valid_to) after it: what the fit has made up there, in the
-!> quantity that matters. Both impacts are solved by method direct, which takes the modulus as it
-!> is; a sum of exponentials would go on growing before the band.
+!> The keys valid_from and valid_to of a material are the band of these data. The reliance is the
+!> change of the coefficient of restitution if the modulus is held constant outside of the band,
+!> E(t) = E(valid_from) before it and E(valid_to) after it, the effect of the extrapolation on the
+!> quantity of interest. Method direct solves both impacts, since it uses the modulus itself; a sum
+!> of exponentials would continue to grow before the band.
 module vcor_case_identified
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : case_t
@@ -25,39 +25,38 @@ module vcor_case_identified
 
    public :: put_material, material_text, reliance_t, find_reliance
 
-   !> Change of cor that is no reason to say anything; the solutions are ten times as accurate
+   !> Change of cor that is not reported; the solutions are ten times more accurate
    real(wp), parameter :: little = 1.0e-4_wp
-   !> A contact is shorter than so many contact times, whatever the material is beyond them
+   !> Bound of the contact time, over its value, for any material beyond the data
    real(wp), parameter :: ample = 10.0_wp
 
-   !> What an impact leans on
+   !> Reliance of an impact on a material beyond its data
    type :: reliance_t
-      !> Whether it leans on anything beyond the data
+      !> Whether the impact relies on it
       logical :: leans = .false.
-      !> Number of the material
+      !> Index of the material
       integer :: item = 0
       !> Band of its data at the temperature of the impact [s]
       real(wp) :: band(2) = 0.0_wp
-      !> Whether there is an end to the band, before and after
+      !> Whether the band has a start, and an end
       logical :: ends(2) = .false.
-      !> cor with the modulus as it is [-]
+      !> cor with the unchanged modulus [-]
       real(wp) :: cor = 0.0_wp
-      !> cor with the modulus held constant outside of the band [-], if that impact has a result
+      !> cor with the modulus held constant outside of the band [-], if `solved`
       real(wp) :: held = 0.0_wp
       !> Whether that impact has a result
       logical :: solved = .false.
-      !> How far both cor are apart [-], more than any two where one has no result
+      !> Difference of both cor [-]; a huge number if one has no result
       real(wp) :: change = huge(1.0_wp)
    end type reliance_t
 
 contains
 
-   !> Set the model and all numbers of a material of a case; its name, density and Poisson's ratio
-   !> stay
+   !> Set model and parameters of a material of a case; name, density and Poisson's ratio remain
    subroutine put_material(case, item, data)
-      !> The case; it need not be validated again
+      !> The case; it needs no further validation
       type(case_t), intent(inout) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       type(material_data_t), intent(in) :: data
 
@@ -79,7 +78,7 @@ contains
          given=.true.)
    end subroutine put_material
 
-   !> Let the moduli of a material be those of the impact: tensile, at its temperature
+   !> Remove shear and shift of a material: its moduli are tensile, at the temperature of the impact
    pure subroutine take_as_is(case, item)
       type(case_t), intent(inout) :: case
       !> Number of the material
@@ -93,15 +92,15 @@ contains
    function material_text(data, density, poisson_ratio, valid_from, valid_to, keys) result(text)
       !> The material, with its name
       type(material_data_t), intent(in) :: data
-      !> Density [kg/m3]; 0: not known
+      !> Density [kg/m3]; 0: unknown
       real(wp), intent(in) :: density
       !> Poisson's ratio [-]
       real(wp), intent(in) :: poisson_ratio
-      !> First time that the model was fitted to [s]
+      !> Start of the band of the fit [s]
       real(wp), intent(in) :: valid_from
-      !> Last time that the model was fitted to [s]
+      !> End of the band of the fit [s]
       real(wp), intent(in) :: valid_to
-      !> Lines of further keys; absent: none
+      !> Lines with further keys; absent: none
       character(len=*), intent(in), optional :: keys
       !> The group, each key with its unit and meaning
       character(len=:), allocatable :: text
@@ -121,15 +120,15 @@ contains
       if (present(keys)) text = text(:index(text, '/', back=.true.) - 1)//keys//'/'//new_line('a')
    end function material_text
 
-   !> Find out how much an impact leans on a material beyond its data
+   !> Find the reliance of an impact on a material beyond its data
    subroutine find_reliance(reliance, case, item, contact_time)
-      !> What is found
+      !> The reliance
       type(reliance_t), intent(out) :: reliance
       !> The case, with the parameters of the impact
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
-      !> Contact time of the impact, which ends in separation [s]
+      !> Contact time of the impact, which must end in separation [s]
       real(wp), intent(in) :: contact_time
 
       type(case_t) :: other
@@ -144,7 +143,7 @@ contains
       if (allocated(error)) return
       call case%get('material', 'valid_from', reliance%band(1), item)
       call case%get('material', 'valid_to', reliance%band(2), item)
-      ! at the temperature of the impact, nan where there is no such end
+      ! at the temperature of the impact; NaN for a missing end
       reliance%band = reliance%band*material%time_factor
       first = reliance%band(1)
       last = reliance%band(2)
@@ -153,7 +152,7 @@ contains
 
       if (.not. reliance%ends(2)) last = ample*contact_time
       if (.not. reliance%ends(1)) first = min(1.0e-9_wp*contact_time, 0.1_wp*last)
-      ! the contact does not see what comes after it
+      ! the contact does not depend on later times
       if (.not. last < ample*contact_time) &
          last = max(ample*contact_time, 2.0_wp*first)
       times = sampled_times(time_range_t(first, last))
@@ -176,7 +175,7 @@ contains
       if (reliance%solved) reliance%solved = held%status == contact_separated
       reliance%held = held%cor
       if (reliance%solved) reliance%change = abs(held%cor - free%cor)
-      ! a contact that is over before the data begin is made up altogether, whatever changes
+      ! a contact that ends before the data begin relies on extrapolation only, whatever the change
       reliance%leans = reliance%change > little .or. (reliance%ends(1) .and. first > contact_time)
    end subroutine find_reliance
 

@@ -1,8 +1,8 @@
-!> Namelists as groups and their statements, with line numbers
+!> Namelists as groups and statements, with line numbers
 !>
-!> A text is a sequence of tokens; groups `&name ... /` and their statements `key = values` are
-!> taken from it one after the other. What the values mean is `vcor_case_values`'s: a statement says
-!> where in the text each of them stands.
+!> A text is a sequence of tokens, from which groups `&name ... /` and their statements
+!> `key = values` are taken in order. A statement has the positions of its values in the text;
+!> `vcor_case_values` converts them.
 module vcor_case_namelist
    use vcor_error, only : error_input, error_t, raise
    use vcor_text, only : integer_text, is_control, lower, printable, shortened
@@ -13,11 +13,11 @@ module vcor_case_namelist
 
    !> One value of a statement
    type :: value_t
-      !> First byte of it in the text, without repeat count
+      !> First byte in the text, without repeat count
       integer :: first = 1
-      !> Last byte of it in the text
+      !> Last byte in the text
       integer :: last = 0
-      !> How many times it is meant, `3*1.0`; negative where that is not a positive number
+      !> Repeat count, as in `3*1.0`; negative if it is not a positive number
       integer :: repeats = 1
       !> Whether it is in quotes
       logical :: in_quotes = .false.
@@ -25,41 +25,40 @@ module vcor_case_namelist
 
    !> One statement, `key = values` or `key(section) = values`
    type :: statement_t
-      !> The key as it is written
+      !> The key as written
       character(len=:), allocatable :: key
-      !> What stands in parentheses after the key, without them; unallocated where nothing does
+      !> Text in parentheses after the key; unallocated if there is none
       character(len=:), allocatable :: section
-      !> Line the key stands in
+      !> Line of the key
       integer :: line = 0
       !> The values, shape (n), n >= 1
       type(value_t), allocatable :: values(:)
    end type statement_t
 
-   !> One token
+   !> A token
    type :: token_t
-      !> `,`, `=` or `/`; `&` for this and the word behind it, `'` for a text in quotes, `(` for
-      !> what is in parentheses, `w` for any other word, `.` for the end, `?` for what is none of
-      !> them
+      !> `,`, `=` or `/`; `&` with the word after it, `'` for a quoted text, `(` for parentheses and
+      !> their content, `w` for any other word, `.` for the end, `?` for an invalid token
       character :: kind = '.'
-      !> First byte of it in the text
+      !> First byte in the text
       integer :: first = 1
-      !> Last byte of it in the text
+      !> Last byte in the text
       integer :: last = 0
-      !> Line it stands in, from 1
+      !> Its line, from 1
       integer :: line = 1
    end type token_t
 
-   !> A text with namelists that is read from its beginning to its end
+   !> A text with namelists, read from start to end
    type :: namelist_t
       !> The text
       character(len=:), allocatable :: text
       !> Name of its source, for messages
       character(len=:), allocatable :: source
-      !> Tokens of the text, the last of which is the end or none
+      !> Tokens of the text, the last one the end or invalid
       type(token_t), allocatable, private :: tokens(:)
-      !> What is wrong with a last token that is none
+      !> Message about an invalid last token
       character(len=:), allocatable, private :: flaw
-      !> The token that is looked at next
+      !> Index of the next token
       integer, private :: next = 1
    contains
       procedure :: next_group, next_statement, place
@@ -67,12 +66,12 @@ module vcor_case_namelist
 
    character, parameter :: tab = achar(9), line_feed = achar(10), carriage_return = achar(13)
    character(len=*), parameter :: line_ends = line_feed//carriage_return
-   !> What ends a word
+   !> Characters that end a word
    character(len=*), parameter :: delimiters = " ,'""=/&!()"//tab//line_ends
 
 contains
 
-   !> Begin with a text
+   !> Split a text into tokens
    pure subroutine new_namelist(self, text, source)
       type(namelist_t), intent(out) :: self
       !> The text; lines end with line feed, carriage return, or both
@@ -105,12 +104,12 @@ contains
       self%tokens = self%tokens(:n)
    end subroutine new_namelist
 
-   !> Go on from a token to the next one
+   !> Find the next token
    pure subroutine go_on(text, token, flaw)
       character(len=*), intent(in) :: text
-      !> The token before; on return the next one
+      !> A token; on return the next one
       type(token_t), intent(inout) :: token
-      !> What is wrong with it if it is none
+      !> Message if it is invalid
       character(len=:), allocatable, intent(inout) :: flaw
 
       integer :: i, length
@@ -148,7 +147,7 @@ contains
          token%kind = 'w'
          token%last = end_of(text, i, delimiters)
       end select
-      ! a byte that is part of no text says more than what it stands in
+      ! a control character is the more useful message
       do length = 1, token%last - i + 1
          if (.not. is_control(text(i + length - 1:i + length - 1)) &
              .or. text(i + length - 1:i + length - 1) == tab) cycle
@@ -159,10 +158,10 @@ contains
       end do
    end subroutine go_on
 
-   !> Go on to what is neither blank nor comment
+   !> Skip blanks and comments
    pure subroutine skip_blanks(text, position, line)
       character(len=*), intent(in) :: text
-      !> Byte to look at next
+      !> Byte to read next
       integer, intent(inout) :: position
       integer, intent(inout) :: line
 
@@ -174,7 +173,7 @@ contains
          case (line_feed, carriage_return)
             in_comment = .false.
             line = line + 1
-            ! one line end of two bytes
+            ! two bytes, one line end
             if (text(position:min(position + 1, len(text))) == carriage_return//line_feed) &
                line = line - 1
          case (' ', tab)
@@ -187,13 +186,13 @@ contains
       end do
    end subroutine skip_blanks
 
-   !> Last byte before any of some others
+   !> Last byte before any of some characters
    pure function end_of(text, first, others) result(last)
       character(len=*), intent(in) :: text
-      !> First byte that may be one of them
+      !> First byte to compare
       integer, intent(in) :: first
       character(len=*), intent(in) :: others
-      !> The last byte, `first - 1` where there is none
+      !> Last byte; `first - 1` if there is none
       integer :: last
 
       last = first - 1
@@ -203,12 +202,12 @@ contains
       end do
    end function end_of
 
-   !> Last byte of a text in quotes
+   !> End of a quoted text
    pure function end_of_string(text, first) result(last)
       character(len=*), intent(in) :: text
-      !> Where the quote is that it begins with
+      !> Position of its opening quote
       integer, intent(in) :: first
-      !> The closing quote, 0 where there is none in the line
+      !> Position of the closing quote; 0 if there is none in the line
       integer :: last
 
       last = first
@@ -217,18 +216,18 @@ contains
          if (last > len(text)) exit
          if (text(last:last) /= text(first:first)) exit
          if (last == len(text)) return
-         ! a doubled quote is a quote in the text
+         ! a doubled quote is part of the text
          if (text(last + 1:last + 1) /= text(first:first)) return
          last = last + 1
       end do
       last = 0
    end function end_of_string
 
-   !> A place in the text, `case.nml:12`
+   !> A place, `case.nml:12`
    pure function place(self, line) result(text)
       class(namelist_t), intent(in) :: self
       integer, intent(in) :: line
-      !> The place, for the beginning of a message
+      !> The place, with which a message begins
       character(len=:), allocatable :: text
 
       text = printable(self%source)//':'//integer_text(line)
@@ -238,7 +237,7 @@ contains
    subroutine next_group(self, name, line, error)
       !> The namelists, at the beginning or after a group
       class(namelist_t), intent(inout) :: self
-      !> Name of the group as it is written; unallocated after the last one
+      !> Name of the group as written; unallocated after the last one
       character(len=:), allocatable, intent(out) :: name
       integer, intent(out) :: line
       !> Error of code `error_input`, unallocated on success
@@ -281,7 +280,7 @@ contains
       !> Name of the group, for messages
       character(len=*), intent(in) :: group
       type(statement_t), intent(out) :: statement
-      !> Whether there was one; false after the last one of the group
+      !> Whether there was a statement; false after the last one of the group
       logical, intent(out) :: found
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -310,7 +309,7 @@ contains
             message = shown(self)//place//', expected key = value or /'
          else if (.not. found) then
             message = shown(self)//place//', expected key = value'
-            ! what cannot be a token says more
+            ! an invalid next token is the more useful message
             if (self%tokens(self%next + 1)%kind == '?') message = self%flaw
          else
             statement%key = self%text(token%first:token%last)
@@ -333,12 +332,12 @@ contains
       if (message /= '') call raise(error, error_input, self%place(line)//': '//message)
    end subroutine next_statement
 
-   !> The values of a text that holds nothing else
+   !> Values of a text with nothing else
    pure subroutine values_in(text, values, message)
       character(len=*), intent(in) :: text
       !> The values, shape (n)
       type(value_t), allocatable, intent(out) :: values(:)
-      !> What is wrong; empty on success, and without values where there is something else
+      !> Message; empty on success, and without values if there is anything else
       character(len=:), allocatable, intent(out) :: message
 
       type(namelist_t) :: namelist
@@ -349,15 +348,15 @@ contains
       if (message == '' .and. namelist%tokens(namelist%next)%kind /= '.') values = values(:0)
    end subroutine values_in
 
-   !> Take the values that come next
+   !> Read the next values
    pure subroutine take_values(self, values, line, message)
-      !> The namelists; the token after the values comes next
+      !> The namelists; on return the next token is the one after the values
       class(namelist_t), intent(inout) :: self
       !> The values, shape (n), n >= 0
       type(value_t), allocatable, intent(out) :: values(:)
-      !> Line of what is wrong
+      !> Line of the error
       integer, intent(out) :: line
-      !> What is wrong, empty on success
+      !> Message on failure, empty on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: i, first, n
@@ -398,15 +397,15 @@ contains
          if (message /= '') return
       end do
       values = values(:n)
-      ! what cannot be a token ends the values
+      ! an invalid token ends the values
       line = self%tokens(self%next)%line
       if (self%tokens(self%next)%kind == '?') message = self%flaw
    end subroutine take_values
 
-   !> Whether a word, perhaps a section, and an equals sign follow each other
+   !> Whether tokens are a word, possibly a section, and an equals sign
    pure function is_assignment(self, i) result(yes)
       class(namelist_t), intent(in) :: self
-      !> Number of the first token
+      !> Index of the first token
       integer, intent(in) :: i
       logical :: yes
 
@@ -422,7 +421,7 @@ contains
    !> Split a word such as `3*1.0` into repeat count and value
    pure subroutine split_repeats(text, value)
       character(len=*), intent(in) :: text
-      !> The value; `first` is moved behind the count
+      !> The value; on return `first` is after the count
       type(value_t), intent(inout) :: value
 
       integer, parameter :: most_digits = 9
@@ -432,13 +431,13 @@ contains
       if (star <= value%first) return
       if (verify(text(value%first:star - 1), '0123456789') > 0) return
       value%repeats = 0
-      ! digits alone, and few enough of them, are read without fail
+      ! reading cannot fail: these are digits only, and few enough
       if (star - value%first <= most_digits) read (text(value%first:star - 1), '(i9)') value%repeats
       if (value%repeats == 0) value%repeats = -1
       value%first = star + 1
    end subroutine split_repeats
 
-   !> What was found: the token that comes next, for messages
+   !> Next token, for messages
    pure function shown(self) result(text)
       class(namelist_t), intent(in) :: self
       !> Such as `found 'velocity'`

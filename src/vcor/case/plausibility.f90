@@ -1,4 +1,4 @@
-!> Numbers of a case that no material and no laboratory has: most likely in another unit
+!> Implausible numbers of a case, which are probably in another unit
 module vcor_case_plausibility
    use vcor_case_case, only : address_t, case_t, entry_t
    use vcor_case_catalogue, only : catalogue, find_group, first_row, groups, key_row, last_row, &
@@ -11,33 +11,33 @@ module vcor_case_plausibility
 
    public :: slips_of, note_length
 
-   !> Letters of the longest note
+   !> Length of the longest note
    integer, parameter :: note_length = 400
 
-   !> Between what values numbers are plausible
+   !> Limits of plausible values
    type :: limits_t
       !> Group
       character(len=8) :: group
-      !> Key, blank: all of the unit
+      !> Key; blank: all keys with the unit
       character(len=22) :: key
-      !> Unit in the catalogue
+      !> Unit as in the catalogue
       character(len=6) :: unit
-      !> Least plausible value, in this unit
+      !> Smallest plausible value, in this unit
       real(wp) :: least
       !> Largest plausible value
       real(wp) :: most
-      !> Likely slip of a value below
+      !> Probable mistake for a smaller value
       character(len=44) :: below
-      !> Likely slip of a value above
+      !> Probable mistake for a larger value
       character(len=44) :: above
    end type limits_t
 
    !> No limit
    real(wp), parameter :: endless = huge(1.0_wp)
-   !> What a temperature may be in
+   !> Question about a temperature
    character(len=*), parameter :: celsius = 'is it in degrees Celsius?'
    !> Moduli from those of gels to that of diamond; densities from those of foams to that of osmium;
-   !> times from that of an atom's vibration on
+   !> times from the period of atomic vibrations
    type(limits_t), parameter :: limits(*) = [ &
       limits_t('impact', 'temperature', 'K', 100.0_wp, endless, celsius, ''), &
       limits_t('impact', 'drop_height', 'm', -endless, 30.0_wp, '', 'is it in cm or mm?'), &
@@ -55,13 +55,13 @@ module vcor_case_plausibility
 
 contains
 
-   !> Notes on the numbers of a case that are not plausible
+   !> Notes about implausible numbers of a case
    subroutine slips_of(case, grid, notes)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> What a sweep varies
+      !> Grid of the sweep
       type(grid_t), intent(in) :: grid
-      !> One line each: where it stands, what it is, and the likely slip
+      !> One line each: place, key and value, and probable mistake
       character(len=note_length), allocatable, intent(out) :: notes(:)
 
       real(wp), allocatable :: values(:)
@@ -96,10 +96,10 @@ contains
 
    contains
 
-      !> Judge the values of one key
+      !> Check the values of one key
       subroutine judge(limit, name)
          type(limits_t), intent(in) :: limit
-         !> Its path
+         !> Path of the key
          character(len=*), intent(in) :: name
 
          character(len=note_length) :: note
@@ -108,7 +108,7 @@ contains
 
          high = maxval(values)
          low = minval(values)
-         ! of the terms of a series the largest one counts
+         ! for the terms of a series, the largest one counts
          if (limit%unit == 'Pa') low = high
          note = ''
          unit = ''
@@ -126,7 +126,7 @@ contains
       end subroutine judge
    end subroutine slips_of
 
-   !> Whether limits are those of a key
+   !> Whether limits apply to a key
    pure function is_limited(limit, model, row) result(yes)
       type(limits_t), intent(in) :: limit
       !> Model of the material

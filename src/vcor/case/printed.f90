@@ -12,7 +12,7 @@ module vcor_case_printed
 
    !> Longest line of a list [bytes]
    integer, parameter :: line_width = 96
-   !> Bytes before a remark, so that most remarks stand one below the other
+   !> Column of remarks after shorter lines
    integer, parameter :: remark_column = 48
    !> Indentation of the keys
    character(len=*), parameter :: indent = "   "
@@ -21,15 +21,15 @@ module vcor_case_printed
 
 contains
 
-   !> A case as namelists: groups in the order of the catalogue, of a material only the keys of its
+   !> A case as namelists: groups in the order of the catalogue, for a material only the keys of its
    !> model
    pure function case_text(self, complete, remarks) result(text)
       type(case_t), intent(in) :: self
-      !> Whether what was not given is printed with its default; absent: no
+      !> Whether to print defaults of keys that were not given; absent: no
       logical, intent(in), optional :: complete
-      !> Whether each key has a comment with unit and meaning; absent: no
+      !> Whether to add unit and meaning of each key as a comment; absent: no
       logical, intent(in), optional :: remarks
-      !> Lines, each with a line feed at its end
+      !> Lines, each with a line feed
       character(len=:), allocatable :: text
       type(buffer_t) :: buffer
       type(entry_t) :: entry
@@ -48,7 +48,7 @@ contains
             if (buffer%length > 0) call buffer%add(newline)
             call buffer%add("&"//trim(groups(group)%name)//newline)
             do row = first_row(group), last_row(group)
-               ! The further rows of a key that has one for each model
+               ! a key with a row for each model is printed once
                if (key_row(row) /= row) cycle
                applicable = row_for_model(row, self%model(group, item))
                if (applicable == 0) cycle
@@ -64,11 +64,11 @@ contains
       text = buffer%text()
    end function case_text
 
-   !> Put unit and meaning of a key behind its value
+   !> Append unit and meaning of a key to its value
    pure subroutine add_remark(line, key, entry)
-      !> Key and value; a list may be more than one line
+      !> Key and value; a list may have several lines
       character(len=:), allocatable, intent(inout) :: line
-      !> The key, of the model of its item
+      !> Row of the key for the model of its item
       type(key_t), intent(in) :: key
       type(entry_t), intent(in) :: entry
       integer :: last_line
@@ -80,11 +80,11 @@ contains
       if (.not. entry%given) line = line//" (default)"
    end subroutine add_remark
 
-   !> A value as a namelist has it
+   !> A value in namelist format
    pure function value_text(key, entry) result(text)
       type(key_t), intent(in) :: key
       type(entry_t), intent(in) :: entry
-      !> The value; a long list in lines of its own
+      !> The value; a long list has several lines
       character(len=:), allocatable :: text
 
       select case (key%value_kind)
@@ -101,13 +101,13 @@ contains
       end select
    end function value_text
 
-   !> Numbers with commas between them
+   !> A list of numbers separated by commas
    pure function list_text(list, column) result(text)
       !> The numbers, shape (n)
       real(wp), intent(in) :: list(:)
-      !> Bytes in the line before the first number
+      !> Bytes before the first number in its line
       integer, intent(in) :: column
-      !> The text, in lines that begin below the first number
+      !> The text; further lines are aligned with the first number
       character(len=:), allocatable :: text
       type(buffer_t) :: buffer
       character(len=:), allocatable :: number

@@ -1,21 +1,20 @@
-!> From a case to the impact that it describes and the solver that it asks for
+!> From a case to the impact that it describes, and its solver
 !>
-!> `update` follows the numbers of the case: whatever depends on a number that has changed is made
-!> anew, and nothing else. The case numbers its changes; what is made here keeps the number of the
-!> latest change of what it was made from, `..._made_at`, and stands as long as that is the latest:
+!> `update` follows the numbers of the case: it rebuilds what depends on a changed number, and
+!> nothing else. The case numbers its changes. Each object stores in `..._made_at` the latest change
+!> of the numbers from which it was made, and stays valid as long as that is their latest change:
 !>
-!>  - the velocity changes: the motion is set, as it is at each point; materials, contact, solver
-!>    stand.
-!>  - the temperature changes: each material with a shift is made anew, but points of data are not
-!>    fitted anew; then the contact.
-!>  - a number of the sphere's material changes: the same, for the sphere alone.
+!>  - New velocity: only the motion is set, as at every point; materials, contact and solver remain.
+!>  - New temperature: materials with a shift are rebuilt, without fitting points of data again, and
+!>    then the contact.
+!>  - New number of the sphere's material: the same for the sphere only.
 !>
-!> Threads of a sweep call `update`, so it calls no function that returns a text of deferred
-!> length, whose length gfortran 12 keeps in static storage.
+!> Threads of a sweep call `update`, so it calls no function with a result of deferred length, since
+!> gfortran 12 keeps that length in static storage.
 !>
-!> What numbers may go together is the rule of who is built from them: material, contact, plate,
-!> impact, solver. Their errors name arguments, `error%about`; `explain` makes keys and lines of
-!> them, `has_part` says whether a swept key is among them.
+!> Rules for numbers that depend on each other are in the constructors of materials, contact, plate,
+!> impact and solver. Their errors name arguments, `error%about`; `explain` replaces them by keys
+!> and lines, and `has_part` tells whether a swept key is one of them.
 module vcor_case_problem
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_case_case, only : address_t, case_t, entry_t
@@ -45,26 +44,26 @@ module vcor_case_problem
 
    public :: problem_t, problem_of_case, material_of_case, solve_case, has_part
 
-   !> Number of a change that no value ever has: not made, or in vain
+   !> Number of no change: an object that has not been made, or could not
    integer, parameter :: never = -1
 
    !> A material of the case
    type :: body_t
-      !> Group and item in the case
+      !> Address of the material in the case
       type(address_t) :: address
-      !> Where its temperature stands, nowhere for a material that has no shift
+      !> Address of its temperature; nowhere if the material has no shift
       type(address_t) :: temperature
-      !> Numbers and lists that it is made from beside, shape (n)
+      !> Addresses of the other numbers and lists from which it is made, shape (n)
       type(address_t), allocatable :: made_from(:)
-      !> Its description
+      !> Its data
       type(material_data_t) :: data
-      !> The material; allocated once it was built
+      !> The material, allocated after it was built
       class(material_t), allocatable :: material
-      !> Latest change of all these, when it was made
+      !> Latest change of all these numbers when it was made
       integer :: made_at = never
    end type body_t
 
-   !> Addresses of the numbers that an impact is made from
+   !> Addresses of the numbers from which an impact is made
    type :: numbers_t
       type(address_t) :: velocity, drop_height, gravity, radius, mass, surface_radius
       type(address_t) :: half_thickness, footprint, half_angle, punch_radius
@@ -79,17 +78,17 @@ module vcor_case_problem
       type(impact_t) :: impact
       !> The solver
       class(solver_t), allocatable :: solver
-      !> How the impact is to be solved
+      !> Settings of the solution
       type(solver_settings_t) :: settings
-      !> What its measures of validity know beside it
+      !> Data for the measures of validity beside the impact
       type(surroundings_t) :: around
       !> Material of the sphere
       type(body_t), private :: sphere
       !> Material of the plate
       type(body_t), private :: plate
-      !> Where the numbers stand
+      !> Addresses of the numbers
       type(numbers_t), private :: at
-      !> Shape of the body that strikes, as the case names it
+      !> Shape of the striking body, as named in the case
       character(len=6), private :: shape = 'sphere'
       !> One of the `waves_*` constants
       integer, private :: waves = waves_relaxing
@@ -97,9 +96,9 @@ module vcor_case_problem
       integer, private :: pair = pair_eq1
       !> Whether the Volterra series has its second term
       logical, private :: second_term = .false.
-      !> Latest change of materials and half thickness, when modulus and plate were made from them
+      !> Latest change of materials and half thickness when modulus and plate were made from them
       integer, private :: contact_made_at = never
-      !> Latest change of the numbers of the solver, when it was made
+      !> Latest change of the numbers of the solver when it was made
       integer, private :: solver_made_at = never
    contains
       procedure :: update, solve
@@ -107,12 +106,12 @@ module vcor_case_problem
 
 contains
 
-   !> The impact and the solver of a case; what a sweep varies is as the case has it
+   !> Build the impact and the solver of a case; swept keys have their values in the case
    subroutine problem_of_case(self, case, error)
       type(problem_t), intent(out) :: self
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Error of code `error_input` that says where its cause stands, unallocated on success
+      !> Error of code `error_input` with the place of its cause, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=*), parameter :: wave_names(*) = [character(len=10) :: 'none', 'constant', &
@@ -151,7 +150,7 @@ contains
       self%shape = text
       call case%get('contact', 'law', text)
       self%impact%law%receding = text == 'receding'
-      ! the contact of a punch does not; who asks for it is told so
+      ! the contact of a punch does not recede; a user who requests it gets an error
       if (self%shape == 'punch' .and. .not. case%given('contact', 'law')) &
          self%impact%law%receding = .false.
       call case%get('contact', 'pair', text)
@@ -178,14 +177,14 @@ contains
       if (allocated(error)) call explain(case, error)
    end subroutine problem_of_case
 
-   !> A material of a case
+   !> Build a material of a case
    subroutine material_of_case(case, item, material, error)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
       class(material_t), allocatable, intent(out) :: material
-      !> Error of code `error_input` that says where its cause stands, unallocated on success
+      !> Error of code `error_input` with the place of its cause, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(body_t) :: body
@@ -213,20 +212,20 @@ contains
       if (.not. allocated(error)) call problem%solve(trajectory, outcome, error)
    end subroutine solve_case
 
-   !> Say in terms of the case what is wrong: where it stands and what was found there
+   !> Add to an error the place and the values that caused it
    !>
-   !> Whoever builds a material raises 'a standard linear solid needs 0 <= alpha <= beta', about
-   !> 'alpha beta'; `update_body` adds that it is item 2. If that is pmma, with both keys in line
-   !> 8, this becomes
+   !> The constructor of a material raises 'a standard linear solid needs 0 <= alpha <= beta' about
+   !> 'alpha beta'; `update_body` adds item 2. If that is pmma, with both keys in line 8, the
+   !> message becomes
    !>
    !>     case.nml:8: found alpha = 130.0 and beta = 120.0 in &material 'pmma': a standard linear
    !>     solid needs 0 <= alpha <= beta
    !>
-   !> The line is that of the first key that was given. A key that has no value is not found; where
-   !> none has one it says "key 'alpha' is missing in &material 'pmma'".
+   !> The line is that of the first given key. Keys without a value are not listed; if none has a
+   !> value, the message is "key 'alpha' is missing in &material 'pmma'".
    subroutine explain(case, error)
       type(case_t), intent(in) :: case
-      !> Error, about names of arguments that are called like their keys
+      !> Error about arguments that have the names of their keys
       type(error_t), intent(inout) :: error
 
       type(address_t) :: address, cause
@@ -243,7 +242,7 @@ contains
          address = address_of(case, trim(names(i)), error%item)
          if (address%group == 0) cycle
          entry = case%entry(address)
-         ! the first that was given, else the first
+         ! the first one that was given, otherwise the first
          if (cause%group == 0 .or. entry%given .and. .not. is_given) cause = address
          is_given = is_given .or. entry%given
          associate (key => catalogue(address%row))
@@ -271,10 +270,10 @@ contains
       error%message = case%location(cause)//': '//found//error%message
    end subroutine explain
 
-   !> Whether the value at an address has a part in an error, as far as anybody can say
+   !> Whether the value at an address may have contributed to an error
    pure function has_part(case, address, error) result(yes)
       type(case_t), intent(in) :: case
-      !> Address, its element does not count
+      !> Address; its element is ignored
       type(address_t), intent(in) :: address
       !> Error of `problem_of_case`
       type(error_t), intent(in) :: error
@@ -291,13 +290,13 @@ contains
          if (other%group > 0) then
             yes = yes .or. (other%row == address%row .and. other%item == address%item)
          else
-            ! a key of a material, of whichever body
+            ! a key of a material, of either body
             yes = yes .or. catalogue(address%row)%name == names(i)
          end if
       end do
    end function has_part
 
-   !> Names of the arguments that an error is about
+   !> Names of the arguments of an error
    pure function names_about(error) result(names)
       type(error_t), intent(in) :: error
       character(len=longest_name), allocatable :: names(:)
@@ -305,20 +304,20 @@ contains
       if (allocated(error%about)) then
          names = list_of_words(error%about)
       else if (error%item > 0) then
-         ! who builds a material and says nothing may mean all of it
+         ! without names, all keys of the material may be meant
          names = list_of_words(keys_of(find_group('material')))
       else
          allocate (names(0))
       end if
    end function names_about
 
-   !> Address of an argument that is called like its key
+   !> Address of the key with the name of an argument
    pure function address_of(case, name, item) result(address)
       type(case_t), intent(in) :: case
       character(len=*), intent(in) :: name
-      !> Number of the material it belongs to, if it does not to another group; 0: none
+      !> Index of its material, if it has one; 0: none
       integer, intent(in) :: item
-      !> The address, nowhere if there is no such key
+      !> The address; nowhere if there is no such key
       type(address_t) :: address
 
       integer :: group
@@ -327,19 +326,19 @@ contains
          address = case%address('material', name, item)
          if (address%group > 0) return
       end if
-      ! from the last: the material of two bodies is that of the plate
+      ! backwards: for an error about the material of two bodies, take that of the plate
       do group = size(groups), 1, -1
          if (.not. groups(group)%repeated) address = case%address(groups(group)%name, name)
          if (address%group > 0) return
       end do
    end function address_of
 
-   !> Describe a material but for its numbers
+   !> Describe a material except for its numbers
    subroutine describe(body, case, item)
       !> The material, not built
       type(body_t), intent(out) :: body
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
 
       type(parameter_t), allocatable :: parameters(:)
@@ -368,7 +367,7 @@ contains
       allocate (body%made_from(0))
       do row = first_row(body%address%group), last_row(body%address%group)
          if (key_row(row) /= row) cycle
-         ! lists are the terms of a Prony series, and the points of a table, which are no parameters
+         ! lists are the terms of a Prony series or the points of a table, which are not parameters
          counts = any(catalogue(row)%name == parameters%name)
          address = address_t(body%address%group, item, row)
          if (catalogue(row)%value_kind == list_key) then
@@ -379,9 +378,9 @@ contains
       end do
    end subroutine describe
 
-   !> Follow the numbers of the case
+   !> Update the problem to the numbers of the case
    subroutine update(self, case, error)
-      !> The problem, made of this case
+      !> The problem of this case
       class(problem_t), intent(inout) :: self
       type(case_t), intent(in) :: case
       !> Error of code `error_input`, unallocated on success
@@ -424,15 +423,15 @@ contains
       call update_solver(self, case, error)
    end subroutine update
 
-   !> Solve the impact, and judge whether the model holds
+   !> Solve the impact, and assess whether the model holds
    subroutine solve(self, trajectory, outcome, error)
-      !> The problem; what it takes to solve it is kept for those next to it
+      !> The problem; it keeps what it computes for similar impacts
       class(problem_t), intent(inout) :: self
-      !> Course of its impact
+      !> Trajectory of the impact
       type(trajectory_t), intent(inout) :: trajectory
-      !> Its outcome with the measures of validity
+      !> Outcome with the measures of validity
       type(outcome_t), intent(out) :: outcome
-      !> Error of code `error_numerical` as that of `solve_impact`, unallocated on success
+      !> Error of code `error_numerical` as from `solve_impact`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (.not. allocated(self%solver)) then
@@ -448,7 +447,7 @@ contains
          self%plate%material)
    end subroutine solve
 
-   !> Make what method ive needs of a layer in advance
+   !> Precompute the layer for method ive
    subroutine prepare(self)
       type(problem_t), intent(inout) :: self
 
@@ -460,7 +459,7 @@ contains
    function cor_with_larger_footprint(self) result(cor)
       !> The problem, of a layer
       type(problem_t), intent(inout) :: self
-      !> Coefficient [-], NaN where there is none
+      !> Coefficient [-]; NaN if there is none
       real(wp) :: cor
 
       real(wp), parameter :: larger = 1.25_wp
@@ -477,7 +476,7 @@ contains
       cor = outcome%cor
    end function cor_with_larger_footprint
 
-   !> Follow what the measures of validity know beside the impact
+   !> Update the data for the measures of validity
    subroutine look_around(self, case)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
@@ -501,7 +500,7 @@ contains
       call self%around%follow(self%plate%material%poisson_ratio())
    end subroutine look_around
 
-   !> Build what the sphere meets: modulus and plate of the impact
+   !> Build contact modulus and plate of the impact
    subroutine build_contact(self, case, error)
       !> The problem, its materials built
       type(problem_t), intent(inout) :: self
@@ -518,7 +517,7 @@ contains
       if (error%about == 'density') error%item = self%plate%address%item
    end subroutine build_contact
 
-   !> Set the law that goes with the shape of the body that strikes
+   !> Set the contact law of the shape of the striking body
    subroutine set_shape(self, case, factor, error)
       type(problem_t), intent(inout) :: self
       type(case_t), intent(in) :: case
@@ -557,7 +556,7 @@ contains
       if (.not. allocated(error)) self%impact%law = law
    end subroutine set_shape
 
-   !> Follow the numbers of the solver
+   !> Update settings and solver
    subroutine update_solver(self, case, error)
       !> The problem, its impact built
       type(problem_t), intent(inout) :: self
@@ -584,7 +583,7 @@ contains
       end if
    end subroutine update_solver
 
-   !> Number at an address, 0 if there is none
+   !> Number at an address; 0 if there is none
    pure function number_or_zero(case, address) result(number)
       type(case_t), intent(in) :: case
       type(address_t), intent(in) :: address
@@ -594,7 +593,7 @@ contains
       if (ieee_is_nan(number)) number = 0.0_wp
    end function number_or_zero
 
-   !> Follow the numbers of a material
+   !> Update a material
    subroutine update_body(body, case, error)
       !> The material, described
       type(body_t), intent(inout) :: body

@@ -1,8 +1,8 @@
-!> Real numbers as they are written
+!> Real numbers as written in input
 !>
-!> The compiler reads each number, so Fortran's rules hold. What it would take in silence is
-!> refused before: NaN, infinity, numbers beyond the range of the kind, and whatever is not a number
-!> from its first to its last byte.
+!> The compiler reads each number, so Fortran's rules hold. Input that it would accept silently is
+!> refused first: NaN, infinity, numbers out of the range of the kind, and anything that is not
+!> entirely a number.
 module vcor_case_real
    use vcor_kinds, only : wp
    use vcor_material_parameter, only : largest, smallest
@@ -12,7 +12,7 @@ module vcor_case_real
 
    public :: read_real, looks_numeric
 
-   !> Power of ten beyond which a number is not read at all
+   !> Power of ten beyond which a number is not read
    integer, parameter :: largest_power = 300
    character(len=*), parameter :: digits = "0123456789"
 
@@ -20,12 +20,12 @@ contains
 
    !> Read a real number
    subroutine read_real(word, expected, number, message)
-      !> The number as it is written
+      !> The number as written
       character(len=*), intent(in) :: word
-      !> What is expected, for the message
+      !> Expected input, for the message
       character(len=*), intent(in) :: expected
       real(wp), intent(out) :: number
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
       logical :: good
       integer :: power, status
@@ -47,7 +47,7 @@ contains
       end if
    end subroutine read_real
 
-   !> Whether a word is a number, infinity or not a number
+   !> Whether a word is a number, infinity or NaN
    pure function looks_numeric(word) result(yes)
       character(len=*), intent(in) :: word
       logical :: yes
@@ -57,12 +57,12 @@ contains
       yes = yes .or. is_not_finite(word)
    end function looks_numeric
 
-   !> Whether a word is a number by Fortran's rules, and how large it is about
+   !> Whether a word is a number by Fortran's rules, and its order of magnitude
    pure subroutine look_at_number(word, good, power)
       character(len=*), intent(in) :: word
-      !> Whether it is sign, digits with or without a point, and perhaps an exponent with its letter
+      !> Whether it has digits with or without a point, and perhaps a sign and a lettered exponent
       logical, intent(out) :: good
-      !> Power of ten of its first digit that is not zero; 0 for zero
+      !> Power of ten of its first nonzero digit; 0 for zero
       integer, intent(out) :: power
 
       integer, parameter :: most_digits = 6
@@ -81,7 +81,7 @@ contains
       if (point < last) good = index(word(point + 1:last), '.') == 0
       if (.not. good .or. last == len(word)) return
 
-      ! the exponent, from its first digit that is not zero on
+      ! the exponent, from its first nonzero digit
       exponent = last + 2
       good = scan(word(last + 1:last + 1), 'eEdD') == 1
       if (good .and. scan(word(exponent:), '+-') == 1) exponent = exponent + 1
@@ -97,7 +97,7 @@ contains
       power = power + merge(-shift, shift, word(last + 2:last + 2) == '-')
    end subroutine look_at_number
 
-   !> Whether a word means infinity or not a number
+   !> Whether a word denotes infinity or NaN
    pure function is_not_finite(word) result(yes)
       character(len=*), intent(in) :: word
       logical :: yes

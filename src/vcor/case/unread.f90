@@ -1,7 +1,7 @@
-!> What an impact does not read: neither its solution nor a quantity of its output depends on it.
-!> Whoever sets or sweeps it is told so, since the same numbers again would be taken for an answer
+!> Keys that an impact does not read: neither solution nor output depends on them. Setting or
+!> sweeping one is an error, since unchanged numbers would be mistaken for an answer
 !>
-!> What is read stands here by name, so a key that nobody has thought of is refused.
+!> The keys that are read are listed by name, so a new key is refused until it is added here.
 module vcor_case_unread
    use vcor_error, only : error_input, error_t, raise
    use vcor_solver_type, only : method_for
@@ -18,12 +18,12 @@ module vcor_case_unread
 
 contains
 
-   !> Refuse what was set by --set, or what else an entry says it comes from, and has no effect: a
-   !> sweep varies it, or the impact does not read it. What stands in the case file may stay there
+   !> Refuse a value from --set, or another origin than the case file, that a sweep varies or the
+   !> impact does not read. In the case file such values are allowed
    subroutine refuse_unread(case, all_materials, error)
       !> A validated case
       type(case_t), intent(in) :: case
-      !> Whether materials are read that are in no body
+      !> Whether materials are read that no body uses
       logical, intent(in) :: all_materials
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -50,13 +50,13 @@ contains
       end do
    end subroutine refuse_unread
 
-   !> Why a value that was set has no effect: a sweep gives others
+   !> Reason why a value that was set has no effect: a sweep varies it
    pure function why_varied(case, address, origin) result(reason)
       type(case_t), intent(in) :: case
       type(address_t), intent(in) :: address
-      !> Where it comes from; the number of an element stands in it
+      !> Its origin, which includes the index of an element
       character(len=*), intent(in) :: origin
-      !> The reason, empty where no sweep varies it
+      !> The reason; empty if no sweep varies it
       character(len=:), allocatable :: reason
 
       type(address_t), allocatable :: swept(:)
@@ -75,17 +75,17 @@ contains
          //' varies it, expected a key that no sweep varies'
    end function why_varied
 
-   !> Why a value that was set is not read
+   !> Reason why a value that was set is not read
    pure function why_set_unread(case, address) result(reason)
       type(case_t), intent(in) :: case
       type(address_t), intent(in) :: address
-      !> The reason, empty where it is read
+      !> The reason; empty if it is read
       character(len=:), allocatable :: reason
 
       select case (group_and_key(address))
       case ('material.valid_from', 'material.valid_to', 'material.valid_temperature_from', &
          'material.valid_temperature_to')
-         ! the band of the data has no part in the numbers, but brings a warning
+         ! no number depends on the band of the data, but a warning does
          reason = why_material_is_unread(case, address%item)
       case default
          reason = why_unread(case, address)
@@ -93,12 +93,12 @@ contains
       if (reason /= '') reason = 'the impact does not read it: '//reason
    end function why_set_unread
 
-   !> Why an impact does not read a key
+   !> Reason why an impact does not read a key
    pure function why_unread(case, address) result(reason)
-      !> A case, each entry of which is within its range, and whose bodies have materials
+      !> A case whose entries are within their ranges and whose bodies have materials
       type(case_t), intent(in) :: case
       type(address_t), intent(in) :: address
-      !> The reason, empty where the key is read
+      !> The reason; empty if the key is read
       character(len=:), allocatable :: reason
 
       character(len=:), allocatable :: method, scheme
@@ -176,7 +176,7 @@ contains
             if (reason == '' .and. case%model(group, item) == 'rigid') &
                reason = 'a rigid body does not deform'
          case default
-            ! what stands in a model's own file is a parameter of its modulus
+            ! other keys of a material are parameters of its modulus
             reason = 'nothing depends on it'
             if (groups(group)%name == 'material') reason = why_material_is_unread(case, item)
          end select
@@ -184,7 +184,7 @@ contains
 
    contains
 
-      !> Whether the temperature has a say in the material of a body
+      !> Whether the temperature shifts the material of a body
       pure function shifts(body)
          !> sphere or plate
          character(len=*), intent(in) :: body
@@ -199,12 +199,12 @@ contains
       end function shifts
    end function why_unread
 
-   !> Why the temperature does not shift by a key
+   !> Reason why a key has no part in the shift by temperature
    pure function why_no_shift(case, address) result(reason)
       type(case_t), intent(in) :: case
-      !> Address in a material
+      !> Address of a key of a material
       type(address_t), intent(in) :: address
-      !> The reason, empty where it does, or for another key
+      !> The reason; empty if it has one, or if it is no key of a shift
       character(len=:), allocatable :: reason
 
       character(len=:), allocatable :: shift
@@ -218,7 +218,7 @@ contains
          //"' is for a material of shift "//join_words(trim(key_laws(i)))
    end function why_no_shift
 
-   !> Group and key in one word
+   !> Group and key as one word
    pure function group_and_key(address) result(word)
       type(address_t), intent(in) :: address
       !> Such as `sphere.radius`
@@ -227,10 +227,10 @@ contains
       word = trim(groups(address%group)%name)//'.'//catalogue(address%row)%name
    end function group_and_key
 
-   !> Why the plate stays where it is
+   !> Reason why the plate does not move
    pure function why_plate_rests(case) result(reason)
       type(case_t), intent(in) :: case
-      !> The reason, empty where the plate moves
+      !> The reason; empty if it moves
       character(len=:), allocatable :: reason
 
       character(len=:), allocatable :: waves
@@ -244,10 +244,10 @@ contains
       end if
    end function why_plate_rests
 
-   !> Why there are no two bodies that combine in one way or another
+   !> Reason why the rule for pairs does not matter
    pure function why_no_pair(case) result(reason)
       type(case_t), intent(in) :: case
-      !> The reason, empty where there are
+      !> The reason; empty if it does
       character(len=:), allocatable :: reason
 
       reason = ''
@@ -263,12 +263,12 @@ contains
       end if
    end function why_no_pair
 
-   !> Why a material has no part in an impact
+   !> Reason why a material does not matter for the impact
    pure function why_material_is_unread(case, item) result(reason)
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
-      !> The reason, empty where it has
+      !> The reason; empty if it matters
       character(len=:), allocatable :: reason
 
       reason = ''
@@ -276,12 +276,12 @@ contains
          reason = 'neither the sphere nor the plate is of this material'
    end function why_material_is_unread
 
-   !> Why the density of the material of a body has no part in an impact
+   !> Reason why the density of a body's material does not matter for the impact
    pure function why_weightless(case, item) result(reason)
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
-      !> The reason, empty where it has
+      !> The reason; empty if it matters
       character(len=:), allocatable :: reason
 
       logical :: has_mass
@@ -298,7 +298,7 @@ contains
          if (body_model(case, 'plate') == 'rigid') then
             reason = reason//why_plate_rests(case)
          else
-            ! waves into a thick body, if none in a thin plate
+            ! it determines waves in a thick body even if there are none in a thin plate
             reason = ''
          end if
       end if
@@ -309,7 +309,7 @@ contains
       type(case_t), intent(in) :: case
       !> sphere or plate
       character(len=*), intent(in) :: body
-      !> Its model, empty where there is no such material
+      !> Its model; empty if there is no such material
       character(len=:), allocatable :: model
 
       integer :: item

@@ -1,4 +1,4 @@
-!> Values as they are written to values of a key's kind, and whether these are within its range
+!> Conversion of written values to the kind of a key, and the check of their ranges
 module vcor_case_values
    use vcor_case_case, only : entry_t
    use vcor_case_catalogue, only : integer_key, key_t, list_key, logical_key, real_key, text_key, &
@@ -14,7 +14,7 @@ module vcor_case_values
 
    public :: convert, convert_text, range_message
 
-   !> Most numbers of a list
+   !> Largest length of a list
    integer, parameter :: longest_list = 1000000
    !> Longest text [bytes]
    integer, parameter :: longest_text = 4096
@@ -22,14 +22,14 @@ module vcor_case_values
 
 contains
 
-   !> Convert the value of a command line option, where a text may stand without quotes
+   !> Convert the value of a command line option, in which a text needs no quotes
    subroutine convert_text(key, text, entry, message)
       type(key_t), intent(in) :: key
       !> The value or values
       character(len=*), intent(in) :: text
-      !> Entry whose value is set
+      !> Entry to set
       type(entry_t), intent(inout) :: entry
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       type(value_t), allocatable :: values(:)
@@ -46,18 +46,18 @@ contains
    !> Convert the values of a statement
    subroutine convert(key, text, values, entry, message)
       type(key_t), intent(in) :: key
-      !> The text the values stand in
+      !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
-      !> Entry whose value is set
+      !> Entry to set
       type(entry_t), intent(inout) :: entry
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: odd
 
-      ! the first value that is in quotes and should not be, or the other way round
+      ! the first value with quotes that it should not have, or without those that it needs
       odd = findloc(values%in_quotes .neqv. key%value_kind == text_key, .true., dim=1)
       if (any(values%repeats < 1)) then
          message = 'found a repeat count that is not a positive number, expected such as 3*1.0'
@@ -94,13 +94,13 @@ contains
    !> Convert a list of numbers
    subroutine convert_list(key, text, values, list, message)
       type(key_t), intent(in) :: key
-      !> The text the values stand in
+      !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
       !> The numbers, shape (sum of the repeat counts)
       real(wp), allocatable, intent(inout) :: list(:)
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       character(len=:), allocatable :: expected
@@ -129,12 +129,12 @@ contains
 
    !> Convert an integer
    subroutine convert_integer(key, word, number, message)
-      !> The key, for what is expected
+      !> The key, for the message
       type(key_t), intent(in) :: key
-      !> The integer as it is written
+      !> The integer as written
       character(len=*), intent(in) :: word
       real(wp), intent(out) :: number
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: first, status, whole
@@ -154,15 +154,15 @@ contains
 
    !> Convert a logical
    subroutine convert_logical(word, flag, message)
-      !> The logical as it is written
+      !> The logical as written
       character(len=*), intent(in) :: word
       !> 1 for true, 0 for false
       real(wp), intent(out) :: flag
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       flag = 0.0_wp
-      ! Fortran takes anything that begins with t or f, `false_start` and `tru` too
+      ! Fortran accepts anything that begins with t or f, even `false_start` and `tru`
       select case (lower(word))
       case ('t', 'true', '.t.', '.true.', '.t', '.true')
          flag = 1.0_wp
@@ -177,11 +177,11 @@ contains
    subroutine convert_string(key, word, string, message)
       !> The key, for its choices
       type(key_t), intent(in) :: key
-      !> The text in quotes, a doubled quote in it for one
+      !> The text in quotes, with quotes inside doubled
       character(len=*), intent(in) :: word
-      !> The text without quotes; a choice as the catalogue has it
+      !> The text without quotes; a choice as the catalogue spells it
       character(len=:), allocatable, intent(inout) :: string
-      !> What is wrong, unallocated on success
+      !> Message on failure, unallocated on success
       character(len=:), allocatable, intent(out) :: message
 
       integer :: i, n
@@ -208,10 +208,10 @@ contains
       end if
    end subroutine convert_string
 
-   !> What to say about more than one value where one is expected
+   !> Message about several values for a key that takes one
    pure function too_many(key, text, values) result(message)
       type(key_t), intent(in) :: key
-      !> The text the values stand in
+      !> Text with the values
       character(len=*), intent(in) :: text
       !> The values, shape (n), n >= 1
       type(value_t), intent(in) :: values(:)
@@ -224,7 +224,7 @@ contains
       associate (first => text(values(1)%first:values(1)%last), last => values(n)%last)
          message = 'found more than one value'
          if (n == 1) then
-            ! meant as arithmetic, which a namelist has not
+            ! meant as a product, which namelists do not have
             message = message//': '//integer_text(values(1)%repeats)//'*'//shortened(first) &
                //' is no product but '//shortened(first)//' given ' &
                //integer_text(values(1)%repeats)//' times, expected '//wanted(key)
@@ -241,12 +241,12 @@ contains
       end associate
    end function too_many
 
-   !> What to say about a word that is a number and a unit
+   !> Hint for a word that is a number with a unit
    pure function unit_behind(key, word) result(hint)
       type(key_t), intent(in) :: key
       !> Such as `70GPa`
       character(len=*), intent(in) :: word
-      !> Such as `; give 70e9, in Pa`; empty where the word is something else
+      !> Such as `; give 70e9, in Pa`; empty for any other word
       character(len=:), allocatable :: hint
 
       integer :: last
@@ -255,14 +255,14 @@ contains
       hint = unit_hint(key, word(:last), word(last + 1:))
    end function unit_behind
 
-   !> What to say about a number with a unit
+   !> Hint for a number with a unit
    pure function unit_hint(key, number, unit) result(hint)
       type(key_t), intent(in) :: key
-      !> The number as it is written
+      !> The number as written
       character(len=*), intent(in) :: number
-      !> What stands behind it
+      !> Text after it
       character(len=*), intent(in) :: unit
-      !> Such as `; give 70e9, in Pa`; empty where that is no unit for the key
+      !> Such as `; give 70e9, in Pa`; empty if it is no unit of the key
       character(len=:), allocatable :: hint
 
       character(len=*), parameter :: prefixes = 'numckMGT'
@@ -280,12 +280,12 @@ contains
       if (hint /= '') hint = '; give '//shortened(hint)//', in '//trim(key%unit)
    end function unit_hint
 
-   !> What is wrong with the value of an entry, as far as its range says
+   !> Message about a value out of range
    pure function range_message(key, entry) result(message)
-      !> The key, of the model of the entry's item
+      !> Row of the key for the model of the entry's item
       type(key_t), intent(in) :: key
       type(entry_t), intent(in) :: entry
-      !> Found and expected; empty when nothing is wrong
+      !> Found and expected; empty if the value is in range
       character(len=:), allocatable :: message
 
       integer :: i
@@ -317,7 +317,7 @@ contains
          if (.not. is_computable(entry%number)) message = message//', between 1e-60 and 1e60 in ' &
             //'magnitude: beyond that nothing can be computed'
       else if (key%choices /= '' .and. len_trim(entry%text) > 1) then
-         ! a single letter is near to every other
+         ! a single letter is near any other
          if (nearest_name(entry%text, trim(key%choices)) /= '') message = message &
             //"; did you mean '"//nearest_name(entry%text, trim(key%choices))//"'?"
       end if
