@@ -319,6 +319,13 @@ HEADS = "velocity [m/s],cor,contact_time [ms]\n"
 ROWS = "1,0.5,2.2\n2,0.52,2\n3,0.55,1.9\n"
 
 
+def test_a_column_without_a_number_is_nothing_to_be_warned_of(tmp_path, recwarn):
+    path = tmp_path / "drops.csv"
+    path.write_text("velocity;cor;contact_time [ms]\n1;0,5;\n2;0,4;\n")
+    assert np.isnan(Data(path).columns["contact_time"]).all()
+    assert not recwarn.list
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [

@@ -124,7 +124,7 @@ class Data:
                 raise InputError(f"{self.path}: column '{name}': {what}, expected {ours}")
             shift = 0.0 if name.endswith("_sigma") else zero
             self.columns[name] = np.array(values) * size + shift
-            warmest = np.nanmax(values, initial=0.0)
+            warmest = np.nan_to_num(values).max(initial=0.0)
             if expected == "K" and not unit and is_temperature(name) and warmest < _COLDEST:
                 raise InputError(f"{self.path}: column '{name}': found at most {warmest:g} K, "
                                  f"expected {name} [C] for degrees Celsius, or [K]")  # fmt: skip
