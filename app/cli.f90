@@ -1,4 +1,4 @@
-!> The command line as a request
+!> Parses the command line into a request
 module vcor_app_cli
    use, intrinsic :: iso_fortran_env, only : int8
    use vcor_app_commands, only : commands, missing_package, options_of, package_names
@@ -20,12 +20,12 @@ module vcor_app_cli
 
    public :: argument_t, request_t, get_arguments, sum_of_words, parse
 
-   !> A word
+   !> A word of the command line
    type :: argument_t
       character(len=:), allocatable :: text
    end type argument_t
 
-   !> What the user asks for
+   !> Request of the user
    type :: request_t
       !> One of `commands`, or version
       character(len=:), allocatable :: command
@@ -38,31 +38,31 @@ module vcor_app_cli
       !> Value of --output; unallocated without it
       character(len=:), allocatable :: directory
       integer :: threads = 0
-      !> Whether to go on with what is there
+      !> Whether to continue with existing results
       logical :: resume = .false.
-      !> Number of the shard, and how many there are; 0 without --shard
+      !> Index and number of shards; 0 without --shard
       integer :: shard = 0, shards = 0
       !> Times of --from, --to and --points
       type(time_range_t) :: range
-      !> Nothing on the screen but numbers that were asked for
+      !> Whether to print only requested numbers
       logical :: quiet = .false.
-      !> File of the JSON document of fit; allocated if help is to print one
+      !> File for the JSON document of fit; allocated if help prints JSON
       character(len=:), allocatable :: json
       !> Model to fit
       character(len=:), allocatable :: model
       !> Terms of a Prony series; 0: as many as the data support
       integer :: terms = 0
-      !> Parameters that a fit is given, shape (n)
+      !> Fixed parameters of a fit, shape (n)
       type(estimate_t), allocatable :: fixed(:)
-      !> What the options say about a file of moduli
+      !> Options about a file of moduli
       type(reading_t) :: reading
-      !> Density of a fitted material [kg/m3]; 0: not given
+      !> Density of a fitted material [kg/m3]; 0: unknown
       real(wp) :: density = 0.0_wp
-      !> Name of a fitted material; unallocated: made from that of the file
+      !> Name of a fitted material; unallocated: from the name of the file
       character(len=:), allocatable :: name
-      !> Case, and perhaps material, that is sampled in place of data; unallocated: none
+      !> Case, with or without a material, to sample instead of data; unallocated: none
       character(len=:), allocatable :: source
-      !> Whether storage and loss modulus are sampled
+      !> Whether to sample storage and loss modulus
       logical :: dynamic = .false.
    end type request_t
 
@@ -82,7 +82,7 @@ contains
       end do
    end subroutine get_arguments
 
-   !> A number that tells command lines apart; what follows --threads does not count
+   !> Check sum by which ranks compare their command lines; the value of --threads is ignored
    pure function sum_of_words(words) result(sum)
       type(argument_t), intent(in) :: words(:)
       integer :: sum
@@ -116,7 +116,7 @@ contains
       call move_alloc(longer, words)
    end subroutine append
 
-   !> Understand the command line
+   !> Parse the command line
    subroutine parse(words, request, error)
       !> Words after the name of the program
       type(argument_t), intent(in) :: words(:)
@@ -173,7 +173,7 @@ contains
          end if
          if (name == '-h') name = '--help'
 
-         ! --option=value, or the value is the next word
+         ! --option=value; otherwise the value is the next word
          mark = index(name, '=')
          if (mark > 0) name = name(:mark - 1)
          if (.not. contains_word(options_of(request%command), name)) then
@@ -215,11 +215,11 @@ contains
       call check_request(request, error)
    end subroutine parse
 
-   !> Set what an option stands for
+   !> Apply an option to a request
    subroutine apply(request, option, value, error)
       type(request_t), intent(inout) :: request
       character(len=*), intent(in) :: option
-      !> Its value, empty if it takes none
+      !> Its value; empty if it takes none
       character(len=*), intent(in) :: value
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -282,7 +282,7 @@ contains
       end select
    end subroutine apply
 
-   !> Take the name of a file or a folder
+   !> Read the name of a file or a folder
    subroutine read_name(option, value, name, error)
       character(len=*), intent(in) :: option, value
       character(len=:), allocatable, intent(out) :: name
@@ -294,7 +294,7 @@ contains
          //printable(value)//"' "//name_flaw(value)//', expected another name')
    end subroutine read_name
 
-   !> Take a parameter of --fix
+   !> Read a parameter of --fix
    subroutine add_fixed(value, request, error)
       !> KEY=VALUE
       character(len=*), intent(in) :: value
@@ -317,11 +317,11 @@ contains
       request%fixed = [request%fixed, parameter]
    end subroutine add_fixed
 
-   !> Take the units of --units: time and modulus, or frequency and one or two moduli
+   !> Read the units of --units: time and modulus, or frequency and one or two moduli
    subroutine take_units(list, reading, error)
-      !> Units with commas between them
+      !> Units separated by commas
       character(len=*), intent(in) :: list
-      !> What the options say about the file
+      !> Options about the file
       type(reading_t), intent(inout) :: reading
       !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -360,10 +360,10 @@ contains
       end if
    end subroutine take_units
 
-   !> Whether the parts of a request go together
+   !> Check that the parts of a request are compatible
    subroutine check_request(request, error)
       type(request_t), intent(in) :: request
-      !> Error of code `error_usage`, unallocated if they do
+      !> Error of code `error_usage`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       if (size(request%files) == 0) then
@@ -373,7 +373,7 @@ contains
          case ('merge')
             call raise(error, error_usage, 'no files; expected vcor merge STEM_shard_*.h5')
          case default
-            ! verify needs a case for settings only
+            ! verify requires a case only if there are settings
             if (request%command /= 'verify' .or. size(request%settings) > 0) &
                call raise(error, error_usage, 'no case file; expected vcor '//request%command &
                //' CASE.nml')
@@ -410,7 +410,7 @@ contains
       call read_whole('--shard', value(:mark - 1), 1, request%shards, request%shard, error)
    end subroutine read_shard
 
-   !> Take the names of --print
+   !> Read the names of --print
    subroutine add_names(list, request, error)
       !> Names separated by commas
       character(len=*), intent(in) :: list
@@ -425,7 +425,7 @@ contains
       do while (first <= len(list) + 1)
          last = first + index(list(first:)//',', ',') - 2
          name = trim(adjustl(list(first:last)))
-         ! what has a dot is a parameter of a sweep, and whether there is one the case says
+         ! a name with a dot is a swept parameter, which is checked with the case
          if (index(name, '.') == 0 .and. .not. contains_word(quantity_names(), name)) then
             call raise(error, error_usage, "unknown name '"//printable(name)//"' in --print; " &
                //suggestion(name, quantity_names()))
@@ -436,7 +436,7 @@ contains
       end do
    end subroutine add_names
 
-   !> Read a whole number between two others
+   !> Read a whole number within limits
    subroutine read_whole(option, value, least, most, number, error)
       character(len=*), intent(in) :: option, value
       integer, intent(in) :: least, most
@@ -477,7 +477,7 @@ contains
    !> Read a number
    subroutine read_number(option, value, expected, number, error)
       character(len=*), intent(in) :: option, value
-      !> What is expected, for the message
+      !> Expected value, for the message
       character(len=*), intent(in) :: expected
       real(wp), intent(out) :: number
       !> Error of code `error_usage`, unallocated on success

@@ -1,5 +1,5 @@
-!> The commands and their options, in one table: the parser takes its list of options from it, the
-!> screens of help, `vcor help --json` and with it the manual their text.
+!> The commands and their options in one table, from which the parser takes its options, and the
+!> screens of help, `vcor help --json` and through it the manual their text.
 module vcor_app_commands
    implicit none
    private
@@ -7,16 +7,16 @@ module vcor_app_commands
    public :: entry_t, command_names, package_commands, page_of, options_of, texts_of
    public :: missing_package, commands, package_names
 
-   !> One line of a command's page. Backquotes stand around what is to be typed as it is
+   !> One entry on the page of a command. Backquotes enclose literal input
    type :: entry_t
       !> `command`, which begins a page; `usage`, `summary` or `example`; an option with the name of
-      !> its value; another word that is explained; blank: a paragraph
+      !> its value; another explained word; blank: a paragraph
       character(len=32) :: term
-      !> What is to be said
+      !> Its text
       character(len=560) :: text
    end type entry_t
 
-   !> The pages, one after the other
+   !> The pages, in order
    type(entry_t), parameter :: pages(*) = [ &
       entry_t("command", "run"), &
       entry_t("usage", "vcor run CASE.nml ... [options]"), &
@@ -196,7 +196,7 @@ module vcor_app_commands
    character(len=8), parameter :: command_names(*) = &
       pack([(pages(k)%text(:8), k=1, size(pages))], pages%term == "command")
 
-   !> Commands of the Python package, which are programs of their own, and what each does
+   !> Commands of the Python package, which are separate programs, and their summaries
    type(entry_t), parameter :: package_commands(*) = [ &
       entry_t("plot", "draw figures of results"), &
       entry_t("identify", "find materials from measured impacts, and what the data leave open"), &
@@ -221,7 +221,7 @@ contains
       names = words_of(package_commands%term)
    end function package_names
 
-   !> Words with blanks between them
+   !> Words separated by blanks
    pure function words_of(list) result(words)
       character(len=*), intent(in) :: list(:)
       character(len=:), allocatable :: words
@@ -234,7 +234,7 @@ contains
       end do
    end function words_of
 
-   !> What to do about a command of the Python package that is not there
+   !> Advice if a command of the Python package is not installed
    pure function missing_package(word) result(text)
       character(len=*), intent(in) :: word
       !> One line; empty if the package has no such command
@@ -250,7 +250,7 @@ contains
    pure function page_of(command) result(page)
       !> One of `commands`
       character(len=*), intent(in) :: command
-      !> Its page; of no entries for another word
+      !> Its page; shape (0) for any other word
       type(entry_t), allocatable :: page(:)
 
       integer :: i, number
@@ -264,9 +264,9 @@ contains
    pure function options_of(command, flags_only) result(words)
       !> One of `commands`
       character(len=*), intent(in) :: command
-      !> Whether only those that take no value are wanted; absent: all are
+      !> Whether to return only options without a value; absent: all
       logical, intent(in), optional :: flags_only
-      !> Its options, with those that all commands have
+      !> Its options, including those of all commands
       character(len=:), allocatable :: words
 
       type(entry_t), allocatable :: page(:)
@@ -283,7 +283,7 @@ contains
       words = words//"--help --version"
    end function options_of
 
-   !> The texts of one kind on a page
+   !> Texts of one kind on a page
    pure function texts_of(command, term) result(texts)
       !> One of `commands`
       character(len=*), intent(in) :: command

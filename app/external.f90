@@ -1,4 +1,4 @@
-!> Commands that other packages bring: `vcor NAME ...` is `vcor-NAME ...` if PATH has such a program
+!> Commands of other packages: `vcor NAME ...` runs `vcor-NAME ...` if PATH has such a program
 module vcor_app_external
    use, intrinsic :: iso_c_binding, only : c_char, c_f_pointer, c_int, c_loc, &
       c_null_char, c_null_ptr, c_ptr, c_size_t
@@ -11,15 +11,15 @@ module vcor_app_external
 
    public :: run_external, external_commands
 
-   !> Letters of the name of a command
+   !> Characters in the name of a command
    character(len=*), parameter :: letters = 'abcdefghijklmnopqrstuvwxyz0123456789_'
 
    !> Longest name that is listed [bytes]
    integer, parameter :: longest = 64
 
-   !> A word for C
+   !> A C string
    type :: c_word_t
-      !> Its letters and a null
+      !> Its characters and a null
       character(kind=c_char), allocatable :: letters(:)
    end type c_word_t
 
@@ -29,12 +29,12 @@ module vcor_app_external
       integer(c_size_t) :: count = 0
       !> Pointers to them, shape (count)
       type(c_ptr) :: paths = c_null_ptr
-      !> What else there is, with room to spare
+      !> Remaining components, with spare room
       integer(c_size_t) :: rest(16) = 0
    end type glob_t
 
    interface
-      !> Become another program, found in PATH; comes back on failure only
+      !> Replace the process by another program, found in PATH; returns only on failure
       function c_execvp(file, arguments) bind(c, name='execvp') result(status)
          import :: c_int, c_ptr
          !> Its name
@@ -44,12 +44,12 @@ module vcor_app_external
          integer(c_int) :: status
       end function c_execvp
 
-      !> Paths that a pattern fits
+      !> Paths that match a pattern
       function c_glob(pattern, flags, handler, found) bind(c, name='glob') result(status)
          import :: c_char, c_int, c_ptr, glob_t
          character(kind=c_char), intent(in) :: pattern(*)
          integer(c_int), value :: flags
-         !> What is called on an error, null: nothing
+         !> Called on an error; null: nothing
          type(c_ptr), value :: handler
          type(glob_t), intent(inout) :: found
          integer(c_int) :: status
@@ -61,7 +61,7 @@ module vcor_app_external
          type(glob_t), intent(inout) :: found
       end subroutine c_globfree
 
-      !> 0 if a file may be used in this mode
+      !> 0 if a file may be accessed in this mode
       function c_access(path, mode) bind(c, name='access') result(status)
          import :: c_int, c_ptr
          type(c_ptr), value :: path
@@ -72,8 +72,8 @@ module vcor_app_external
 
 contains
 
-   !> Become the program that the first word names, or that `help` is asked about; comes back if the
-   !> word is a command, or no name, or there is no such program
+   !> Run the program of the first word, or of the topic of `help`; returns if the word is a
+   !> built-in command or no name, or if there is no such program
    subroutine run_external(words)
       !> Words after the name of the program
       type(argument_t), intent(in) :: words(:)
@@ -104,9 +104,9 @@ contains
       status = c_execvp(arguments(1), arguments)
    end subroutine run_external
 
-   !> The commands that programs of PATH bring
+   !> Commands for which PATH has programs
    function external_commands() result(names)
-      !> Their names, each once, shape (n)
+      !> Their names without duplicates, shape (n)
       character(len=longest), allocatable :: names(:)
 
       integer(c_int), parameter :: mark_folders = 2, may_run = 1

@@ -1,5 +1,5 @@
-!> The files of a case: their names, what is in their place before, and writing them; and the bare
-!> numbers of `--print`
+!> The files of a case: their names, previous results in their place, and writing them; and the
+!> plain numbers of `--print`
 module vcor_app_files
    use, intrinsic :: iso_fortran_env, only : error_unit, int64
    use vcor_app_cli, only : request_t
@@ -22,12 +22,12 @@ module vcor_app_files
    public :: files_t, name_files, write_files, write_numbers
    public :: previous_t, find_previous, check_finished, replacement_note, remark
 
-   !> Letters of the longest ending
+   !> Length of the longest ending
    integer, parameter :: longest_ending = 24
-   !> What the names of the files of run end with
+   !> Endings of the file names of run
    character(len=*), parameter :: run_endings(3) = [character(len=longest_ending) :: &
       '_summary.csv', '.csv', '.h5']
-   !> What the names of the files of material end with
+   !> Endings of the file names of material
    character(len=*), parameter :: material_endings(4) = [character(len=longest_ending) :: &
       '_material.csv', '_material_relaxation.csv', '_material_dynamic.csv', '_material.h5']
 
@@ -35,25 +35,25 @@ module vcor_app_files
    type :: files_t
       !> Directory and stem
       character(len=:), allocatable :: path
-      !> What their names end with
+      !> Endings of the names
       character(len=longest_ending), allocatable :: endings(:)
-      !> Which of them are written, in the order of `endings`
+      !> Whether each is written, in the order of `endings`
       logical, allocatable :: writes(:)
-      !> Whether there is a time history in them
+      !> Whether a time history is written
       logical :: history = .true.
    contains
       procedure :: name, written, directory
    end type files_t
 
-   !> Results that are there
+   !> Existing results
    type :: previous_t
       !> Whether there are any
       logical :: exist = .false.
-      !> Whether the HDF5 file is there
+      !> Whether there is an HDF5 file
       logical :: has_hdf5 = .false.
-      !> File that was looked into
+      !> File that was examined
       character(len=:), allocatable :: path
-      !> Why it is not about the same as the run; unallocated if it is
+      !> Difference from the identity of the run; unallocated if they agree
       type(error_t), allocatable :: objection
    end type previous_t
 
@@ -70,7 +70,7 @@ contains
       if (self%writes(i)) name = self%path//trim(self%endings(i))
    end function name
 
-   !> Names of the files that are written, one to a line of the screen
+   !> Names of the written files, one per line of the screen
    pure function written(self) result(text)
       class(files_t), intent(in) :: self
       character(len=:), allocatable :: text
@@ -83,17 +83,17 @@ contains
       end do
    end function written
 
-   !> Find out which files a case writes, and where
+   !> Find which files a case writes, and where
    subroutine name_files(request, case, grid, is_alone, files, part, error)
       type(request_t), intent(in) :: request
       !> A case that was read
       type(case_t), intent(in) :: case
       !> Its points
       type(grid_t), intent(in) :: grid
-      !> Whether it is the only one
+      !> Whether it is the only case
       logical, intent(in) :: is_alone
       type(files_t), intent(out) :: files
-      !> Points that are solved: all, or those of --shard
+      !> Points to solve: all, or those of --shard
       type(part_t), intent(out) :: part
       type(error_t), allocatable, intent(out) :: error
 
@@ -111,7 +111,7 @@ contains
       call case%get('output', 'csv', csv)
       call case%get('output', 'hdf5', hdf5)
       call case%get('output', 'history', files%history)
-      ! a time history is that of one impact
+      ! only a single impact has a time history
       files%history = files%history .and. size(grid%axes) == 0
       if (request%command == 'material') then
          files%endings = material_endings
@@ -120,11 +120,11 @@ contains
          files%endings = run_endings
          files%writes = [csv, csv .and. files%history, hdf5]
       end if
-      ! bare numbers are for scripts, which would be surprised by files
+      ! plain numbers are for scripts, which do not expect files
       if (size(request%names) > 0 .and. .not. allocated(request%directory)) files%writes = .false.
       if (request%command == 'verify' .or. request%command == 'fit') files%writes = .false.
       files%history = files%history .and. any(files%writes)
-      ! what vcor merge reads
+      ! the file that vcor merge reads
       if (request%shards > 0) files%writes = [.false., .false., .true.]
       if (is_alone) call take_file_name(request, files)
       if (request%shards > 0) files%path = files%path//'_shard_'//integer_text(request%shard) &
@@ -133,12 +133,12 @@ contains
          '--resume: no file is written that could be resumed; --print needs --output for it')
    end subroutine name_files
 
-   !> Check a name that files are written under
+   !> Check a name under which files are written
    subroutine check_name(case, key, name, error)
       type(case_t), intent(in) :: case
       !> Key of &output
       character(len=*), intent(in) :: key
-      !> Its value, or what stands for it
+      !> Its value, or the option in its place
       character(len=*), intent(in) :: name
       !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -150,7 +150,7 @@ contains
          //printable(name)//"' "//flaw//', expected another name', error)
    end subroutine check_name
 
-   !> Take the part of --shard
+   !> Determine the part of the sweep from --shard
    subroutine take_shard(request, case, grid, part, error)
       type(request_t), intent(in) :: request
       type(case_t), intent(in) :: case
@@ -171,11 +171,11 @@ contains
       end if
    end subroutine take_shard
 
-   !> The value of --output is the file itself, where one file is written and the name ends as its
-   !> name does
+   !> Take the value of --output as the name of the file if a single file is written and the value
+   !> has its ending
    subroutine take_file_name(request, files)
       type(request_t), intent(in) :: request
-      !> The files, whose path and ending change
+      !> The files; path and ending change
       type(files_t), intent(inout) :: files
 
       character(len=:), allocatable :: directory, extension, name
@@ -199,7 +199,7 @@ contains
    !> Directory of the files
    pure function directory(self)
       class(files_t), intent(in) :: self
-      !> Its path, empty for the current one
+      !> Its path; empty for the current one
       character(len=:), allocatable :: directory
 
       integer :: slash
@@ -209,18 +209,18 @@ contains
       directory = self%path(:slash)
    end function directory
 
-   !> Write the files of a case: a text for each table, and all of them as HDF5. That comes last:
-   !> where it is there, all is there
+   !> Write the files of a case: a CSV file per table, then all tables as HDF5, which comes last
+   !> because it marks complete results
    subroutine write_files(files, tables, lines, error, data, threads)
       type(files_t), intent(in) :: files
       !> Tables in the order of the files, shape (n)
       type(table_t), intent(in) :: tables(:)
-      !> What was written, one to a line of the screen
+      !> Written files, one per line of the screen
       character(len=:), allocatable, intent(out) :: lines
       type(error_t), allocatable, intent(out) :: error
-      !> Sum over the data files of the case, for `--resume`
+      !> Check sum of the data files of the case, for `--resume`
       character(len=*), intent(in), optional :: data
-      !> Threads that turn numbers into text, absent: 1
+      !> Threads that convert numbers to text; absent: 1
       integer, intent(in), optional :: threads
 
       integer :: i
@@ -238,7 +238,7 @@ contains
       if (.not. allocated(error)) lines = files%written()
    end subroutine write_files
 
-   !> Bare numbers for --print, a line per impact
+   !> Write plain numbers for --print, a line per impact
    subroutine write_numbers(request, summary, error)
       type(request_t), intent(in) :: request
       type(table_t), intent(in) :: summary
@@ -250,10 +250,10 @@ contains
          i=1, size(request%names))], error)
    end subroutine write_numbers
 
-   !> Look for results
+   !> Find existing results
    subroutine find_previous(files, expected, previous)
       type(files_t), intent(in) :: files
-      !> What they should be about
+      !> Their expected identity
       type(identity_t), intent(in) :: expected
       type(previous_t), intent(out) :: previous
 
@@ -261,7 +261,7 @@ contains
       type(error_t), allocatable :: damage
       integer :: i
 
-      ! HDF5 first; a history says nothing that the others do not
+      ! HDF5 first; the history adds no information
       do i = 3, 1, -2
          previous%path = files%name(i)
          if (files%writes(i)) previous%exist = plain_file_exists(previous%path)
@@ -285,15 +285,15 @@ contains
       end if
    end subroutine find_previous
 
-   !> Whether there is nothing to do: with --resume, where the results are there
+   !> With --resume, find whether the results are complete, so that nothing remains to do
    subroutine check_finished(request, files, previous, points, is_finished, error)
       type(request_t), intent(in) :: request
       type(files_t), intent(in) :: files
       type(previous_t), intent(in) :: previous
-      !> Number of points that the results are of
+      !> Number of points of the results
       integer, intent(in) :: points
       logical, intent(out) :: is_finished
-      !> With --resume: what is there is about something else
+      !> With --resume, an error if the results have another identity
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: text
@@ -314,14 +314,14 @@ contains
       end if
    end subroutine check_finished
 
-   !> Whether all files are there, and the CSV files have all of their rows
+   !> Whether all files exist and the CSV files have all their rows
    function is_whole(files, previous, points)
       type(files_t), intent(in) :: files
-      !> What is there, about this case
+      !> Existing results of this case
       type(previous_t), intent(in) :: previous
-      !> Number of points that the results are of
+      !> Number of points of the results
       integer, intent(in) :: points
-      !> Whether nothing is missing
+      !> Whether the results are complete
       logical :: is_whole
 
       type(identity_t) :: identity
@@ -347,19 +347,19 @@ contains
       if (is_whole) is_whole = rows == expected
    end function is_whole
 
-   !> Nobody's results are replaced in silence
+   !> Note about results that are replaced
    function replacement_note(previous) result(text)
       type(previous_t), intent(in) :: previous
-      !> What there is to say: nothing if there was nothing else
+      !> The note; empty if no other results are replaced
       character(len=:), allocatable :: text
 
       text = ''
       if (allocated(previous%objection)) text = 'replaced: '//previous%objection%message
    end function replacement_note
 
-   !> One line on stderr that is no error
+   !> Write a note to stderr
    subroutine remark(text)
-      !> What to say; nothing is fine
+      !> The note; ignored if empty
       character(len=*), intent(in) :: text
 
       if (len(text) == 0) return

@@ -30,21 +30,21 @@ module vcor_app_fit
 
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
-   !> What is said of misfits that are no noise
+   !> Message about systematic misfits
    character(len=*), parameter :: no_noise = 'the model does not follow the data: its misfits ' &
       //'are no noise'
 
-   !> Poisson's ratio where none is given: that of rubber, which is incompressible
+   !> Poisson's ratio if none is given: that of rubber, which is incompressible
    real(wp), parameter :: incompressible = 0.5_wp
 
-   !> Decades before and after the contact time that are sampled unless the user says otherwise
+   !> Decades before and after the contact time that are sampled by default
    integer, parameter :: before = 5, after = 1
 
-   !> What was sampled
+   !> A sampled material
    type :: sampled_t
       !> The impact of the case
       type(window_t) :: window
-      !> Number of the material in the case
+      !> Index of the material in the case
       integer :: item = 0
       class(material_t), allocatable :: material
    end type sampled_t
@@ -122,7 +122,7 @@ contains
       call write_stdout(fit_report(fit, source, note, samples, tail)//remarks//group, error)
    end subroutine fit_data
 
-   !> See whether the options of fit go together
+   !> Check that the options of fit are compatible
    subroutine check_wish(request, error)
       type(request_t), intent(in) :: request
       !> Error of code `error_usage`, unallocated on success
@@ -155,16 +155,16 @@ contains
       end if
    end subroutine check_wish
 
-   !> Where the group goes: a file, or a file in a directory; no file that was read is replaced
+   !> Choose the file of the group, --output or a file in that directory, but none that was read
    subroutine choose_path(output, source, sampled, path, error)
       !> Value of --output
       character(len=*), intent(in) :: output
-      !> The data file, or the case
+      !> The data file or the case
       character(len=*), intent(in) :: source
-      !> What was sampled, if it was
+      !> The sampled material, if any
       type(sampled_t), intent(in) :: sampled
       character(len=:), allocatable, intent(out) :: path
-      !> Of code `error_input` if the file is one that was read; unallocated on success
+      !> Error of code `error_input` if the file was read; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: name
@@ -192,11 +192,11 @@ contains
    subroutine keep_what_was_read(name, source, sampled, error)
       !> Name of a file to be written
       character(len=*), intent(in) :: name
-      !> The data file, or the case
+      !> The data file or the case
       character(len=*), intent(in) :: source
-      !> What was sampled, if it was
+      !> The sampled material, if any
       type(sampled_t), intent(in) :: sampled
-      !> Of code `error_input`, unallocated on success
+      !> Error of code `error_input`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       logical :: taken
@@ -210,7 +210,7 @@ contains
          //name//', which is read: give another name')
    end subroutine keep_what_was_read
 
-   !> Name of a file without folder and ending
+   !> Name of a file without directory and ending
    pure function stem_of(path) result(stem)
       character(len=*), intent(in) :: path
       character(len=:), allocatable :: stem
@@ -229,7 +229,7 @@ contains
       character(len=*), intent(in) :: source
       type(sampled_t), intent(out) :: sampled
       type(samples_t), intent(out) :: samples
-      !> What they are, in words
+      !> Description of the samples
       character(len=:), allocatable, intent(out) :: note
       type(error_t), allocatable, intent(out) :: error
 
@@ -278,11 +278,11 @@ contains
          //'modulus vanishes in the range of the samples, expected a narrower one (--from, --to)')
    end subroutine sample_model
 
-   !> Temperature of a material that is shifted from that of its constants, ' at 303.15 K': a fit
-   !> has no shift
+   !> Temperature of a sampled material that is shifted from its constants, ' at 303.15 K', because
+   !> the fit has no shift
    function place_of_shift(sampled) result(text)
       type(sampled_t), intent(in) :: sampled
-      !> The words; empty for other materials and for data
+      !> The text; empty for other materials and for data
       character(len=:), allocatable :: text
 
       text = ''
@@ -294,12 +294,12 @@ contains
       end associate
    end function place_of_shift
 
-   !> Take CASE.nml:NAME apart; a file of this name is a case
+   !> Split CASE.nml:NAME; an existing file of that name is a case
    subroutine take_name(source, filename, name)
-      !> What the user gave
+      !> Argument of the option
       character(len=*), intent(in) :: source
       character(len=:), allocatable, intent(out) :: filename
-      !> The material, empty where none is named
+      !> The material; empty if none is named
       character(len=:), allocatable, intent(out) :: name
 
       integer :: mark
@@ -313,9 +313,9 @@ contains
       name = source(mark + 1:)
    end subroutine take_name
 
-   !> Find the material: the one that is named, else that of the plate unless it is rigid
+   !> Find the material: the named one, otherwise the plate's if it relaxes, or the sphere's
    subroutine find_material(sampled, filename, name, error)
-      !> What is sampled, its case set
+      !> The sampled material, its case set
       type(sampled_t), intent(inout) :: sampled
       character(len=*), intent(in) :: filename
       !> Name of the material, or empty
@@ -355,11 +355,11 @@ contains
       end associate
    end subroutine find_material
 
-   !> The impact of the case with the material that was sampled and with the one that was found
+   !> Compare the impact of the case with the sampled material and with the fitted one
    function compare_impacts(sampled, data) result(text)
       type(sampled_t), intent(in) :: sampled
       type(material_data_t), intent(in) :: data
-      !> Line, or nothing where the impact has no result
+      !> A line; empty if the impact has no result
       character(len=:), allocatable :: text
 
       type(case_t) :: case
@@ -390,7 +390,7 @@ contains
       character(len=*), intent(in) :: source
       character(len=*), intent(in) :: note
       type(samples_t), intent(in) :: samples
-      !> Notes and files, one to a line
+      !> Notes and files, one per line
       character(len=*), intent(in) :: tail
       character(len=:), allocatable :: text
 
@@ -417,10 +417,10 @@ contains
       text = text//tail//nl
    end function fit_report
 
-   !> Remarks before a group: what it was fitted to and how well
+   !> Comments before a group: the data of the fit, and its quality
    function fit_remarks(fit, source, samples) result(text)
       type(fit_t), intent(in) :: fit
-      !> What it was fitted to, printable
+      !> Source of the data, printable
       character(len=*), intent(in) :: source
       type(samples_t), intent(in) :: samples
       character(len=:), allocatable :: text
@@ -443,8 +443,8 @@ contains
       end do
    end function fit_remarks
 
-   !> Whether the equilibrium modulus of a series is only what has not relaxed when the data end,
-   !> and the material may go on to relax all of it
+   !> Whether the equilibrium modulus of a series may be only what has not relaxed by the end of the
+   !> data, of which later relaxation may leave nothing
    pure function is_open(fit) result(yes)
       type(fit_t), intent(in) :: fit
       logical :: yes
@@ -455,7 +455,7 @@ contains
       end associate
    end function is_open
 
-   !> Most that the first parameter can be, three standard errors above it
+   !> Upper limit of the first parameter, three standard errors above its value
    pure function most_of(fit) result(value)
       type(fit_t), intent(in) :: fit
       real(wp) :: value
@@ -466,7 +466,7 @@ contains
    !> Number of terms of a Prony series
    function terms_of(fit) result(text)
       type(fit_t), intent(in) :: fit
-      !> In words; nothing for other models
+      !> In words; empty for other models
       character(len=:), allocatable :: text
 
       text = ''
@@ -475,7 +475,7 @@ contains
       if (size(fit%data%list('moduli')) == 1) text = ', 1 term'
    end function terms_of
 
-   !> Where the largest misfit is
+   !> Place of the largest misfit
    pure function place_of(fit, samples) result(text)
       type(fit_t), intent(in) :: fit
       type(samples_t), intent(in) :: samples
@@ -490,11 +490,11 @@ contains
       end if
    end function place_of
 
-   !> Under what condition a standard error is one
+   !> Condition for the validity of a standard error
    pure function condition(fit, i) result(text)
       type(fit_t), intent(in) :: fit
       integer, intent(in) :: i
-      !> In words; nothing where the data show all that counts
+      !> In words; empty if the data show all that matters
       character(len=:), allocatable :: text
 
       text = ' if the model holds '
@@ -530,7 +530,7 @@ contains
          else
             text = text//'+- '//short(parameter%error)
             if (parameter%state == state_bound) text = text//', at its bound'
-            ! not even its order of magnitude; of what is 0 the error is a limit
+            ! not even the order of magnitude is known; for a value of 0 the error is a limit
             if (parameter%value > 0.0_wp .and. .not. parameter%error < parameter%value) then
                text = text//', the data do not determine it'
             else

@@ -1,5 +1,5 @@
-!> Help: screens about the commands and about the words of the input and the output, and everything
-!> in one JSON document, `vcor help --json`, which scripts/manual.py makes the manual of
+!> Help: screens about commands and about words of input and output, and all of it as a JSON
+!> document, `vcor help --json`, from which scripts/manual.py makes the manual
 module vcor_app_help
    use vcor_app_commands, only : command_names, commands, entry_t, missing_package, options_of, &
       package_commands, page_of, texts_of
@@ -22,9 +22,9 @@ module vcor_app_help
    character(len=*), parameter :: nl = new_line("a")
    !> Longest line of a page
    integer, parameter :: width = 86
-   !> Column before the meaning of an option, a key or a column
+   !> Column of the meaning of an option, a key or a column
    integer, parameter :: margin = 30
-   !> What the screen of a run shows and no column holds: its words, between blanks, and what it is
+   !> Items on the screen of a run that are not columns: their words, between blanks, and meanings
    character(len=*), parameter :: screen_words(*) = [character(len=40) :: &
       " KE_1 ", " exponentials kernel ", " +- "]
    character(len=*), parameter :: screen_meanings(size(screen_words)) = [character(len=480) :: &
@@ -41,8 +41,8 @@ contains
 
    !> A help page
    subroutine help_text(topic, text, error)
-      !> Topic, empty for the overview; also a group, a key or a choice of the input, a column or a
-      !> status of the output
+      !> Topic; empty for the overview. It may also be a group, a key or a choice of the input, or a
+      !> column or a status of the output
       character(len=*), intent(in) :: topic
       character(len=:), allocatable, intent(out) :: text
       !> Error of code `error_usage`, unallocated on success
@@ -66,7 +66,7 @@ contains
             call raise(error, error_usage, missing_package(topic))
             return
          end if
-         ! too many words to list, but not too many to search for a near one
+         ! too many words to list, but they can be searched for a similar one
          words = commands()//" input output"//all_words()
          if (nearest_name(topic, words) == "") then
             text = suggestion(topic, commands()//" input output") &
@@ -138,7 +138,7 @@ contains
          if (page(i)%term == "") kind = "paragraph"
          if (any(page(i)%term == ["usage  ", "summary", "example"])) kind = trim(page(i)%term)
          if (index(page(i)%term, "--") == 1) kind = "option"
-         ! a blank line before each paragraph, and between things of different kinds
+         ! a blank line before each paragraph, and between different kinds
          if (kind == "paragraph" .or. (kind /= before .and. any(kind == ["option ", "example"]))) &
             text = text//nl
          select case (kind)
@@ -158,13 +158,13 @@ contains
       end do
    end function command_page
 
-   !> What the input and the output are made of, as far as it is about a topic
+   !> The parts of input and output about a topic
    function words_page(topic) result(text)
-      !> `input`: all keys; `output`: the columns of the summary and the statuses; or a word: the
-      !> name of a group, KEY, GROUP.KEY, a choice of a key, such as a model, name or symbol of a
-      !> column, name of a status, a word of the screen
+      !> `input`: all keys; `output`: columns of the summary, and statuses; or a word: the name of a
+      !> group, KEY, GROUP.KEY, a choice of a key, such as a model, name or symbol of a column, name
+      !> of a status, a word of the screen
       character(len=*), intent(in) :: topic
-      !> Lines below headings, empty if the word is unknown
+      !> Lines under headings; empty if the word is unknown
       character(len=:), allocatable :: text
 
       type(key_t), allocatable :: keys(:)
@@ -204,12 +204,12 @@ contains
 
    contains
 
-      !> Show lines below their heading if they are about the topic
+      !> Show lines under their heading if they are about the topic
       subroutine show(page, lines, about)
-         !> Page that has them in any case, empty: none
+         !> Page on which they are always shown; empty: none
          character(len=*), intent(in) :: page
          character(len=*), intent(in) :: lines
-         !> Words that they are about
+         !> Words of these lines
          character(len=*), intent(in) :: about
 
          if (.not. merge(topic == page, contains_word(about, topic), &
@@ -222,7 +222,7 @@ contains
 
       !> Show columns of a file
       subroutine show_columns(page, columns)
-         !> Page that has them in any case, empty: none
+         !> Page on which they are always shown; empty: none
          character(len=*), intent(in) :: page
          type(quantity_t), intent(in) :: columns(:)
 
@@ -240,7 +240,7 @@ contains
       end subroutine show_columns
    end function words_page
 
-   !> What a key means and takes
+   !> Meaning and values of a key
    function about(key) result(words)
       type(key_t), intent(in) :: key
       !> Meaning, unit, range, default, models
@@ -258,7 +258,7 @@ contains
       if (key%models /= "") words = words//"; "//trim(key%models)
    end function about
 
-   !> All words of the input and the output but GROUP.KEY, a blank before each
+   !> All words of input and output except GROUP.KEY, each after a blank
    function all_words() result(words)
       character(len=:), allocatable :: words
 
@@ -276,9 +276,9 @@ contains
       end do
    end function all_words
 
-   !> A term and what it means
+   !> A term and its meaning
    pure function item(term, words) result(text)
-      !> The term, with the blanks before it
+      !> The term, indented
       character(len=*), intent(in) :: term
       character(len=*), intent(in) :: words
       character(len=:), allocatable :: text
@@ -289,12 +289,12 @@ contains
       text = wrapped(start, trim(words), margin)
    end function item
 
-   !> A text in lines that end at a blank
+   !> A text broken into lines at blanks
    pure function wrapped(start, words, indent) result(text)
-      !> What the first line begins with
+      !> Start of the first line
       character(len=*), intent(in) :: start
       character(len=*), intent(in) :: words
-      !> Blanks before the other lines
+      !> Indentation of the other lines
       integer, intent(in) :: indent
       !> Lines of at most `width` characters
       character(len=:), allocatable :: text
@@ -330,7 +330,7 @@ contains
       end do
    end function plain
 
-   !> The document, UTF-8
+   !> All help as a JSON document, UTF-8
    function help_json() result(text)
       character(len=:), allocatable :: text
 
@@ -380,7 +380,7 @@ contains
       text = text(:len(text) - 2)//nl
    end function help_json
 
-   !> A command: how it is called, what it does, its options
+   !> Usage, summary, examples and options of a command as a JSON object
    function command_object(command) result(text)
       character(len=*), intent(in) :: command
       character(len=:), allocatable :: text

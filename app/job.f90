@@ -1,4 +1,4 @@
-!> The cases of a call, read and ready to run
+!> The cases of a command, read and ready to run
 module vcor_app_job
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : files_t, name_files
@@ -27,30 +27,30 @@ module vcor_app_job
 
    public :: job_t, window_t, prepare, find_window, file_read, shard_text
 
-   !> One case of a call, ready to run
+   !> A case of a command, ready to run
    type :: job_t
       type(case_t) :: case
       !> Its impacts
       type(sweep_t) :: sweep
-      !> Those of them that are to be solved
+      !> The points to solve
       type(part_t) :: part
       character(len=:), allocatable :: method
       !> Its files
       type(files_t) :: files
    end type job_t
 
-   !> The impact of a case as that on which commands about its materials look: its contact time
-   !> tells what of them matters
+   !> The impact of a case, as needed by commands about materials: its contact time is the window of
+   !> times that matter
    type :: window_t
-      !> The case; of a sweep its first point, which stands for all of them
+      !> The case; for a sweep its first point, which represents all
       type(case_t) :: case
-      !> Contact time [s]; 0: the impact has no result
+      !> Contact time [s]; 0 if the impact has no result
       real(wp) :: contact_time = 0.0_wp
-      !> Coefficient of restitution [-], where there is a contact time
+      !> Coefficient of restitution [-], if there is a contact time
       real(wp) :: cor = 0.0_wp
-      !> Contact time or, where there is none, a time in its place [s]; that of any impact
+      !> Contact time, or without a result the time of a typical impact [s]
       real(wp) :: reference = 1.0e-3_wp
-      !> Notes about them, one to a line
+      !> Notes, one per line
       character(len=:), allocatable :: notes
    end type window_t
 
@@ -94,10 +94,10 @@ contains
       end do
    end subroutine prepare
 
-   !> Read the files of a request: the cases, each completed by the files of materials behind it
+   !> Read the files of a request: the cases, each completed by files of materials after it
    subroutine read_cases(request, jobs, error)
       type(request_t), intent(in) :: request
-      !> The cases, as they were read
+      !> The cases, without overrides
       type(job_t), allocatable, intent(out) :: jobs(:)
       type(error_t), allocatable, intent(out) :: error
 
@@ -128,10 +128,10 @@ contains
       end do
    end subroutine read_cases
 
-   !> Which shard, for messages
+   !> Name of the shard, for messages
    function shard_text(part) result(text)
       type(part_t), intent(in) :: part
-      !> Words, or nothing
+      !> In words; empty without --shard
       character(len=:), allocatable :: text
 
       text = ''
@@ -139,7 +139,7 @@ contains
          //integer_text(part%parts)
    end function shard_text
 
-   !> Names of --print with a dot are parameters that the case sweeps
+   !> Check that names of --print with a dot are swept parameters
    subroutine check_names(request, grid, error)
       type(request_t), intent(in) :: request
       type(grid_t), intent(in) :: grid
@@ -166,10 +166,10 @@ contains
       end do
    end subroutine check_names
 
-   !> No file of one case may be a file of another, nor a case file itself, nor a data file
+   !> Refuse files of a case that are files of another case, or files that are read
    subroutine refuse_clash(new, old, is_same, error)
       type(job_t), intent(in) :: new
-      !> One that comes no later
+      !> A case that is not later
       type(job_t), intent(in) :: old
       logical, intent(in) :: is_same
       !> Error of code `error_input`, unallocated on success
@@ -192,7 +192,7 @@ contains
 
    contains
 
-      !> No file that is written may be one that is read
+      !> Refuse to write a file that is read
       subroutine keep_inputs(writer, reader)
          type(job_t), intent(in) :: writer, reader
 
@@ -209,12 +209,12 @@ contains
       end subroutine keep_inputs
    end subroutine refuse_clash
 
-   !> Which of the files that a case reads a name leads to
+   !> The file of a case to which a name leads
    function file_read(case, name) result(path)
       type(case_t), intent(in) :: case
       !> Name of a file
       character(len=*), intent(in) :: name
-      !> The case file or one of those of its materials; empty if it is none of them
+      !> The case file or a file of its materials; empty if it is none of them
       character(len=:), allocatable :: path
 
       integer :: i
@@ -232,14 +232,14 @@ contains
       path = ''
    end function file_read
 
-   !> Solve the impact of a case, the first one of a sweep
+   !> Solve the impact of a case, for a sweep that of the first point
    subroutine find_window(job, window, error)
       type(job_t), intent(in) :: job
       type(window_t), intent(out) :: window
-      !> Error of code `error_input`, unallocated on success, with or without a result
+      !> Error of code `error_input`, unallocated on success, even without a result
       type(error_t), allocatable, intent(out) :: error
 
-      !> Contact times are about three times the time scale of Hertz's impact
+      !> Contact time over the time scale of Hertz's impact, about
       real(wp), parameter :: hertz = 3.0_wp
       type(worker_t) :: worker
       type(outcome_t) :: outcome

@@ -1,6 +1,6 @@
 !> The program vcor: the coefficient of restitution of viscoelastic impacts
 !>
-!> A command is a page in `vcor_app_commands` and a call here.
+!> Each command has a page in `vcor_app_commands` and a call here.
 program vcor_main
    use, intrinsic :: iso_c_binding, only : c_int
    use, intrinsic :: iso_fortran_env, only : error_unit
@@ -28,7 +28,7 @@ program vcor_main
    implicit none
 
    interface
-      !> Leave the process with an exit code and without the words of `stop`
+      !> End the process with an exit code, without the message of `stop`
       subroutine c_exit(code) bind(c, name='exit')
          import :: c_int
          integer(c_int), intent(in), value :: code
@@ -46,7 +46,7 @@ program vcor_main
    call parse(words, request, error)
    call share_error(error)
    if (.not. allocated(error)) then
-      ! they would wait for each other
+      ! ranks with different commands would wait for each other
       if (differs(sum_of_words(words))) call raise(error, error_usage, &
          'not all ranks have the same command line, expected the same words after vcor')
    end if
@@ -63,12 +63,12 @@ program vcor_main
 
 contains
 
-   !> Do what is asked for. All ranks run cases; for the rest one is enough. All cases are read and
-   !> validated before the first one runs, so that a mistake in the last does not come after hours.
-   !> A case that fails numerically does not stop the others, anything else does
+   !> Execute a request. All ranks run cases; one rank does everything else. All cases are read and
+   !> validated before the first one runs, so an error in the last one does not appear after hours.
+   !> After a numerical failure the next case runs; any other error ends the program
    subroutine execute(request, error)
       type(request_t), intent(in) :: request
-      !> The last error, unallocated on success; those before it are said
+      !> The last error, unallocated on success; earlier ones have been printed
       type(error_t), allocatable, intent(out) :: error
 
       type(job_t), allocatable :: jobs(:)
@@ -106,7 +106,7 @@ contains
       do i = 1, size(jobs)
          select case (request%command)
          case ('run')
-            ! all ranks run a sweep, the first one an impact
+            ! all ranks run a sweep, the first one a single impact
             if (this_rank() == 0 .and. .not. request%quiet) &
                call warn_of_slips(jobs(i)%case, jobs(i)%sweep%grid)
             if (jobs(i)%sweep%is_grid()) then
@@ -131,7 +131,7 @@ contains
       end do
    end subroutine execute
 
-   !> One line on stderr; all ranks have the same to say
+   !> Print an error, from the first rank only
    subroutine complain(error)
       type(error_t), intent(in) :: error
 
@@ -139,7 +139,7 @@ contains
       write (error_unit, '(a)') 'vcor: error: '//error%message
    end subroutine complain
 
-   !> What the program chooses where the case says nothing, as comments
+   !> Defaults that the program chooses, as comments
    function chosen(job) result(text)
       type(job_t), intent(in) :: job
       character(len=:), allocatable :: text

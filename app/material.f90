@@ -1,4 +1,4 @@
-!> Moduli of the materials of a case: computed, written to files and shown
+!> The command material: computes, writes and shows the moduli of the materials of a case
 module vcor_app_material
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
@@ -28,7 +28,7 @@ contains
    subroutine show_materials(request, job, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
-      !> Unallocated on success, with or without an impact that ends
+      !> Unallocated on success, even if the impact does not end
       type(error_t), allocatable, intent(out) :: error
 
       type(moduli_t) :: moduli
@@ -56,7 +56,7 @@ contains
       call write_stdout(report(job%case%source, title, moduli)//window%notes//files//nl, error)
    end subroutine show_materials
 
-   !> What the screen shows
+   !> Text for the screen
    function report(filename, title, moduli) result(text)
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
@@ -88,7 +88,7 @@ contains
       text = text//nl
    end function report
 
-   !> Values of one material
+   !> Lines of one material
    function values_of(curves) result(text)
       type(curves_t), intent(in) :: curves
       character(len=:), allocatable :: text

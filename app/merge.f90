@@ -1,4 +1,4 @@
-!> Merging the shards of a sweep: the files of a run that has solved it in one piece
+!> The command merge: makes the files of a whole sweep from its shards
 module vcor_app_merge
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : files_t, find_previous, name_files, previous_t, remark, &
@@ -27,11 +27,11 @@ module vcor_app_merge
 
 contains
 
-   !> Merge shards
+   !> Merge the shards of a sweep
    subroutine merge_shards(request, error)
       type(request_t), intent(in) :: request
-      !> Error of code `error_file` if shards are missing or do not belong together, of code
-      !> `error_numerical` if points have no result; unallocated on success
+      !> Error of code `error_file` if shards are missing or do not match, of code `error_numerical`
+      !> if points have no result; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: identity
@@ -64,14 +64,14 @@ contains
       if (allocated(trouble)) call move_alloc(trouble, error)
    end subroutine merge_shards
 
-   !> See whether the files are all shards of one sweep
+   !> Check that the files are all shards of one sweep
    subroutine identify(request, first, numbers, error)
       type(request_t), intent(in) :: request
-      !> What the first file is about
+      !> Identity of the first file
       type(identity_t), intent(out) :: first
-      !> Numbers of the shards in the files, shape (files)
+      !> Indices of the shards, shape (files)
       integer, allocatable, intent(out) :: numbers(:)
-      !> Error of code `error_file`, unallocated if they are
+      !> Error of code `error_file`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: found
@@ -112,12 +112,12 @@ contains
          //'; expected all of them')
    end subroutine identify
 
-   !> Shards that are missing
+   !> Missing shards
    function missing(numbers, parts) result(text)
-      !> Numbers of the shards that are there
+      !> Indices of the existing shards
       integer, intent(in) :: numbers(:)
       integer, intent(in) :: parts
-      !> Numbers of the others
+      !> Indices of the missing ones
       character(len=:), allocatable :: text
 
       integer, parameter :: most_named = 10
@@ -135,14 +135,14 @@ contains
       if (named > most_named) text = text//' and '//integer_text(named - most_named)//' more'
    end function missing
 
-   !> Outcomes of all shards in one summary
+   !> Read the outcomes of all shards into one summary
    subroutine gather(request, identity, numbers, summary, error)
       type(request_t), intent(in) :: request
-      !> What the shards are about
+      !> Identity of the shards
       type(identity_t), intent(in) :: identity
-      !> Numbers of the shards in the files
+      !> Indices of the shards in the files
       integer, intent(in) :: numbers(:)
-      !> Outcomes by the number of the point
+      !> Outcomes by the index of the point
       type(summary_t), intent(out) :: summary
       !> Error of code `error_file` if a shard is not finished; unallocated on success
       type(error_t), allocatable, intent(out) :: error
@@ -170,12 +170,12 @@ contains
       end do
    end subroutine gather
 
-   !> Points without a result make an error of the whole, as in a run
+   !> Raise an error if points have no result, as run does
    subroutine judge(identity, summary, error)
-      !> What the sweep is about
+      !> Identity of the sweep
       type(identity_t), intent(in) :: identity
       type(summary_t), intent(in) :: summary
-      !> Error of code `error_numerical`, unallocated where all points have a result
+      !> Error of code `error_numerical`, unallocated if all points have a result
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: kinds
@@ -198,7 +198,7 @@ contains
       type(request_t), intent(in) :: request
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
-      !> What the sweep is about
+      !> Identity of the sweep
       type(identity_t), intent(in) :: identity
       type(summary_t), intent(inout) :: summary
       type(error_t), allocatable, intent(out) :: error

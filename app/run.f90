@@ -1,4 +1,4 @@
-!> Running a case of one impact; a sweep is in `vcor_app_sweep`
+!> The command run for a single impact; sweeps are in `vcor_app_sweep`
 module vcor_app_run
    use vcor_app_cli, only : request_t
    use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
@@ -27,12 +27,12 @@ module vcor_app_run
 
 contains
 
-   !> Run a case of one impact
+   !> Run a case of a single impact
    subroutine run_impact(request, job, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
-      !> Error of code `error_numerical` if the impact has no result, of another if there is worse;
-      !> unallocated on success
+      !> Error of code `error_numerical` if the impact has no result, of another code for other
+      !> failures; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(previous_t) :: previous
@@ -61,7 +61,7 @@ contains
       call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
       if (allocated(error)) then
          error%message = job%case%source//': '//error%message
-         ! there is no course that could be written
+         ! without a trajectory, only numbers can be written
          if (error%code == error_numerical .and. size(request%names) > 0) &
             call write_numbers(request, tables(1), trouble)
          if (allocated(trouble)) call move_alloc(trouble, error)
@@ -89,7 +89,7 @@ contains
 
    contains
 
-      !> The report, with what the exact mechanics give
+      !> Write the report, including results of the exact mechanics
       subroutine write_screen()
          type(model_t) :: exact
          character(len=:), allocatable :: lines, method
@@ -107,12 +107,12 @@ contains
          end if
          if (.not. is_shown) exact%outcome = outcome_t()
          associate (course => worker%trajectory)
-            ! what stood for a kernel that is no finite sum of exponentials
+            ! a kernel that is not a finite sum of exponentials was approximated
             if (course%kernel_terms > 0) lines = lines//as_line('kernel as a sum of ' &
                //integer_text(course%kernel_terms)//' exponentials, to ' &
                //short(course%kernel_error))
             method = job%method
-            ! auto hands over where ive fails
+            ! `auto` uses direct if ive fails
             if (course%stages == 0) method = 'direct'
             call write_stdout(report(job%case%source, identity%title, method, outcome, &
                exact%outcome, course%state(1, course%last), lines &
@@ -121,18 +121,18 @@ contains
       end subroutine write_screen
    end subroutine run_impact
 
-   !> What there is to say as a line of the report
+   !> A line of the report
    pure function as_line(words) result(text)
-      !> The words; nothing is fine
+      !> Its text; may be empty
       character(len=*), intent(in) :: words
-      !> A line, or nothing
+      !> The line; empty without text
       character(len=:), allocatable :: text
 
       text = ''
       if (len(words) > 0) text = '  '//words//new_line('a')
    end function as_line
 
-   !> Remarks on an outcome that is beyond what the model is made for
+   !> Notes about an outcome outside of the range of the model
    function remarks_on(job, outcome) result(text)
       type(job_t), intent(in) :: job
       type(outcome_t), intent(in) :: outcome
@@ -157,11 +157,11 @@ contains
       end subroutine add
    end function remarks_on
 
-   !> What is said of data that do not cover the contact
+   !> Message if the data of the materials do not cover the contact
    function uncovered(job, outcome) result(text)
       type(job_t), intent(in) :: job
       type(outcome_t), intent(in) :: outcome
-      !> Words; nothing where they do
+      !> In words; empty if they do
       character(len=:), allocatable :: text
 
       integer :: sphere, plate
@@ -176,10 +176,10 @@ contains
          [outcome%contact_time]), text)
    end function uncovered
 
-   !> What is said of a result that is less accurate than asked for
+   !> Message if a result is less accurate than requested
    pure function inexact(outcome) result(text)
       type(outcome_t), intent(in) :: outcome
-      !> Words; nothing where it is as accurate as asked for
+      !> In words; empty if it is as accurate as requested
       character(len=:), allocatable :: text
 
       text = ''
@@ -189,16 +189,16 @@ contains
          //', is above the accuracy asked for, '//short(outcome%accuracy)
    end function inexact
 
-   !> An impact without separation has no coefficient of restitution: say why
+   !> Raise an error with the reason if the impact ends without separation
    subroutine end_of(job, outcome, trajectory, error)
       type(job_t), intent(in) :: job
       type(outcome_t), intent(in) :: outcome
       type(trajectory_t), intent(in) :: trajectory
-      !> Error of code `error_numerical`; unallocated where the bodies separated
+      !> Error of code `error_numerical`; unallocated if the bodies separated or rest
       type(error_t), allocatable, intent(out) :: error
 
-      ! An elastic plate leaves 0.68/lambda^5 of the velocity where lambda > 3. That is below 3e-3
-      ! there, and below 1e-7, which counts as sticking, beyond 23: no longer time helps then
+      ! An elastic plate leaves 0.68/lambda^5 of the velocity if lambda > 3, at most 3e-3. Above 23
+      ! that is less than 1e-7, which counts as sticking, so a later end_time does not help
       real(wp), parameter :: light = 3.0_wp, lightest = 23.0_wp, share = 0.68_wp
       character(len=:), allocatable :: time, too_light, reason
       real(wp) :: lambda

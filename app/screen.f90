@@ -1,4 +1,4 @@
-!> What the screen shows: headings, lines of a name, a number and a unit; an impact
+!> Text for the screen: headings, lines of a name, a number and a unit; the report of an impact
 module vcor_app_screen
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_case_grid, only : grid_t
@@ -31,11 +31,11 @@ contains
       character(len=*), intent(in) :: title
       character(len=*), intent(in) :: method
       type(outcome_t), intent(in) :: outcome
-      !> The same with exact mechanics; without numbers where there is nothing to be said of it
+      !> Outcome with exact mechanics; without numbers if it is not shown
       type(outcome_t), intent(in) :: exact
       !> Time at which the computation ended [s]
       real(wp), intent(in) :: time
-      !> Remarks and files written, one to a line
+      !> Notes and written files, one per line
       character(len=*), intent(in) :: files
       character(len=:), allocatable :: text
 
@@ -66,7 +66,7 @@ contains
 
    contains
 
-      !> A number of the table, 0 where only rounding is left of it
+      !> A number of the table; 0 if it is only rounding
       function shown_value(name) result(value)
          character(len=*), intent(in) :: name
          real(wp) :: value
@@ -76,7 +76,7 @@ contains
          if (name == 'residual_ratio') value = visible(value, 1.0_wp)
       end function shown_value
 
-      !> What stands behind a number
+      !> Remark after a number
       function remark(found, name)
          type(outcome_t), intent(in) :: found
          character(len=*), intent(in) :: name
@@ -103,9 +103,9 @@ contains
 
    !> One line of a table
    pure function line(meaning, width, symbol, value, unit, remark) result(text)
-      !> What it is, indented
+      !> Meaning, indented
       character(len=*), intent(in) :: meaning
-      !> Characters of its column
+      !> Width of its column
       integer, intent(in) :: width
       character(len=*), intent(in) :: symbol
       real(wp), intent(in) :: value
@@ -122,23 +122,23 @@ contains
       text = trim(text)//nl
    end function line
 
-   !> A text with blanks at its end
+   !> A text padded with blanks
    pure function padded(text, width) result(wide)
       character(len=*), intent(in) :: text
-      !> Least number of characters
+      !> Minimum length
       integer, intent(in) :: width
-      !> The same, never shortened
+      !> The padded text, never shortened
       character(len=:), allocatable :: wide
 
       wide = trim(text)//repeat(' ', max(0, width - len_trim(text)))
    end function padded
 
-   !> A text with blanks before it
+   !> A right-justified text
    pure function right(text, width) result(wide)
       character(len=*), intent(in) :: text
-      !> Least number of characters
+      !> Minimum length
       integer, intent(in) :: width
-      !> The same, never shortened
+      !> The justified text, never shortened
       character(len=:), allocatable :: wide
 
       wide = repeat(' ', max(0, width - len_trim(text)))//trim(text)
@@ -172,20 +172,20 @@ contains
 
          real(wp) :: part
 
-         ! a thousandth of a percent is the last digit shown; zero has no sign
+         ! to a thousandth of a percent, the last digit shown; zero has no sign
          part = 1.0e-3_wp*anint(1.0e5_wp*energy/outcome%initial_energy)
          write (percent, '(f8.3, a)') part + 0.0_wp, ' %'
          if (abs(part) >= 1.0e3_wp) percent = right(short(part), 8)//' %'
       end function share
    end function budget
 
-   !> A number, 0 where it is below the digits that can be trusted of its scale: what is there is
-   !> rounding and numerical error
+   !> A number, or 0 if it is below the trusted digits of its scale, where only rounding and
+   !> numerical error remain
    pure function visible(value, scale, digits)
       real(wp), intent(in) :: value
-      !> What the number is a part of, > 0
+      !> Whole that the number is a part of, > 0
       real(wp), intent(in) :: scale
-      !> Digits of the scale, absent: 8
+      !> Trusted digits of the scale; absent: 8
       integer, intent(in), optional :: digits
       real(wp) :: visible
 
@@ -197,7 +197,7 @@ contains
       if (abs(value) <= 10.0_wp**(-d)*scale) visible = 0.0_wp
    end function visible
 
-   !> A number with so many significant digits, right-justified
+   !> A number with given significant digits, right-justified
    pure function significant(value, digits, width) result(text)
       real(wp), intent(in) :: value
       !> Digits, 2 .. 15; absent: 8
@@ -221,7 +221,7 @@ contains
       else if (abs(value) < 0.1_wp .or. abs(value) >= 10.0_wp**min(6, d - 1)) then
          buffer = scientific(value, d - 1)
       else
-         ! with what rounding makes of 0.9999999999
+         ! count the digits before the point of the rounded number, as for 0.9999999999
          write (form, '(a, i0, a)') '(f24.', d - max(0, &
             floor(log10(abs(value)*(1.0_wp + 0.5_wp*10.0_wp**(-d)))) + 1), ')'
          write (buffer, form) value
@@ -255,11 +255,11 @@ contains
       text = scientific(value, 1)
    end function short
 
-   !> A number as in `-1.5E-03`; the exponent has a third digit where it needs one, and never loses
-   !> its letter, as it does with `es` formats of fixed width (`1.5-103`)
+   !> A number such as `-1.5E-03`; the exponent has three digits only if needed, and never loses its
+   !> letter as in `es` formats of fixed width (`1.5-103`)
    pure function scientific(value, decimals) result(text)
       real(wp), intent(in) :: value
-      !> Digits behind the point, 1 .. 14
+      !> Digits after the point, 1 .. 14
       integer, intent(in) :: decimals
       character(len=:), allocatable :: text
 
@@ -279,11 +279,11 @@ contains
    !> A ratio in percent, with two digits
    pure function percent(ratio, whole) result(text)
       real(wp), intent(in) :: ratio
-      !> What a ratio of one or more is called; absent: by its number
+      !> Text for ratios of one or more; absent: the number
       character(len=*), intent(in), optional :: whole
       character(len=:), allocatable :: text
 
-      ! of exact data, rounding
+      ! for exact data this is rounding
       real(wp), parameter :: rounding = 1.0e-12_wp
       character(len=24) :: buffer
       character(len=8) :: form

@@ -1,5 +1,5 @@
-!> Signals: those that ask the program to end, SIGINT (Ctrl-C), SIGTERM and SIGHUP, and the one that
-!> says that a file has become too large, SIGXFSZ
+!> Signals that end the program, SIGINT (Ctrl-C), SIGTERM and SIGHUP, and SIGXFSZ, which reports
+!> that a file is too large
 module vcor_app_signals
    use, intrinsic :: iso_c_binding, only : c_funloc, c_funptr, c_int, c_intptr_t, c_null_funptr
    use vcor_io_file, only : remove_scratch
@@ -11,17 +11,17 @@ module vcor_app_signals
    !> Numbers of SIGHUP, SIGINT, SIGTERM and SIGXFSZ
    integer(c_int), parameter :: hang_up = 1, interrupt = 2, terminate = 15, file_size = 25
 
-   !> Signal that has come; 0 if there was none
+   !> Signal received; 0: none
    integer(c_int), volatile :: caught = 0
 
    interface
-      !> Say who handles a signal
+      !> Set the handler of a signal
       function c_signal(number, handler) result(before) bind(c, name='signal')
          import :: c_funptr, c_int
          integer(c_int), intent(in), value :: number
-         !> The handler; null for the system's own (SIG_DFL)
+         !> The handler; null for the default of the system (SIG_DFL)
          type(c_funptr), intent(in), value :: handler
-         !> Who did before
+         !> Previous handler
          type(c_funptr) :: before
       end function c_signal
 
@@ -36,9 +36,10 @@ module vcor_app_signals
 
 contains
 
-   !> For the whole run: a signal that ends the program takes with it what is not complete, and a
-   !> file that becomes too large is an error of writing (EFBIG) like a full disk. SIGXFSZ gets a
-   !> handler which does nothing, not SIG_IGN, which a program started by this one would inherit
+   !> Set handlers for the whole run: a signal that ends the program also removes incomplete files,
+   !> and a file that becomes too large is an error of writing (EFBIG), like a full disk. SIGXFSZ
+   !> gets a handler that does nothing, not SIG_IGN, which programs started by this one would
+   !> inherit
    subroutine prepare_signals()
       type(c_funptr) :: ignored
 
@@ -46,8 +47,7 @@ contains
       call release_signals()
    end subroutine prepare_signals
 
-   !> From now on SIGINT or SIGTERM is noted. A second one ends the program at once, as if nobody
-   !> cared
+   !> Record SIGINT or SIGTERM from now on; a second one ends the program at once
    subroutine catch_signals()
       type(c_funptr) :: ignored
 
@@ -56,14 +56,14 @@ contains
       ignored = c_signal(terminate, c_funloc(handle))
    end subroutine catch_signals
 
-   !> From now on a signal ends the program
+   !> Let signals end the program from now on
    subroutine release_signals()
       call end_by(hang_up)
       call end_by(interrupt)
       call end_by(terminate)
    end subroutine release_signals
 
-   !> Let a signal end the program, unless who called it has the signal ignored (nohup)
+   !> Let a signal end the program, unless the caller has ignored it (nohup)
    subroutine end_by(number)
       integer(c_int), intent(in), value :: number
 
@@ -74,10 +74,10 @@ contains
       if (transfer(before, ignoring) == ignoring) ignored = c_signal(number, before)
    end subroutine end_by
 
-   !> Signal that has come. Threads ask at the same time, which the checks of a debug build take for
-   !> a recursion
+   !> Signal received. Threads call this concurrently, which the checks of a debug build mistake for
+   !> recursion
    recursive function caught_signal() result(number)
-      !> Its number; 0 if there was none
+      !> Its number; 0: none
       integer :: number
 
       number = int(caught)
@@ -92,7 +92,7 @@ contains
       if (number == int(interrupt)) name = 'SIGINT'
    end function signal_name
 
-   !> Note a signal; does nothing that a handler may not do
+   !> Record a signal; uses only calls allowed in a handler
    subroutine handle(number) bind(c)
       integer(c_int), intent(in), value :: number
 
@@ -103,7 +103,7 @@ contains
       ignored = c_signal(terminate, c_funloc(clean_up))
    end subroutine handle
 
-   !> Remove what is not complete, and end as the signal does; does nothing that a handler may not
+   !> Remove incomplete files and end as the signal does; uses only calls allowed in a handler
    subroutine clean_up(number) bind(c)
       integer(c_int), intent(in), value :: number
 
@@ -112,11 +112,11 @@ contains
 
       call remove_scratch()
       ignored = c_signal(number, c_null_funptr)
-      ! it is held back until this handler returns
+      ! the signal is blocked until this handler returns
       status = c_raise(number)
    end subroutine clean_up
 
-   !> Do nothing about a signal
+   !> Ignore a signal
    subroutine go_on(number) bind(c)
       integer(c_int), intent(in), value :: number
 

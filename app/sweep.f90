@@ -1,6 +1,6 @@
-!> Running the sweep of a case, by all ranks and their threads
+!> The command run for a sweep, on all ranks and their threads
 !>
-!> The first rank alone reads and writes files and talks to the user.
+!> Only the first rank reads and writes files and talks to the user.
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
@@ -31,37 +31,36 @@ module vcor_app_sweep
 
    public :: run_sweep
 
-   !> Added to the number of a signal, this is the exit code of a run that it has ended, as shells
-   !> have it
+   !> Exit code of a run ended by a signal minus the number of the signal, as in shells
    integer, parameter :: signal_base = 128
    !> End of a line
    character(len=*), parameter :: nl = new_line('a')
 
-   !> Time after which a sweep gets a file [s]: what is shorter is solved anew as quickly
+   !> Time after which a sweep gets a file [s]; a shorter one is quickly repeated
    real(wp), parameter :: time_without_file = 0.25_wp
-   !> Time between two lines on the terminal [s]
+   !> Minimum time between two progress lines [s]
    real(wp), parameter :: time_between_lines = 0.2_wp
-   !> Letters of the line
+   !> Length of the progress line
    integer, parameter :: width = 72
 
-   !> Who watches
+   !> Observer of a sweep that writes its file and shows its progress
    type, extends(monitor_t) :: watch_t
-      !> Whether what is finished is kept in a file
+      !> Whether to store finished points in a file
       logical :: keeps = .false.
-      !> Whether the terminal shows how far it is
+      !> Whether to show progress on the terminal
       logical :: shows = .false.
       character(len=:), allocatable :: path
       type(identity_t) :: identity
-      !> Its grid
+      !> Grid of the sweep
       type(grid_t) :: grid
       type(checkpoint_t) :: file
-      !> Points that are done
+      !> Points done
       integer :: done = 0
-      !> Points that were done at the beginning
+      !> Points done at the start
       integer :: done_before = 0
-      !> When it began [s]
+      !> Time of the start [s]
       real(wp) :: start = 0.0_wp
-      !> When the terminal was written to [s]
+      !> Time of the last progress line [s]
       real(wp), private :: shown = 0.0_wp
    contains
       procedure :: finished, clear
@@ -74,8 +73,8 @@ contains
    subroutine run_sweep(request, job, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
-      !> Error of code `error_numerical` if points have no result, of another if there is worse;
-      !> unallocated on success
+      !> Error of code `error_numerical` if points have no result, of another code for other
+      !> failures; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(previous_t) :: previous
@@ -112,14 +111,14 @@ contains
       call release_signals()
    end subroutine run_sweep
 
-   !> Find out where to begin
+   !> Find existing results, and the points that remain
    subroutine begin(request, job, watch, previous, summary, is_finished, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
       type(watch_t), intent(inout) :: watch
-      !> Results that are there
+      !> Existing results
       type(previous_t), intent(out) :: previous
-      !> Outcomes that are there, the others pending
+      !> Existing outcomes; the others are pending
       type(summary_t), intent(out) :: summary
       logical, intent(out) :: is_finished
       type(error_t), allocatable, intent(out) :: error
@@ -144,13 +143,13 @@ contains
          call open_checkpoint(watch%file, watch%path, watch%identity, summary, error, &
             anew=.not. request%resume)
       else if (watch%keeps) then
-         ! better now than after hours
+         ! detect a wrong path now, not after hours
          call make_directory(job%files%directory(), error)
       end if
       if (allocated(error)) return
       if (is_unfinished .and. .not. request%resume) call remark(quoted_path(watch%path) &
          //' is given up, the sweep begins anew (--resume would go on with it)')
-      ! files do not hold why a point has no result: it is solved again, to the same bits
+      ! files do not contain why a point has no result: it is solved again, to the same bits
       where (summary%status == point_invalid .or. summary%status == point_failed) &
          summary%status = point_pending
       watch%done = count(summary%status /= point_pending)
@@ -160,14 +159,14 @@ contains
       watch%shows = stderr_is_terminal() .and. .not. request%quiet
    end subroutine begin
 
-   !> A shard may be finished and have points that are damaged: these are solved again
+   !> Read an existing shard; damaged points of a finished one are solved again
    subroutine look_into_shard(previous, watch, summary, is_unfinished, error)
-      !> The shard, if it is there
+      !> The existing shard, if any
       type(previous_t), intent(in) :: previous
       type(watch_t), intent(in) :: watch
-      !> Room for its outcomes
+      !> Its outcomes, allocated
       type(summary_t), intent(inout) :: summary
-      !> Whether there is something to solve; then its file is that of an unfinished one
+      !> Whether points remain to be solved; its file is then renamed to that of an unfinished one
       logical, intent(out) :: is_unfinished
       type(error_t), allocatable, intent(out) :: error
 
@@ -179,16 +178,16 @@ contains
       if (is_unfinished) call move_file(previous%path, watch%path, error)
    end subroutine look_into_shard
 
-   !> After the points: write the results, or say what ended the sweep
+   !> Finish a sweep: write the results, or report what stopped it
    subroutine finish(request, job, watch, previous, summary, failures, stopped, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
       type(watch_t), intent(inout) :: watch
-      !> Results that were there
+      !> Results that existed before
       type(previous_t), intent(in) :: previous
       type(summary_t), intent(inout) :: summary
       type(failures_t), intent(in) :: failures
-      !> Signal that ended the sweep; 0 if there was none
+      !> Signal that ended the sweep; 0: none
       integer, intent(in) :: stopped
       type(error_t), allocatable, intent(out) :: error
 
@@ -244,7 +243,7 @@ contains
          call summary_table(tables(1), identity%title, identity%case_text, job%sweep%grid, summary)
          call write_files(job%files, tables, files, error, identity%data, threads_of(request))
          if (allocated(error)) return
-         ! now that everything is there under its own name
+         ! results are complete under their final names
          call watch%file%remove()
          if (size(request%names) > 0) then
             call write_numbers(request, tables(1), error)
@@ -259,7 +258,7 @@ contains
       end associate
    end subroutine finish_whole
 
-   !> A shard is finished: its file gets its name
+   !> Rename the file of a finished shard
    subroutine finish_shard(request, job, watch, failures, error)
       type(request_t), intent(in) :: request
       type(job_t), intent(in) :: job
@@ -276,11 +275,11 @@ contains
             '  written '//path//nl), error)
    end subroutine finish_shard
 
-   !> Points without a result make an error of the whole, after all others are done
+   !> Raise an error if points have no result, after all points are done
    subroutine end_of_sweep(job, failures, error)
       type(job_t), intent(in) :: job
       type(failures_t), intent(in) :: failures
-      !> Error of code `error_numerical`, unallocated where all points have a result
+      !> Error of code `error_numerical`, unallocated if all points have a result
       type(error_t), allocatable, intent(out) :: error
 
       if (failures%count == 0) return
@@ -291,17 +290,17 @@ contains
          //trim(failures%reason(1)%message))
    end subroutine end_of_sweep
 
-   !> What the screen shows of a sweep or a shard: what is swept, between what the outcomes lie,
-   !> what has none and why
+   !> Report of a sweep or a shard: swept parameters, ranges of the outcomes, points without a
+   !> result and the reasons
    function report(job, title, failures, files, summary, validity) result(text)
       type(job_t), intent(in) :: job
       character(len=*), intent(in) :: title
       type(failures_t), intent(in) :: failures
-      !> Files written, one to a line
+      !> Written files, one per line
       character(len=*), intent(in) :: files
       !> Outcomes of a whole sweep
       type(table_t), intent(in), optional :: summary
-      !> What is said of their validity, one to a line
+      !> Report of their validity, one item per line
       character(len=*), intent(in), optional :: validity
       character(len=:), allocatable :: text
 
@@ -319,7 +318,7 @@ contains
       end do
       text = text//nl//'  '//integer_text(job%part%count())
       if (job%part%parts > 1) text = text//' of '//integer_text(job%part%points)
-      ! with auto each point has its own
+      ! with `auto` the method may differ between points
       call job%case%get('solver', 'method', method)
       if (method /= 'auto' .or. job%method /= 'ive') method = job%method
       text = text//' impacts'//shard_text(job%part)//', '//method//nl
@@ -373,7 +372,7 @@ contains
       end do
    end function ranges
 
-   !> What has no result, and why
+   !> Points without a result, and the reasons
    function reasons(job, failures) result(text)
       type(job_t), intent(in) :: job
       type(failures_t), intent(in) :: failures
@@ -393,10 +392,10 @@ contains
       end do
    end function reasons
 
-   !> How many points are less accurate than asked for
+   !> Number of points that are less accurate than requested
    function inexact(job, failures) result(text)
       type(job_t), intent(in) :: job
-      !> What there is to say of the points
+      !> Reasons, with the count of inexact points
       type(failures_t), intent(in) :: failures
       !> One line
       character(len=:), allocatable :: text
@@ -407,17 +406,17 @@ contains
          //coordinates(job%sweep%grid, failures%inexact%first)
    end function inexact
 
-   !> Points are finished
+   !> Store finished points and show progress; the monitor's `finished`
    subroutine finished(self, first, last, count, summary, error)
       class(watch_t), intent(inout) :: self
       !> First place that may have changed
       integer, intent(in) :: first
       !> Last place that may have changed
       integer, intent(in) :: last
-      !> Number of points between them that are new
+      !> Number of newly finished points between these places
       integer, intent(in) :: count
       type(summary_t), intent(inout) :: summary
-      !> Set if they cannot be kept; unallocated on success
+      !> Set if they cannot be stored; unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       real(wp) :: now
@@ -437,10 +436,10 @@ contains
       end if
    end subroutine finished
 
-   !> Show how far the sweep is
+   !> Show the progress of the sweep
    subroutine show(self, time)
       type(watch_t), intent(in) :: self
-      !> Time since it began [s]
+      !> Time since the start [s]
       real(wp), intent(in) :: time
 
       character(len=:), allocatable :: line
@@ -455,11 +454,11 @@ contains
       call write_terminal(achar(13)//line//repeat(' ', max(0, width - len(line))))
    end subroutine show
 
-   !> A rate in words
+   !> A rate as text
    function rate_text(rate) result(text)
       !> Points per second
       real(wp), intent(in) :: rate
-      !> The rate, per minute or hour where it is small
+      !> The rate, per minute or hour if it is small
       character(len=:), allocatable :: text
 
       if (rate >= 1.0_wp) then
@@ -471,11 +470,11 @@ contains
       end if
    end function rate_text
 
-   !> A time as a clock has it
+   !> A time in hours, minutes and seconds
    function time_text(time) result(text)
       !> Time [s]
       real(wp), intent(in) :: time
-      !> Hours, minutes and seconds
+      !> Such as `1:02:03`
       character(len=:), allocatable :: text
 
       real(wp), parameter :: longest = 1.0e9_wp
@@ -487,7 +486,7 @@ contains
       text = trim(buffer)
    end function time_text
 
-   !> Take the line off the terminal
+   !> Erase the progress line
    subroutine clear(self)
       class(watch_t), intent(inout) :: self
 

@@ -58,7 +58,7 @@ contains
          integer_text(failed)//' of '//integer_text(rows)//' checks failed, the first one: '//first)
    end subroutine verify_program
 
-   !> Solve a case by all methods and print what they agree on
+   !> Solve a case by all methods and print how far they agree
    subroutine verify_case(job, quiet, error)
       type(job_t), intent(in) :: job
       logical, intent(in) :: quiet
@@ -104,7 +104,7 @@ contains
       end do
    end function law_text
 
-   !> A comparison of methods
+   !> Text of a comparison of methods
    function comparison_text(filename, title, comparison) result(text)
       character(len=*), intent(in) :: filename
       character(len=*), intent(in) :: title
@@ -137,8 +137,8 @@ contains
       text = text//nl
    end function comparison_text
 
-   !> A case with every plate model and both contact laws, and where that makes a difference all of
-   !> it with the other pair
+   !> Table of a case with every plate model and both contact laws, then with the other pair if that
+   !> makes a difference
    function models_text(models) result(text)
       type(model_t), intent(in) :: models(:)
       character(len=:), allocatable :: text
@@ -171,7 +171,7 @@ contains
 
    contains
 
-      !> A coefficient with the digits that its error leaves, eight at most
+      !> A coefficient with the digits that its error allows, at most eight
       function known(value, error) result(digits)
          real(wp), intent(in) :: value, error
          character(len=:), allocatable :: digits
@@ -180,7 +180,7 @@ contains
       end function known
    end function models_text
 
-   !> How each solution was made, and whether its error is what it says
+   !> Table of all solutions: settings, cor and its stated and true errors
    function attempts_text(comparison) result(text)
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text
@@ -215,7 +215,7 @@ contains
       end do
    end function attempts_text
 
-   !> The quantities by both methods
+   !> Table of all quantities by both methods
    function values_text(comparison) result(text)
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text
@@ -239,7 +239,7 @@ contains
 
    contains
 
-      !> A value of the quantity, 0 where no digit of it can be trusted
+      !> A value of the quantity; 0 if none of its digits can be trusted
       function value_text(value)
          real(wp), intent(in) :: value
          character(len=:), allocatable :: value_text
@@ -250,7 +250,7 @@ contains
       end function value_text
    end function values_text
 
-   !> Distances of all solutions from the best value
+   !> Table of the distances of all solutions from the best value
    function differences_text(comparison) result(text)
       type(comparison_t), intent(in) :: comparison
       character(len=:), allocatable :: text
@@ -279,9 +279,9 @@ contains
       end do
    end function differences_text
 
-   !> What was asked for, if anything
+   !> A requested number, if any
    pure function given(value) result(text)
-      !> The number, 0 if nothing
+      !> The number; 0: none
       real(wp), intent(in) :: value
       character(len=9) :: text
 

@@ -1,20 +1,19 @@
-!> The file of a part of a sweep, under way or finished: a valid HDF5 file at every moment
+!> The file of a part of a sweep, unfinished or finished: a valid HDF5 file at any time
 !>
 !>     /             attributes program, version, title, case, data, points, shard, shards
-!>     /summary      over the dimension `point`: what is swept, check, the columns of a summary with
+!>     /summary      over the dimension `point`: swept parameters, check, columns of a summary with
 !>                   numbers for texts
 !>
-!> HDF5 lays the file out, with room for all points. Every dataset is in one piece and uncompressed,
-!> so its numbers have a fixed place in the file, and what makes the file an HDF5 file never changes
-!> again: outcomes are written to their places as bytes. A disk that is too small is noticed at the
-!> beginning.
+!> HDF5 creates the file with space for all points. Every dataset is contiguous and uncompressed, so
+!> its numbers have fixed positions in the file, and outcomes are written there as bytes, while
+!> HDF5's own data never change again. A disk that is too small is detected at the beginning.
 !>
-!> A point is done if its check sum is right. It is written last; after a crash of the machine the
-!> disk may have any part of what was written, in any order, and the sum tells.
+!> A point is done if its check sum is correct. The sum is written last; after a crash of the
+!> machine the disk may have any part of what was written, in any order, which the sum reveals.
 !>
-!> The file is made in a private folder and locked before it gets its name, which it takes from no
-!> other file. So of two processes that begin the same sweep one has it, and the lock goes with the
-!> process, however that ends. Links and pipes of that name are refused, not followed.
+!> The file is made in a private directory, locked, and then linked to its name, which no other file
+!> may have. So if two processes begin the same sweep, one of them gets it; the lock ends with the
+!> process, however it ends. Links and pipes of that name are refused, not followed.
 module vcor_io_checkpoint
    use, intrinsic :: iso_c_binding, only : c_associated, c_int, c_int64_t, c_loc, c_null_ptr, &
       c_ptr, c_size_t
@@ -39,12 +38,12 @@ module vcor_io_checkpoint
 
    public :: checkpoint_t, create_checkpoint, open_checkpoint, read_points
 
-   !> A file of a sweep under way
+   !> File of an unfinished sweep
    type :: checkpoint_t
       character(len=:), allocatable :: path
-      !> Stream of C, null unless the file is open
+      !> C stream, null unless the file is open
       type(c_ptr), private :: stream = c_null_ptr
-      !> Where in the file columns begin [bytes]: those of the summary in their order, check
+      !> Positions of columns in the file [bytes]: those of the summary in their order, then check
       integer(c_int64_t), allocatable, private :: offsets(:)
    contains
       procedure :: is_open, put, close_as, remove
@@ -53,7 +52,7 @@ module vcor_io_checkpoint
 
 contains
 
-   !> Whether there is a file
+   !> Whether the file is open
    pure function is_open(self)
       class(checkpoint_t), intent(in) :: self
       logical :: is_open
@@ -61,16 +60,16 @@ contains
       is_open = c_associated(self%stream)
    end function is_open
 
-   !> Begin a file, with what is done so far
+   !> Create a file with the outcomes so far
    subroutine create_checkpoint(self, path, identity, grid, summary, error)
       type(checkpoint_t), intent(inout) :: self
-      !> Its path; nothing may be there
+      !> Its path, which must not exist
       character(len=*), intent(in) :: path
       type(identity_t), intent(in) :: identity
       type(grid_t), intent(in) :: grid
-      !> Outcomes of all places of the part; those that are pending become NaN
+      !> Outcomes at all places of the part; pending ones become NaN
       type(summary_t), intent(inout) :: summary
-      !> Set if the file cannot be written, or another process has begun it
+      !> Set if the file cannot be written, or if another process has created it
       type(error_t), allocatable, intent(out) :: error
 
       type(output_file_t) :: file
@@ -90,7 +89,7 @@ contains
       call discard(file)
    end subroutine create_checkpoint
 
-   !> Points of a part as a table, with columns that have no values yet
+   !> Points of a part as a table, with columns without values
    subroutine lay_out(table, identity, grid, quantities)
       type(table_t), intent(out) :: table
       type(identity_t), intent(in) :: identity
@@ -123,12 +122,12 @@ contains
       end do
    end subroutine lay_out
 
-   !> Give a file its name
+   !> Give a file its final name
    subroutine name_file(temporary, path, error)
       character(len=*), intent(in) :: temporary
-      !> Its name; nothing may have it
+      !> Final name, which must not exist
       character(len=*), intent(in) :: path
-      !> Set if it cannot have the name
+      !> Set if the name is taken
       type(error_t), allocatable, intent(out) :: error
 
       logical :: is_taken
@@ -139,12 +138,12 @@ contains
       if (is_taken) then
          call raise_in_use(path, error)
       else
-         ! there are file systems without links
+         ! the file system has no links
          call move_file(temporary, path, error)
       end if
    end subroutine name_file
 
-   !> Another process is at work
+   !> Raise the error that another process uses the file
    subroutine raise_in_use(path, error)
       character(len=*), intent(in) :: path
       !> Set
@@ -154,17 +153,17 @@ contains
          //' is in use: another vcor is at work on this sweep')
    end subroutine raise_in_use
 
-   !> Go on with a file that is there
+   !> Continue with an existing file
    subroutine open_checkpoint(self, path, identity, summary, error, anew)
       type(checkpoint_t), intent(inout) :: self
       character(len=*), intent(in) :: path
       type(identity_t), intent(in) :: identity
-      !> Outcomes, all pending; on return those that the file has
+      !> Outcomes, all pending; on return those of the file
       type(summary_t), intent(inout) :: summary
-      !> Error of code `error_file` if the file is about something else, is no such file, or another
-      !> process is at work on it; unallocated on success
+      !> Error of code `error_file` if the file belongs to another run, is not a file of a part, or
+      !> is used by another process; unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Whether to forget what the file has
+      !> Whether to discard the outcomes of the file
       logical, intent(in) :: anew
 
       self%path = path
@@ -183,10 +182,10 @@ contains
       call self%put(1, size(summary%status), summary, error)
    end subroutine open_checkpoint
 
-   !> Open a file that is there for writing, and learn where its columns are
+   !> Open an existing file for writing, and find its columns
    subroutine attach(self, place, quantities, points, error)
       type(checkpoint_t), intent(inout) :: self
-      !> Its path, as long as it does not have its name
+      !> Its current path, which may be temporary
       character(len=*), intent(in) :: place
       type(quantity_t), intent(in) :: quantities(:)
       !> Number of points
@@ -204,19 +203,19 @@ contains
          call raise_system(error, 'cannot write '//quoted_path(self%path), reason)
          return
       end if
-      ! Not flock, which HDF5 takes to read a file, and others may read this one. A lock goes when
-      ! any stream of the file is closed, so HDF5 comes first here. Where there are no locks one
-      ! goes without
+      ! Not flock: HDF5 uses it for reading, and others may read this file. Closing any stream of
+      ! the file releases the lock, so HDF5 comes first here. File systems without locks are
+      ! accepted
       if (c_lockf(c_fileno(self%stream), lock_alone, 0_c_int64_t) /= 0) then
          if (last_errno() == errno_locked) call raise_in_use(self%path, error)
       end if
-      ! no link, and no file that has been replaced or removed since
+      ! refuse a link, and a file that has been replaced or removed since
       if (.not. same_file_id(file_at(place, follows=.false.), &
          open_file(c_fileno(self%stream)))) call raise_in_use(self%path, error)
       if (allocated(error)) call self%close()
    end subroutine attach
 
-   !> Keep outcomes
+   !> Store outcomes
    subroutine put(self, first, last, summary, error)
       class(checkpoint_t), intent(in) :: self
       integer, intent(in) :: first
@@ -242,16 +241,16 @@ contains
          end associate
       end do
       call write_at(n + 1, c_loc(summary%status(first)), integer_width)
-      ! last: a point is done if its check sum is right
+      ! last, because a point is done if its check sum is correct
       allocate (checks, source=checks_of(summary, first, last))
       call write_at(n + 2, c_loc(checks), integer_width)
 
    contains
 
-      !> Write numbers of a column to their places
+      !> Write numbers of a column to their positions
       subroutine write_at(column, numbers, width)
          integer, intent(in) :: column
-         !> Where the first of the numbers is in memory
+         !> Address of the first number
          type(c_ptr), intent(in) :: numbers
          !> Bytes of a number
          integer, intent(in) :: width
@@ -267,7 +266,7 @@ contains
       end subroutine write_at
    end subroutine put
 
-   !> Close the file, which stays
+   !> Close the file and keep it
    subroutine close_checkpoint(self)
       class(checkpoint_t), intent(inout) :: self
 
@@ -279,12 +278,12 @@ contains
       self%stream = c_null_ptr
    end subroutine close_checkpoint
 
-   !> Close the file, complete, and give it another name
+   !> Close the complete file and rename it
    subroutine close_as(self, path, error)
       class(checkpoint_t), intent(inout) :: self
-      !> Its new path, in the same folder
+      !> New path, in the same directory
       character(len=*), intent(in) :: path
-      !> Set if that failed
+      !> Set on failure
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int) :: reason
@@ -297,24 +296,24 @@ contains
       if (.not. allocated(error)) call move_file(self%path, path, error)
    end subroutine close_as
 
-   !> Close the file and remove it; none is fine
+   !> Close the file and remove it, if it is open
    subroutine remove(self)
       class(checkpoint_t), intent(inout) :: self
 
       integer(c_int) :: ignored
 
       if (.not. self%is_open()) return
-      ! while it is locked: nobody else may take it for theirs
+      ! removed while it is locked, before another process can use it
       call remove_file(self%path)
       ignored = c_fclose(self%stream)
       self%stream = c_null_ptr
    end subroutine remove
 
-   !> Refuse a file that is not of a part of a sweep
+   !> Refuse a file that is not the expected part of a sweep
    subroutine check_part(path, expected, error)
       character(len=*), intent(in) :: path
       type(identity_t), intent(in) :: expected
-      !> Error of code `error_file`; unallocated if it is
+      !> Error of code `error_file`, unallocated on success
       type(error_t), allocatable, intent(out) :: error
 
       type(identity_t) :: found
@@ -336,10 +335,10 @@ contains
    subroutine read_points(path, identity, summary, error)
       character(len=*), intent(in) :: path
       type(identity_t), intent(in) :: identity
-      !> Outcomes of the points of the part, with room for all of them; on return pending where the
-      !> check sum is wrong
+      !> Outcomes of the points of the part, allocated; on return those with a wrong check sum are
+      !> pending
       type(summary_t), intent(inout) :: summary
-      !> Error of code `error_file` if it cannot be read, or is not about what is expected
+      !> Error of code `error_file` if it cannot be read, or belongs to another run
       type(error_t), allocatable, intent(out) :: error
 
       integer(c_int64_t), allocatable :: offsets(:)
@@ -382,9 +381,9 @@ contains
       type(quantity_t), intent(in) :: quantities(:)
       !> Number of points
       integer, intent(in) :: points
-      !> Bytes before the numbers of each column: those of the summary in their order, check
+      !> Bytes before the numbers of each column: those of the summary in their order, then check
       integer(c_int64_t), allocatable, intent(out) :: offsets(:)
-      !> Error of code `error_file` if one is not there as this program lays it out
+      !> Error of code `error_file` if a column is missing or has another layout
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
@@ -413,13 +412,13 @@ contains
       error%message = error%message//'; the file is damaged, or of an earlier version of vcor'
    end subroutine find_columns
 
-   !> Check sums of points: CRC-32 of their numbers as the file has them, in the order of columns,
-   !> and of their places, so that two points that have changed places are found
+   !> Check sums of points: CRC-32 of their numbers as in the file, in the order of columns, and of
+   !> their places, so that exchanged points are detected
    pure function checks_of(summary, first, last) result(checks)
       type(summary_t), intent(in) :: summary
       integer, intent(in) :: first
       integer, intent(in) :: last
-      !> The sums, 1 in place of 0; 0 where the point is pending, and nowhere else
+      !> The sums, with 1 for 0; 0 only for pending points
       integer :: checks(last - first + 1)
 
       integer(int8), parameter :: bytes(1) = 0_int8

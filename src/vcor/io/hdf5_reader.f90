@@ -1,4 +1,4 @@
-!> HDF5 files read back: what is in them, and what they say about themselves
+!> Reads HDF5 files: text attributes, and lengths and positions of datasets
 !>
 !>     call open_hdf5(reader, 'case.h5', error)
 !>     text = text_attribute(reader, 'title')
@@ -24,11 +24,11 @@ module vcor_io_hdf5_reader
 
    public :: reader_t, open_hdf5, close_hdf5, text_attribute, find_dataset
 
-   !> A file that is being read
+   !> A file open for reading
    type :: reader_t
-      !> Its name as messages show it
+      !> Its name for messages
       character(len=:), allocatable :: path
-      !> The file, as HDF5 numbers it; negative unless it is open
+      !> Identifier of the file in HDF5; negative unless it is open
       integer(hid_t), private :: file = -1_hid_t
    end type reader_t
 
@@ -38,7 +38,7 @@ contains
    subroutine open_hdf5(reader, filename, error)
       type(reader_t), intent(out) :: reader
       character(len=*), intent(in) :: filename
-      !> Set if it is no HDF5 file, or damaged, or cannot be read
+      !> Set if it is no HDF5 file, is damaged or cannot be read
       type(error_t), allocatable, intent(out) :: error
 
       character(len=:), allocatable :: fault
@@ -47,11 +47,11 @@ contains
 
       reader%path = printable(filename)
       call check_readable(filename, 'a file of results', error)
-      ! a pipe would keep a reader waiting
+      ! reading a pipe might wait forever
       if (allocated(error)) return
       if (.not. plain_file_exists(filename)) call raise(error, error_file, reader%path &
          //': found a device or a pipe, expected a file of results')
-      ! before HDF5 sees anything of it
+      ! HDF5 must not read a damaged file
       if (.not. allocated(error)) call check_seal(filename, error)
       if (allocated(error)) return
 
@@ -76,7 +76,7 @@ contains
 
    !> Close a file
    subroutine close_hdf5(reader)
-      !> Open file; closed afterwards
+      !> Open file; closed on return
       type(reader_t), intent(inout) :: reader
 
       integer :: ignored
@@ -87,11 +87,11 @@ contains
       reader%file = -1_hid_t
    end subroutine close_hdf5
 
-   !> A text attribute of the file
+   !> Text attribute of the file
    function text_attribute(reader, name) result(text)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: name
-      !> Its value; empty if there is none or it is no single text of variable length
+      !> Its value; empty if there is none, or if it is not a single text of variable length
       character(len=:), allocatable :: text
 
       type(c_ptr), target :: place
@@ -129,15 +129,15 @@ contains
       call h5aclose_f(attribute, ignored)
    end function text_attribute
 
-   !> Find a dataset: how many values it has, and where in the file they are
+   !> Find length and position of a dataset
    subroutine find_dataset(reader, path, length, offset, error)
       type(reader_t), intent(in) :: reader
       character(len=*), intent(in) :: path
       !> Number of its values
       integer, intent(out) :: length
-      !> Bytes before the first one; negative where they are not in one piece
+      !> Bytes before the first value; negative if the dataset is not contiguous
       integer(c_int64_t), intent(out) :: offset
-      !> Set if there is none
+      !> Set if there is no such dataset
       type(error_t), allocatable, intent(out) :: error
 
       integer(hid_t) :: set, space
@@ -159,7 +159,7 @@ contains
          //"' cannot be read as numbers")
    end subroutine find_dataset
 
-   !> Number of values of a space
+   !> Number of values of a dataspace
    subroutine read_length(space, length, status)
       integer(hid_t), intent(in) :: space
       integer, intent(out) :: length

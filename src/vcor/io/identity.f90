@@ -1,5 +1,4 @@
-!> What a file of results is about: the program's version, the case and its data, and how many
-!> points there are
+!> Identity of a file of results: version of the program, case, data files and points
 module vcor_io_identity
    use, intrinsic :: iso_fortran_env, only : int32, int64, int8
    use vcor_error, only : error_file, error_t, raise
@@ -18,21 +17,21 @@ module vcor_io_identity
 
    public :: identity_t, identity_of, read_identity, read_csv, check_same, number_of
 
-   !> What a file is about
+   !> Identity of a file of results
    type :: identity_t
-      !> Empty where a file is not of this program
+      !> Version; empty if the file is not from this program
       character(len=:), allocatable :: version
       character(len=:), allocatable :: title
       character(len=:), allocatable :: case_text
-      !> Sum over the points of its data files
+      !> Check sum of the points in the data files of the case
       character(len=:), allocatable :: data
-      !> Which points are there
+      !> Points in the file
       type(part_t) :: part
    end type identity_t
 
 contains
 
-   !> What a run of a case is about
+   !> Identity of a run of a case
    function identity_of(case, part) result(identity)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
@@ -47,11 +46,11 @@ contains
       identity%part = part
    end function identity_of
 
-   !> Sum over the points of the data files of a case
+   !> Check sum of the points in the data files of a case
    function data_of(case) result(text)
       !> A validated case, its data read
       type(case_t), intent(in) :: case
-      !> The sum; empty where there are no data files
+      !> The sum; empty if there are no data files
       character(len=:), allocatable :: text
 
       real(wp), allocatable :: numbers(:), times(:), moduli(:)
@@ -75,9 +74,9 @@ contains
       end do
    end function data_of
 
-   !> A number that is the same for the same case on all ranks
+   !> Number that is equal on all ranks if they have the same case
    pure function number_of(identity) result(number)
-      !> What a run is about
+      !> Identity of the run
       type(identity_t), intent(in) :: identity
       integer :: number
 
@@ -85,12 +84,12 @@ contains
          int(identity%part%number, int32))
    end function number_of
 
-   !> What an HDF5 file is about
+   !> Read the identity of an HDF5 file
    subroutine read_identity(path, identity, error)
       character(len=*), intent(in) :: path
-      !> What it is about; one shard without points where it says nothing of those
+      !> Its identity; a single shard without points if it states none
       type(identity_t), intent(out) :: identity
-      !> Set if it cannot be read, or is no HDF5 file
+      !> Set if it cannot be read, or is not an HDF5 file
       type(error_t), allocatable, intent(out) :: error
 
       type(reader_t) :: reader
@@ -109,10 +108,10 @@ contains
 
    contains
 
-      !> A number in an attribute
+      !> Read a number from an attribute
       function number(name)
          character(len=*), intent(in) :: name
-         !> The number; 0 where there is none
+         !> The number; 0 if there is none
          integer :: number
 
          character(len=:), allocatable :: digits
@@ -126,12 +125,12 @@ contains
       end function number
    end subroutine read_identity
 
-   !> What a CSV file is about, from its head, and how many rows it has if that is asked for
+   !> Read the identity of a CSV file from its head, and optionally count its rows
    subroutine read_csv(path, identity, rows)
       character(len=*), intent(in) :: path
-      !> What it is about; its data are not known
+      !> Its identity, without data
       type(identity_t), intent(out) :: identity
-      !> Number of complete rows below the names of the columns; 0 where there is no such file
+      !> Number of complete rows after the names of the columns; 0 if there is no such file
       integer, intent(out), optional :: rows
 
       integer(int64), parameter :: length = 65536
@@ -146,7 +145,7 @@ contains
       identity%case_text = ''
       identity%data = ''
       in_case = .false.
-      ! below the head, the line of the names included
+      ! lines after the head, including the line of names
       lines = 0
       if (present(rows)) rows = 0
       open (newunit=unit, file=path, status='old', action='read', access='stream', &
@@ -176,7 +175,7 @@ contains
 
    contains
 
-      !> Take a line: of the head, or one that counts
+      !> Process a line: store it if it belongs to the head, otherwise count it
       subroutine take(line)
          character(len=*), intent(in) :: line
 
@@ -195,12 +194,12 @@ contains
       end subroutine take
    end subroutine read_csv
 
-   !> Refuse a file that is not about the same; which of the shards it has does not matter
+   !> Refuse a file of another identity, apart from the number of the shard
    subroutine check_same(path, found, expected, error)
       character(len=*), intent(in) :: path
       type(identity_t), intent(in) :: found
       type(identity_t), intent(in) :: expected
-      !> Error of code `error_file` with the reason, unallocated if it is about the same
+      !> Error of code `error_file` with the reason, unallocated if the identities agree
       type(error_t), allocatable, intent(out) :: error
 
       if (found%version /= expected%version) then
@@ -219,13 +218,13 @@ contains
       end if
    end subroutine check_same
 
-   !> Where two cases differ first
+   !> First difference between two cases
    pure function first_difference(found, expected) result(text)
       !> A case
       character(len=*), intent(in) :: found
       !> Another case
       character(len=*), intent(in) :: expected
-      !> Words for an error as well as for a note that the file is replaced
+      !> Text for an error, or for a note that the file is replaced
       character(len=:), allocatable :: text
       integer :: i, start
 
@@ -238,10 +237,10 @@ contains
 
    contains
 
-      !> The line that begins there
+      !> The line that begins at `start`
       pure function line_at(case_text) result(line)
          character(len=*), intent(in) :: case_text
-         !> The line, shortened where it is long
+         !> The line, shortened if it is long
          character(len=:), allocatable :: line
 
          line = case_text(min(start, len(case_text) + 1):)

@@ -1,4 +1,4 @@
-!> Paths: what exists at a path, directories, and paths in messages
+!> What exists at a path, directories, and paths in messages
 !>
 !> Trailing blanks of a path are ignored, as by Fortran's `open`. Every error is an `error_file`
 !> with the path and the reason of the system.
