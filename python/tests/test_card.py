@@ -297,6 +297,17 @@ def test_the_card_serves_the_temperature_of_the_impact(temperature):
     assert found == pytest.approx(cor, abs=2e-3)
 
 
+def test_the_other_body_need_not_bear_the_reference_temperature():
+    text = HEAD.replace("5.0 /", "5.0, temperature = 300.0 /").replace("model = 'rigid'",
+        "model = 'cerf', poisson_ratio = 0.3, relaxing_modulus = 1e9, beta = 5, shift = 'wlf',"
+        "wlf_c1 = 9, wlf_c2 = 51.6, reference_temperature = 300")  # fmt: skip
+    keys = MODELS["cerf"] + WLF.replace("298.15", "220")
+    case = vcor.Case(text.format(nu=0.4, keys=keys))
+    warm = vcor.card(case, "rubber", band=(1e-6, 1e-3))
+    assert warm.moduli == pytest.approx(
+        vcor.card(case_of(keys, 0.4), "rubber", band=(1e-6, 1e-3)).moduli, rel=1e-6)  # fmt: skip
+
+
 #: In the manner of the card of E1 of pyvisco (tests/data/E1_WLF.USER_MPL, NatLabRockies/pyvisco)
 ANSYS = """!E1
 MP,REFT,_MAT,_TREF

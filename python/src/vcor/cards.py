@@ -94,14 +94,10 @@ def card(
             "a fast term in its place, modulus times time = viscosity"
         )
     shift: dict[str, str | float] = {}
-    impact = case
     if case[f"{material}.shift"]:
         shift = {"shift": str(case[f"{material}.shift"])}
         shift |= {key: of(key) for key in _SHIFT if case[f"{material}.{key}"]}
         shift |= {"vertical_shift": True} if case[f"{material}.vertical_shift"] else {}
-        if case["impact.temperature"] is not None:
-            impact = case.copy() if use_shift else case
-            case["impact.temperature"] = of("reference_temperature")
     # in tension, whatever the moduli of the case are
     size = 2 * (1 + of("poisson_ratio")) if case[f"{material}.modulus_kind"] == "shear" else 1.0
     if poisson_ratio is not None and size == 1.0:
@@ -124,12 +120,15 @@ def card(
         if band is None:
             if not has_impact:
                 raise UsageError(f"{case.name}: expected --band FROM:TO, there is no impact")
+            # the shift of the card takes it back to the temperature of the impact
+            impact, factor = case, case.material(material).time_factor()
+            if not use_shift and factor != 1:
+                impact, factor = case.copy(), 1.0
+                impact["impact.temperature"] = of("reference_temperature")
             try:
-                contact = float(impact.solve(quantities=["contact_time"])["contact_time"])
+                contact = float(impact.solve(quantities=["contact_time"])["contact_time"]) / factor
             except NumericalError as error:
                 raise UsageError(f"{error}; expected --band FROM:TO for the card") from None
-            # the card shifts it back to the temperature of the impact
-            contact /= impact.material(material).time_factor()
             band = _BAND[0] * contact, _BAND[1] * contact
         equilibrium, found, misfit = _sum(case, material, band, accuracy, terms)
         remarks = [f"{len(found)} exponentials in place of model {model}: E(t) to {misfit:.1g} "
@@ -163,9 +162,15 @@ def _sum(
         raise UsageError(f"found --band {found}, expected 1e-30 <= FROM < TO <= 1e30")
     first, last = ends
     t = np.geomspace(first, last, int(_POINTS * np.log10(last / first)) + 2)
-    relaxation = case.material(material).relaxation(t)
+    # at the reference temperature, whatever that of the impact is
+    made = case.material(material)
+    factor, size = made.time_factor(), 1.0
+    if factor != 1 and case[f"{material}.vertical_shift"]:
+        size = (number(case, "impact.temperature", 0.0)
+                / number(case, f"{material}.reference_temperature", 0.0))  # fmt: skip
+    relaxation = made.relaxation(t * factor) / size
     before = np.geomspace(first * 1e-35, first, 4001)
-    area = trapezoid(case.material(material).relaxation(before) * before, np.log(before))
+    area = trapezoid(made.relaxation(before * factor) / size * before, np.log(before))
     best = np.inf
     for n in range(min(2, most), most + 1):
         times = np.append(first / 10, np.geomspace(first / 3, last, n - 1))
