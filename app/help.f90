@@ -1,4 +1,4 @@
-!> Help: screens about commands and about words of input and output, and all of it as a JSON
+!> Screens of help about commands and about words of input and output, and all of it as a JSON
 !> document, `vcor help --json`, from which scripts/manual.py makes the manual
 module vcor_app_help
    use vcor_app_commands, only : command_names, commands, entry_t, missing_package, options_of, &

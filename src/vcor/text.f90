@@ -1,5 +1,5 @@
-!> Texts: case, names, numbers in their shortest form, and foreign text made safe for a one-line
-!> message
+!> Operations on texts: case, names, numbers in their shortest form, and foreign text made safe for
+!> a one-line message
 module vcor_text
    use, intrinsic :: ieee_arithmetic, only : ieee_is_finite, ieee_is_nan
    use vcor_kinds, only : wp

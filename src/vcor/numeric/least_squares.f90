@@ -97,14 +97,14 @@ module vcor_numeric_least_squares
          integer, intent(in) :: maxfev
          !> Scales of the unknowns, set if mode = 1, shape (n)
          real(wp), intent(inout) :: diag(n)
-         !> 1: scales from the derivatives, 2: scales as given
+         !> Scales from the derivatives (1) or as given (2)
          integer, intent(in) :: mode
          !> Bound of the first step, in scaled unknowns
          real(wp), intent(in) :: factor
-         !> 0: `fcn` is not called between the iterations
+         !> With 0, `fcn` is not called between the iterations
          integer, intent(in) :: nprint
-         !> 0: wrong arguments, 1 to 4: a tolerance is met, 5: too many evaluations, 6 to 8: a
-         !> tolerance is below rounding; negative: ended by `fcn`
+         !> Wrong arguments (0), a tolerance met (1 to 4), too many evaluations (5), a tolerance
+         !> below rounding (6 to 8), or ended by `fcn` (negative)
          integer, intent(out) :: info
          !> Number of evaluations of the residuals
          integer, intent(out) :: nfev
@@ -201,7 +201,7 @@ contains
       integer, intent(in) :: ldfjac
       !> Derivatives
       real(wp), intent(inout) :: fjac(ldfjac, n)
-      !> 1: set the residuals, 2: set the derivatives
+      !> Whether to set the residuals (1) or the derivatives (2)
       integer, intent(inout) :: iflag
 
       real(wp) :: inside(n)

@@ -146,7 +146,7 @@ contains
       type(exponential_sum_t), intent(in) :: terms
       !> Increment since the start, at the stages
       real(wp), intent(in) :: x(width)
-      !> Lags: at the start on entry, at the end on return, shape (modes)
+      !> Lags, at the start on entry and at the end on return, shape (modes)
       real(wp), intent(inout) :: p(:)
 
       real(wp), dimension(width) :: lambda, from_x, from_p
