@@ -1,6 +1,6 @@
-!> What is said of the validity of results: the measures that are not good, one sentence each, and
-!> how many points of a sweep they are; of impacts that lean on a material beyond the data that it
-!> was fitted to; and of input that is not plausible
+!> Messages about the validity of results: the measures that are not good, one sentence each, and
+!> the number of points of a sweep with each; impacts that rely on a material beyond the data of its
+!> fit; and implausible input
 module vcor_app_validity
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use, intrinsic :: iso_fortran_env, only : error_unit
@@ -34,8 +34,8 @@ module vcor_app_validity
 
 contains
 
-   !> Warn on stderr of numbers that are not plausible, and note which materials are at their
-   !> reference temperature because no other is given
+   !> Warn on stderr of implausible numbers, and note which materials are at their reference
+   !> temperature because no other is given
    subroutine warn_of_slips(case, grid)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -63,12 +63,12 @@ contains
       end do
    end subroutine warn_of_slips
 
-   !> Mechanics of a case, as far as it reads them
+   !> Mechanics of a case, as far as the impact reads them
    function mechanics_of(case, exact) result(text)
       type(case_t), intent(in) :: case
-      !> Other mechanics to name in their place
+      !> Other mechanics to name instead
       type(model_t), intent(in), optional :: exact
-      !> As `waves relaxing, law boltzmann`
+      !> Such as `waves relaxing, law boltzmann`
       character(len=:), allocatable :: text
 
       character(len=*), parameter :: groups(3) = [character(len=7) :: 'plate', 'contact', 'contact']
@@ -94,9 +94,9 @@ contains
    subroutine solve_exact(case, outcome, exact, is_shown)
       type(case_t), intent(in) :: case
       type(outcome_t), intent(in) :: outcome
-      !> The same with the exact mechanics
+      !> Outcome with the exact mechanics
       type(model_t), intent(out) :: exact
-      !> Whether they make a difference, or have no result
+      !> Whether it differs from the given outcome, or does not exist
       logical, intent(out) :: is_shown
 
       character(len=:), allocatable :: waves
@@ -104,7 +104,7 @@ contains
 
       call case%get('plate', 'waves', waves)
       exact = model_t(waves, 'receding', 'series')
-      ! where the plate is thin its limit will do, which takes a tenth of the time
+      ! for a thin plate the limit is sufficient, and takes a tenth of the time
       if (waves /= 'none' .and. waves /= 'body') exact%waves = trim(merge('body      ', &
          'hereditary', level_of(findloc(thresholds%measure, 'plate_wave_number', dim=1), &
          outcome%plate_wave_number) > level_good))
@@ -113,10 +113,11 @@ contains
       if (.not. is_shown) is_shown = differ(outcome, exact%outcome)
    end subroutine solve_exact
 
-   !> The level of an impact, the measures that are not good, a line each, and the good ones in one
+   !> The level of an impact, a line for each measure that is not good, and one line for the good
+   !> ones
    function measures_report(outcome, around) result(text)
       type(outcome_t), intent(in) :: outcome
-      !> What is around the impact
+      !> Surroundings of the impact
       type(surroundings_t), intent(in) :: around
       !> Lines; the first has the level
       character(len=:), allocatable :: text
@@ -141,9 +142,9 @@ contains
 
    contains
 
-      !> What a measure says of this impact, and what to do about it
+      !> Meaning of a measure for this impact, and advice
       function sentence(measure) result(words)
-         !> Its place in `thresholds`
+         !> Index of the measure in `thresholds`
          integer, intent(in) :: measure
          character(len=:), allocatable :: words
 
@@ -156,7 +157,7 @@ contains
                      //' too deep; a slower impact makes a smaller contact'
                   return
                end if
-               ! the first term of Sneddon's force over Hertz'
+               ! first term of Sneddon's force over Hertz's
                words = "Hertz' force is about "//percent(0.1_wp*value**2) &
                   //' too high; a slower impact makes a smaller contact'
             case ('thickness_ratio')
@@ -189,12 +190,12 @@ contains
       end function sentence
    end function measures_report
 
-   !> The level of an impact that is not good and its measures, for one line
+   !> The level of an impact that is not good, and the measures, in one line
    function measures_remark(outcome, around) result(text)
       type(outcome_t), intent(in) :: outcome
-      !> What is around the impact
+      !> Surroundings of the impact
       type(surroundings_t), intent(in) :: around
-      !> Words, none where all is good or there is no result
+      !> In words; empty if all are good or there is no result
       character(len=:), allocatable :: text
 
       real(wp) :: values(size(thresholds))
@@ -213,7 +214,7 @@ contains
    function points_report(grid, summary) result(text)
       type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
-      !> Lines, none where all is good
+      !> Lines; empty if all are good
       character(len=:), allocatable :: text
 
       logical, allocatable :: chosen(:)
@@ -234,11 +235,11 @@ contains
       end do
    end function points_report
 
-   !> Points of a sweep that are not good, for one line
+   !> Number of points of a sweep that are not good, and the measures, in one line
    function points_remark(grid, summary) result(text)
       type(grid_t), intent(in) :: grid
       type(summary_t), intent(in) :: summary
-      !> Words, none where all is good
+      !> In words; empty if all are good
       character(len=:), allocatable :: text
 
       character(len=:), allocatable :: causes
@@ -261,19 +262,19 @@ contains
       if (text /= '') text = 'validity: '//text(3:)
    end function points_remark
 
-   !> What is said of bare numbers, in one line
+   !> Note about plain numbers, in one line
    pure function about_numbers(case, words) result(text)
       type(case_t), intent(in) :: case
-      !> What there is to say of their accuracy and validity; nothing is fine
+      !> Text about their accuracy and validity; may be empty
       character(len=*), intent(in) :: words
-      !> The line, or nothing
+      !> The line; empty without text
       character(len=:), allocatable :: text
 
       text = ''
       if (words /= '') text = case%source//': '//words
    end function about_numbers
 
-   !> Two things that are said, in one line; either may be nothing
+   !> Join two texts in one line; either may be empty
    pure function joined(first, second) result(text)
       character(len=*), intent(in) :: first, second
       character(len=:), allocatable :: text
@@ -282,10 +283,10 @@ contains
       if (first /= '' .and. second /= '') text = first//'; '//second
    end function joined
 
-   !> Between what values of the parameters points lie
+   !> Ranges of the parameters of some points
    function place_of(grid, chosen) result(text)
       type(grid_t), intent(in) :: grid
-      !> Which of them, shape (points)
+      !> Which points, shape (points)
       logical, intent(in) :: chosen(:)
       !> Names and ranges
       character(len=:), allocatable :: text
@@ -314,9 +315,9 @@ contains
    !> A measure and its value
    function measure_text(outcome, measure) result(text)
       type(outcome_t), intent(in) :: outcome
-      !> Its place in `thresholds`
+      !> Index of the measure in `thresholds`
       integer, intent(in) :: measure
-      !> As `contact_ratio 0.67`
+      !> Such as `contact_ratio 0.67`
       character(len=:), allocatable :: text
 
       text = trim(thresholds(measure)%measure)
@@ -331,9 +332,8 @@ contains
       text = significant(value, 3, 0)
    end function brief
 
-   !> Warn on stderr of materials of the bodies that the impacts lean on beyond their data.
-   !> Of a sweep the impacts of the shortest and the longest contact are looked at, in which that
-   !> shows first
+   !> Warn on stderr of materials on which impacts rely beyond their data. Of a sweep the impacts
+   !> with the shortest and the longest contact are examined, which are affected first
    subroutine warn_of_bands(case, grid, summary)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -349,8 +349,8 @@ contains
       end do
    end subroutine warn_of_bands
 
-   !> Warn of contacts of a sweep that a table of data does not cover; of a single impact its report
-   !> says so. Data that move with a swept temperature are left out
+   !> Warn of contacts of a sweep that the data of a table do not cover; the report of a single
+   !> impact includes this. Data that a swept temperature shifts are left out
    subroutine warn_of_table(case, grid, summary, item)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -372,19 +372,19 @@ contains
       if (words /= '') write (error_unit, '(a)') 'vcor: warning: '//case%source//': '//words
    end subroutine warn_of_table
 
-   !> What is said of contacts that the data of a table do not cover
+   !> Message about contacts that the data of a table do not cover
    function beyond_data(case, item, owner, contacts) result(text)
       type(case_t), intent(in) :: case
-      !> Number of the material
+      !> Index of the material
       integer, intent(in) :: item
-      !> Whose data they are, in words
+      !> Owner of the data, in words
       character(len=*), intent(in) :: owner
       !> Contact times [s]
       real(wp), intent(in) :: contacts(:)
-      !> Words; nothing where they do, or the material is no table
+      !> In words; empty if they do, or if the material is no table
       character(len=:), allocatable :: text
 
-      !> What counts is what is between the contact time and so small a part of it
+      !> The times that matter, from this fraction of the contact time to the contact time
       real(wp), parameter :: seen_from = 0.01_wp
       character(len=*), parameter :: constant = ', where the modulus is taken as constant'
       class(material_t), allocatable :: material
@@ -418,7 +418,7 @@ contains
          //joined(before, after)
    end function beyond_data
 
-   !> Warn of temperatures beyond the data behind the shift of a material
+   !> Warn of temperatures beyond the data of the shift of a material
    subroutine warn_of_temperatures(case, grid, item)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -458,7 +458,7 @@ contains
          //" outside of the data behind the shift of '"//printable(name)//"' ("//band//')'
    end subroutine warn_of_temperatures
 
-   !> Warn of one material
+   !> Warn of one material if impacts rely on it beyond its data
    subroutine warn_of_band(case, grid, summary, item)
       type(case_t), intent(in) :: case
       type(grid_t), intent(in) :: grid
@@ -492,7 +492,7 @@ contains
 
    contains
 
-      !> What is said
+      !> Text of the warning
       function message(found, point) result(text)
          type(reliance_t), intent(in) :: found
          integer, intent(in) :: point
@@ -524,16 +524,15 @@ contains
       end function message
    end subroutine warn_of_band
 
-   !> How much of a contact lies outside of a band of times: all of it where no lag within it is
-   !> known
+   !> Share of a contact outside of a band of times; all of it if no time lag within it is known
    pure function share_outside(band, ends, contact_time) result(text)
       !> First and last time of the data [s]
       real(wp), intent(in) :: band(2)
-      !> Whether there is such an end
+      !> Whether the band has a start, and an end
       logical, intent(in) :: ends(2)
       !> Contact time [s]
       real(wp), intent(in) :: contact_time
-      !> In words, as `5.0 % of it is earlier than`
+      !> In words, such as `5.0 % of it lies before`
       character(len=:), allocatable :: text
 
       real(wp) :: before, after

@@ -329,18 +329,18 @@ contains
       end do
    end function status_name
 
-   !> Make room; all points are pending, and have no values yet: NaN or 0. Whether there is memory
-   !> for all that it takes to solve and to write them is seen now, not after hours
+   !> Allocate a summary of pending points, without values: NaN or 0. First check that there is
+   !> enough memory to solve and write all points, which would otherwise show only after hours
    subroutine new_summary(self, points, error, threads)
       type(summary_t), intent(out) :: self
       integer, intent(in) :: points
       !> Error of code `error_file` if there is not enough memory, unallocated on success
       type(error_t), allocatable, intent(out) :: error
-      !> Threads that solve them; absent: 1
+      !> Number of threads that solve them; absent: 1
       integer, intent(in), optional :: threads
 
-      ! Outcomes are kept once as numbers of 8 bytes, and a column or two once more where they are
-      ! written; a thread has a stack of 8 MB and what it works with
+      ! 8 bytes for each number, and one or two columns again while they are written; per thread a
+      ! stack of 8 MB and its working storage
       integer(int64), parameter :: bytes_per_column = 12_int64, bytes_per_thread = 12000000_int64, &
          megabyte = 1000000_int64
       character, allocatable :: room(:)
