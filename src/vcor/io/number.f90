@@ -4,11 +4,11 @@
 !> digits are not enough; `nan`, `inf` and `-inf`. The digits are correctly rounded.
 !>
 !> A formatted write of gfortran takes 1.4 us per number, more than everything else in writing a
-!> large table. So a number M 2^e is multiplied by a power of ten, 5^k 2^k, in 128-bit integers; the
-!> 17 digits are the integer part of a shifted product. 5^k is truncated to 74 bits, an error of
-!> 1e-5 of the last digit. Only if the fractional part is that close to one half, where rounding
-!> changes, the formatted write decides, as for numbers of 1e17 and above and for subnormal numbers,
-!> which are rare.
+!> large table. So a number M 2^e is multiplied by a power of ten, 5^k 2^k, in 27-bit limbs; the 17
+!> digits are the integer part of a shifted product. 5^k is truncated to 81 bits, an error of 1e-6
+!> of the last digit. Only if the fractional part is that close to one half, where rounding changes,
+!> the formatted write decides, as for numbers of 1e17 and above and for subnormal numbers, which
+!> are rare. Pairs of reals would not do: the compiler may contract their products and sums.
 module vcor_io_number
    use, intrinsic :: iso_fortran_env, only : int64
    use vcor_kinds, only : wp
@@ -31,18 +31,18 @@ module vcor_io_number
    integer, parameter :: fraction_bits = 52, bias = 1023
    !> Exponent field of infinity and NaN
    integer(int64), parameter :: special_exponent = 2047_int64
-   !> Integers of 128 bits
-   integer, parameter :: long = selected_int_kind(38)
-   !> Bits of a power of five; its product with a mantissa of 53 bits has 127
-   integer, parameter :: power_bits = 74
+   !> Bits of a limb: the sum of three products of limbs is far from overflow
+   integer, parameter :: limb_bits = 27
+   !> Highest limb of the powers of five, counted from 0
+   integer, parameter :: top = 2
    !> log10(2)
    real(wp), parameter :: log10_of_2 = 0.30102999566398119521_wp
 
    !> Powers of ten for the conversion, from `new_decimal`
    type :: decimal_t
       private
-      !> 5^k = five(k) 2^exponent(k), the highest bit set, k = 0 .. `last_power`
-      integer(long) :: five(0:last_power)
+      !> 5^k = 2^exponent sum_i limb(i) 2^(27 i), the highest bit set, k = 0 .. `last_power`
+      integer(int64) :: limb(0:top, 0:last_power)
       !> Power of two
       integer :: exponent(0:last_power)
       !> The numbers 0 to 99 as two digits
@@ -55,21 +55,17 @@ contains
    pure subroutine new_decimal(decimal)
       !> Powers of ten for `put_real`
       type(decimal_t), intent(out) :: decimal
-      ! additional bits for the errors of about 300 products
-      integer, parameter :: bits = 124
-      integer(long) :: five
+      ! two additional limbs for the errors of about 300 products
+      integer(int64) :: limb(0:top+2)
       integer :: exponent, k
 
-      five = shiftl(1_long, bits - 1)
-      exponent = 1 - bits
+      limb = 0_int64
+      limb(top+2) = 2_int64**(limb_bits - 1)
+      exponent = 1 - limb_bits*(top + 1)
       do k = 0, last_power
-         if (k > 0) five = 5_long*five
-         do while (shiftr(five, bits) > 0_long)
-            five = shiftr(five, 1)
-            exponent = exponent + 1
-         end do
-         decimal%five(k) = shiftr(five, bits - power_bits)
-         decimal%exponent(k) = exponent + bits - power_bits
+         if (k > 0) call times_five(limb, exponent)
+         decimal%limb(:, k) = limb(2:)
+         decimal%exponent(k) = exponent
       end do
 
       do k = 0, 99
@@ -169,26 +165,41 @@ contains
       integer(int64), intent(out) :: digits
       !> Power of ten of the first digit
       integer, intent(out) :: power
-      ! of the rest: half of it bounds the effect of an error of one in the last bit of 5^k
-      integer(long), parameter :: undecided = 2_long**(fraction_bits + 2)
+      ! an error of one in the last bit of 5^k is below 2^26 in `rest`
+      integer(int64), parameter :: undecided = 2_int64**28
+      integer(int64), parameter :: limb_mask = 2_int64**limb_bits - 1_int64
       real(wp), parameter :: unit = 2.0_wp**(-fraction_bits)
-      integer(long) :: product, rest
-      integer :: k, shift
+      integer(int64) :: column(0:top+2), half, high, low, rest
+      integer :: i, k, shift
 
+      low = iand(mantissa, limb_mask)
+      high = shiftr(mantissa, limb_bits)
       ! log2(m) >= m - 1 for m from 1 to 2, so the power is correct or one too small
       power = floor((real(exponent - 1, wp) + real(mantissa, wp)*unit)*log10_of_2)
       do
          k = 16 - power
-         product = mantissa*decimal%five(k)
-         ! 17 or 18 digits are 54 to 58 bits
-         shift = fraction_bits - exponent - k - decimal%exponent(k)
-         digits = int(shiftr(product, shift), int64)
-         rest = product - shiftl(int(digits, long), shift) - shiftl(1_long, shift - 1)
-         if (rest > 0_long) digits = digits + 1_int64
+         column(0) = low*decimal%limb(0, k)
+         column(1) = low*decimal%limb(1, k) + high*decimal%limb(0, k)
+         column(2) = low*decimal%limb(2, k) + high*decimal%limb(1, k)
+         column(3) = high*decimal%limb(2, k)
+         column(4) = 0_int64
+         do i = 0, top + 1
+            column(i+1) = column(i+1) + shiftr(column(i), limb_bits)
+            column(i) = iand(column(i), limb_mask)
+         end do
+
+         ! the point is in the third limb, 21 to 26 bits from its right: 17 or 18 digits are 54 to
+         ! 58 of the 133 or 134 bits
+         shift = fraction_bits - exponent - k - decimal%exponent(k) - 2*limb_bits
+         digits = shiftl(column(4), 2*limb_bits - shift) + shiftl(column(3), limb_bits - shift) &
+            + shiftr(column(2), shift)
+         rest = shiftl(iand(column(2), shiftl(1_int64, shift) - 1_int64), limb_bits) + column(1)
+         half = shiftl(1_int64, shift + limb_bits - 1)
+         if (rest > half) digits = digits + 1_int64
          if (digits < too_large) exit
          power = power + 1
       end do
-      if (abs(rest) < undecided) digits = -1_int64
+      if (abs(rest - half) < undecided) digits = -1_int64
    end subroutine find_digits
 
    !> Find the 17 digits of a number by a formatted write
@@ -261,5 +272,31 @@ contains
       buffer(last+1:last+len(text)) = text
       last = last + len(text)
    end subroutine put_text
+
+   !> Multiply by five
+   pure subroutine times_five(limb, exponent)
+      !> Limbs from the lowest to the highest, whose highest bit is set before and after
+      integer(int64), intent(inout) :: limb(0:)
+      !> Power of two that goes with them
+      integer, intent(inout) :: exponent
+      integer(int64) :: carry, sum
+      integer :: i, shift
+
+      carry = 0_int64
+      do i = 0, ubound(limb, 1)
+         sum = 5_int64*limb(i) + carry
+         limb(i) = ibits(sum, 0, limb_bits)
+         carry = ishft(sum, -limb_bits)
+      end do
+      ! the carry, 2 to 4, has two or three bits more than there is room for
+      shift = 2
+      if (carry >= 4_int64) shift = 3
+      do i = 0, ubound(limb, 1) - 1
+         limb(i) = ior(ishft(limb(i), -shift), ishft(ibits(limb(i+1), 0, shift), limb_bits - shift))
+      end do
+      i = ubound(limb, 1)
+      limb(i) = ior(ishft(limb(i), -shift), ishft(carry, limb_bits - shift))
+      exponent = exponent + shift
+   end subroutine times_five
 
 end module vcor_io_number
