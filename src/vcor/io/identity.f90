@@ -133,10 +133,11 @@ contains
       !> Number of complete rows after the names of the columns; 0 if there is no such file
       integer, intent(out), optional :: rows
 
-      integer(int64), parameter :: length = 65536
-      character(len=length) :: block
-      character(len=:), allocatable :: line
-      integer(int64) :: bytes, at, first, last, n
+      character(len=*), parameter :: program = '# vcor '
+      ! longer than a line of the head: of a row its first letter counts
+      character(len=9000) :: line
+      character :: last
+      integer(int64) :: bytes
       integer :: unit, status, lines
       logical :: in_case
 
@@ -148,50 +149,32 @@ contains
       ! lines after the head, including the line of names
       lines = 0
       if (present(rows)) rows = 0
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      if (status /= 0) return
+      do
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (line(:1) /= '#') then
+            lines = lines + 1
+            if (.not. present(rows)) exit
+         else if (lines == 0 .and. in_case) then
+            identity%case_text = identity%case_text//trim(line(3:))//new_line('a')
+         else if (lines == 0 .and. index(line, program) == 1) then
+            identity%version = trim(line(len(program) + 1:))
+         end if
+         in_case = in_case .or. line == '# case:'
+      end do
+      close (unit)
+      if (.not. in_case) identity%version = ''
+      if (.not. present(rows)) return
+      ! a row without the end of its line is not complete
       open (newunit=unit, file=path, status='old', action='read', access='stream', &
          form='unformatted', iostat=status)
       if (status /= 0) return
       inquire (unit, size=bytes)
-      line = ''
-      do at = 1, bytes, length
-         n = min(length, bytes - at + 1)
-         read (unit, pos=at, iostat=status) block(:n)
-         if (status /= 0) exit
-         first = 1
-         do
-            last = first + index(block(first:n), new_line('a')) - 1
-            if (last < first) exit
-            line = line//block(first:last - 1)
-            call take(line)
-            line = ''
-            first = last + 1
-         end do
-         line = line//block(first:n)
-         if (lines > 0 .and. .not. present(rows)) exit
-      end do
+      read (unit, pos=max(1_int64, bytes), iostat=status) last
       close (unit)
-      if (present(rows)) rows = max(0, lines - 1)
-      if (.not. in_case) identity%version = ''
-
-   contains
-
-      !> Process a line: store it if it belongs to the head, otherwise count it
-      subroutine take(line)
-         character(len=*), intent(in) :: line
-
-         character(len=*), parameter :: program = '# vcor ', title = '# title: ', case = '# case:'
-
-         if (index(line, '#') /= 1) then
-            lines = lines + 1
-         else if (lines == 0 .and. in_case) then
-            identity%case_text = identity%case_text//line(3:)//new_line('a')
-         else if (lines == 0 .and. index(line, program) == 1) then
-            identity%version = line(len(program) + 1:)
-         else if (lines == 0 .and. index(line, title) == 1) then
-            identity%title = line(len(title) + 1:)
-         end if
-         in_case = in_case .or. line == case
-      end subroutine take
+      if (status == 0) rows = max(0, lines - merge(1, 2, last == new_line('a')))
    end subroutine read_csv
 
    !> Refuse a file of another identity, apart from the number of the shard
