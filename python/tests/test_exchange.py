@@ -352,6 +352,24 @@ def test_the_head_of_a_table_says_what_strikes_and_whether_its_weight_acts():
     assert ", shape cone\n" in head and ", gravity 9.81 m/s2\n" in head
 
 
+@pytest.mark.parametrize(
+    ("shell", "code", "said"),
+    [
+        ("{} > /dev/full", 4, "cannot write the standard output: No space left on device\n"),
+        ("{} >&-", 4, "cannot write the standard output: it is closed\n"),
+        ("set -o pipefail; {} | true", 141, ""),
+        ("LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0 {} > out", 0, ""),
+    ],
+)
+def test_what_becomes_of_the_output(shell, code, said, tmp_path):
+    (tmp_path / "c.nml").write_text(BEADS.read_text().replace("title = '", "title = 'ä "))
+    command = f'"{sys.executable}" -c "from vcor._command import export; export()" '
+    command += "c.nml --for rebound --velocities 0.1:1:4"
+    done = subprocess.run(["bash", "-c", shell.format(command)], cwd=tmp_path, capture_output=True,
+                          text=True, check=False)  # fmt: skip
+    assert (done.returncode, done.stderr) == (code, said and f"vcor: error: {said}")
+
+
 def test_contacts_that_a_program_has_not():
     seat = vcor.pair(RUBBER, (0.005, 0.01))
     seat["plate.surface_radius"] = -0.01

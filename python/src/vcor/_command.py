@@ -10,6 +10,7 @@ import importlib
 import json
 import math
 import os
+import signal
 import sys
 import tempfile
 import warnings
@@ -83,9 +84,20 @@ def one_line() -> Iterator[None]:
 
 def _run(name: str, module: str) -> None:
     """Run the command of a module, if what it needs is there."""
+    # a reader that has enough ends the command in silence, as it ends the program
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     with one_line():
+        if sys.stdout is None:
+            raise FileError("cannot write the standard output: it is closed")
         try:
+            # a text is UTF-8 in whatever locale
+            sys.stdout.reconfigure(encoding="utf-8")  # type: ignore[union-attr]
             importlib.import_module(f"vcor.{module}").main()
+            sys.stdout.flush()
+        except OSError as error:
+            # what is left in its buffer would fail again at the end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            raise FileError(f"cannot write the standard output: {error.strerror}") from None
         except ModuleNotFoundError as error:
             raise UsageError(
                 f"vcor {name} needs the Python package {error.name}, expected: "
