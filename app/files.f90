@@ -15,12 +15,13 @@ module vcor_app_files
       plain_file_exists, quoted_path
    use vcor_io_table, only : place_in_table, table_t
    use vcor_sweep_part, only : new_part, part_t
+   use vcor_sweep_quantity, only : quantities
    use vcor_text, only : integer_text, name_flaw, printable
    implicit none
    private
 
    public :: files_t, name_files, write_files, write_numbers
-   public :: previous_t, find_previous, check_finished, replacement_note, remark
+   public :: previous_t, find_previous, check_finished, check_columns, replacement_note, remark
 
    !> Length of the longest ending
    integer, parameter :: longest_ending = 24
@@ -330,7 +331,11 @@ contains
       integer(int64) :: ignored
       integer :: expected, rows
 
-      is_whole = previous%has_hdf5 .or. .not. files%writes(3)
+      is_whole = .not. files%writes(3)
+      if (previous%has_hdf5) then
+         call check_columns(previous%path, error)
+         is_whole = .not. allocated(error)
+      end if
       if (is_whole .and. files%writes(1)) then
          call read_csv(files%name(1), identity, rows)
          is_whole = rows == points
@@ -346,6 +351,29 @@ contains
       is_whole = .not. allocated(error)
       if (is_whole) is_whole = rows == expected
    end function is_whole
+
+   !> Refuse results without the columns of this version
+   subroutine check_columns(path, error)
+      !> Path of the HDF5 file
+      character(len=*), intent(in) :: path
+      !> Error of code `error_file`, unallocated if all columns are there
+      type(error_t), allocatable, intent(out) :: error
+
+      type(reader_t) :: reader
+      integer(int64) :: ignored
+      integer :: i, rows
+
+      call open_hdf5(reader, path, error)
+      associate (list => quantities())
+         do i = 1, size(list)
+            if (.not. allocated(error)) &
+               call find_dataset(reader, 'summary/'//trim(list(i)%name), rows, ignored, error)
+         end do
+      end associate
+      call close_hdf5(reader)
+      if (allocated(error)) error%message = error%message//'; the file is damaged, or of an ' &
+         //'earlier version of vcor'
+   end subroutine check_columns
 
    !> Note about results that are replaced
    function replacement_note(previous) result(text)

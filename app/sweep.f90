@@ -4,7 +4,7 @@
 module vcor_app_sweep
    use, intrinsic :: ieee_arithmetic, only : ieee_is_nan
    use vcor_app_cli, only : request_t
-   use vcor_app_files, only : check_finished, find_previous, previous_t, remark, &
+   use vcor_app_files, only : check_columns, check_finished, find_previous, previous_t, remark, &
       replacement_note, write_files, write_numbers
    use vcor_app_job, only : job_t, shard_text
    use vcor_app_screen, only : coordinates, heading, padded, right, shown, significant
@@ -142,6 +142,8 @@ contains
       if (is_unfinished) then
          call open_checkpoint(watch%file, watch%path, watch%identity, summary, error, &
             anew=.not. request%resume)
+      else if (request%resume .and. previous%has_hdf5) then
+         call check_columns(previous%path, error)
       else if (watch%keeps) then
          ! detect a wrong path now, not after hours
          call make_directory(job%files%directory(), error)
